@@ -1,9 +1,9 @@
 //! Colours: sRGB, linear light, palettes, and colour spaces in which distance is perceived
 //! difference.
 //!
-//! Each conversion exists once, with its source. Pictures consist of [`Rgb`]; the submodules serve code
-//! that averages, compares or reduces colours. Rejected: a crate for colour spaces. Pictures must be the
-//! same, bit for bit, on every machine and with every version.
+//! Each conversion exists once, with its source. Pictures consist of [`Rgb`]; the submodules serve code that
+//! averages, compares or reduces colours. Rejected: a crate for colour spaces. Pictures must be identical, bit
+//! for bit, on every machine and in every version.
 
 pub mod lab;
 pub mod oklab;
@@ -14,7 +14,7 @@ use std::fmt;
 use std::ops::{Add, Mul};
 use std::str::FromStr;
 
-/// An opaque sRGB colour with 8 bits a channel.
+/// An opaque sRGB colour with 8 bits per channel.
 ///
 /// It is stored as `0x00RRGGBB` in one word: writing a pixel is one store, and halving all channels
 /// is one shift and one mask. Rejected: three separate bytes, which take three of each.
@@ -49,13 +49,13 @@ impl Rgb {
         self.0 as u8
     }
 
-    /// The colour as a number, `0x00RRGGBB`, a common pixel format of windows.
+    /// The colour as a number, `0x00RRGGBB`. Many window systems use this pixel format.
     #[inline]
     pub const fn to_bits(self) -> u32 {
         self.0
     }
 
-    /// The channels in the order red, green, blue.
+    /// The channels: red, green and blue.
     pub const fn channels(self) -> [u8; 3] {
         [self.red(), self.green(), self.blue()]
     }
@@ -74,7 +74,7 @@ impl Rgb {
     pub const fn over(self, behind: Self, alpha: u8) -> Self {
         const WHOLE: u32 = 255;
         const RED_AND_BLUE: u32 = 0x00ff_00ff;
-        /// Divides both halves of a word by 255 and rounds to the nearest; neither is above 255 ·
+        /// Divides both 16-bit halves of a word by 255 and rounds to the nearest. Neither half may exceed 255 ·
         /// 255.
         const fn shared(sums: u32) -> u32 {
             const HALF_OF_EACH: u32 = 0x007f_007f;
@@ -88,7 +88,7 @@ impl Rgb {
         Self(shared(red_and_blue) | shared(green) << 8)
     }
 
-    /// Blends this colour over each of `pixels`, as [`Rgb::over`] does: several channels by one instruction.
+    /// Blends this colour over each of `pixels`, as [`Rgb::over`] does, several channels per instruction.
     pub(crate) fn paint_over(self, pixels: &mut [Self], alpha: u8) {
         let rest = u16::from(u8::MAX - alpha);
         let channel = |behind: u16, own: u16| {
@@ -99,8 +99,9 @@ impl Rgb {
         Self::mix_all(pixels, (self, alpha.into()), channel, |pixel| self.over(pixel, alpha));
     }
 
-    /// Makes each channel of `pixels` what `channel` makes of it and of a multiple of that of another colour. The
-    /// pixels of an incomplete block become what `pixel` makes of them, which must be the same.
+    /// Replaces each channel of `pixels` by the result of `channel`. The arguments are that channel and `factor`
+    /// times the same channel of `other`. The last pixels may not fill a block. They are replaced by the result
+    /// of `pixel`, which must compute the same colour.
     #[inline]
     fn mix_all(
         pixels: &mut [Self],
@@ -144,7 +145,7 @@ impl Rgb {
         Self(red_and_blue >> 8 & RED_AND_BLUE | green >> 8 & GREEN)
     }
 
-    /// Blends each of `pixels` with `other`, as [`Rgb::blended`] does: several channels by one instruction.
+    /// Blends each of `pixels` with `other`, as [`Rgb::blended`] does, several channels per instruction.
     pub(crate) fn blend_all(pixels: &mut [Self], own: u32, other: Self, share: u32) {
         let channel =
             |of_pixel: u16, of_other: u16| ((of_pixel * own as u16 + of_other) >> 8) as u8;
@@ -152,7 +153,7 @@ impl Rgb {
         Self::mix_all(pixels, (other, share as u16), channel, blended);
     }
 
-    /// The luma of the colour, from 0 to 255, by the weights of ITU-R BT.709 in 16-bit fixed point.
+    /// The luma of the colour, from 0 to 255, with the weights of ITU-R BT.709 in 16-bit fixed point.
     pub const fn luma(self) -> u8 {
         const RED: u32 = 13_933;
         const GREEN: u32 = 46_871;

@@ -1,8 +1,8 @@
 //! Arithmetic for the other modules: sums and products without rounding error, a predicate with an
 //! exact sign, rounding, and damped motion in closed form.
 //!
-//! Each method exists once and names its source. Rejected: crates. The module needs about a hundred
-//! lines of them, and every picture depends on each bit of the results.
+//! Each algorithm exists once and names its source. Rejected: crates. The module needs about a
+//! hundred lines of them, and every picture depends on each bit of the results.
 
 pub mod damped_motion;
 mod exact;

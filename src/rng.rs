@@ -1,15 +1,16 @@
-//! Random numbers from a seed. The same seed gives the same numbers on every machine and in every
+//! Random numbers from a seed. The same seed yields the same numbers on every machine and in every
 //! later version.
 //!
 //! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable
-//! Pseudorandom Number Generators", 2014): a counter, and a finalizer that maps 64 bits one to one,
-//! so that each bit of the input changes half of the output on average. Rejected: a crate, since
-//! the generator has ten lines, which never change; and the standard library's hasher, which may
-//! change.
+//! Pseudorandom Number Generators", 2014): a counter and a finalizer. The finalizer maps 64 bits
+//! one to one, and each bit of its input changes half of the output bits on average.
+//!
+//! Rejected: a crate. The generator is ten lines that never change. Rejected: the standard
+//! library's hasher, because it may change.
 
 use serde::{Deserialize, Serialize};
 
-/// A generator of random numbers. The seed alone determines them.
+/// A random number generator. The seed alone determines its output.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[u8; 8]", into = "[u8; 8]")]
 pub struct SplitMix64 {
@@ -17,7 +18,7 @@ pub struct SplitMix64 {
 }
 
 impl SplitMix64 {
-    /// A generator with that seed.
+    /// A generator with this seed.
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
@@ -33,7 +34,7 @@ impl SplitMix64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number in [`low`, `high`), `low` plus a multiple of 2⁻⁵³ of their distance.
+    /// A number in [`low`, `high`): `low` plus a multiple of 2⁻⁵³ of the difference.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -72,21 +73,21 @@ impl SplitMix64 {
     }
 }
 
-/// A generator from the bytes of its state.
+/// Restores a generator from the little-endian bytes of its state.
 impl From<[u8; 8]> for SplitMix64 {
     fn from(state: [u8; 8]) -> Self {
         Self::new(u64::from_le_bytes(state))
     }
 }
 
-/// The bytes of the state.
+/// The state as little-endian bytes.
 impl From<SplitMix64> for [u8; 8] {
     fn from(random: SplitMix64) -> Self {
         random.state.to_le_bytes()
     }
 }
 
-/// A pseudorandom number that a seed and words determine.
+/// A pseudorandom number that depends only on `seed` and `words`.
 pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
     words.into_iter().fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
 }
@@ -105,7 +106,8 @@ fn mixed(mut bits: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The expected numbers are the first of the reference implementation with the seed 1234567.
+    /// The expected numbers are the first three of the reference implementation for the seed
+    /// 1234567.
     #[test]
     fn numbers_are_those_of_the_reference() {
         let mut random = SplitMix64::new(1_234_567);

@@ -1,8 +1,8 @@
-//! Sorting where speed does not count.
+//! Sorting for code in which speed does not matter.
 //!
-//! The sort of the standard library is compiled for each type and each comparison, and takes seven kilobytes
-//! each time. Here, one sort of indices serves all. To collect a set or a map compiles that sort as well: small
-//! ones are gathered item by item instead.
+//! The standard library's sort is compiled again for each type and each comparison, at seven kilobytes each.
+//! This module compiles one sort, of indices, for all types. Collecting into a set or a map also compiles the
+//! standard library's sort. Small collections are therefore filled item by item instead.
 
 use std::cmp::Ordering;
 
@@ -17,21 +17,21 @@ pub(crate) fn by_key<T, K: Ord>(items: &mut [T], key: impl Fn(&T) -> K) {
     by(items, |one, other| key(one).cmp(&key(other)));
 }
 
-/// A collection of `items`.
+/// Collects `items` one by one.
 pub(crate) fn gathered<T, C: Default + Extend<T>>(items: impl IntoIterator<Item = T>) -> C {
     let mut gathered = C::default();
     gathered.extend(items);
     gathered
 }
 
-/// The indices of `count` items in their order by `compare`, which compares two items by their indices.
+/// The indices of `count` items, sorted by `compare`, which compares two items by their indices.
 fn order(count: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_unstable_by(|&one, &other| compare(one, other).then(one.cmp(&other)));
     order
 }
 
-/// Moves the item with the index `order[place]` to each `place`.
+/// Moves the item at index `order[place]` to `place`, for each place.
 fn put_in_order<T>(items: &mut [T], mut order: Vec<usize>) {
     for first in 0..items.len() {
         let mut place = first;

@@ -1,14 +1,14 @@
-//! The real terminal: its capabilities, sessions with it, its bytes as events, and cells as bytes.
+//! The real terminal: its capabilities, sessions with it, bytes decoded to events, and cells encoded to bytes.
 //!
-//! A [`Session`] takes the terminal of the process and yields [`Event`]s; [`Session::draw`] shows a frame. At the
-//! end of the session, the terminal is restored to its previous state, whether the session ends by
-//! a return, an error, a panic or a signal. A [`Protocol`] is the same without a device and a clock,
-//! for any other reader and writer, such as a channel of a server.
+//! A [`Session`] takes the terminal of the process and yields [`Event`]s; [`Session::draw`] shows a frame. At the end
+//! of the session, the terminal is restored to its previous state, whether the session ends by a return, an error, a
+//! panic or a signal. A [`Protocol`] does the same without a device and a clock, for any other reader and writer,
+//! such as a channel of a server.
 //!
 //! This module reads the bytes and divides them into units itself.
 //!
-//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys,
-//! or keep a reading thread that competes with the answers to queries.
+//! Rejected: an event library. Existing libraries swallow keys after an unknown answer, mistake half a sequence for
+//! keys, or keep a reader thread that competes for the answers to queries.
 
 mod cell_writer;
 mod error;

@@ -1,9 +1,9 @@
 //! Ratatui widgets for levels and maps, and the state of held keys.
 //!
-//! [`FirstPerson`] shows what a camera sees of a grid or of bodies, and [`Minimap`] shows a map
-//! from above. Both fill any area that they are given, and depend on neither keys nor escape
-//! sequences. [`HeldKeys`] tracks which keys are held, for keys of any type; [`wanted()`] converts
-//! them to the intents of a [`Game`](crate::game::Game).
+//! [`FirstPerson`] shows a grid or bodies through a camera, and [`Minimap`] shows a map from above.
+//! Both fill any given area, and depend on neither keys nor escape sequences. [`HeldKeys`] tracks
+//! which keys are held, for keys of any type; [`wanted()`] converts them to the intents of a
+//! [`Game`](crate::game::Game).
 //!
 //! ```
 //! use cellcaster::tui::{FirstPerson, Minimap, View};

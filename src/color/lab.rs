@@ -1,12 +1,12 @@
-//! CIE L\*a\*b\* under the standard illuminant D65, in which distance is CIE76's ΔE.
+//! CIE L\*a\*b\* under the standard illuminant D65. The distance between two colours is CIE76's ΔE.
 //!
 //! Sources: CIE 15 (2004) for L\*a\*b\*; IEC 61966-2-1 (1999) for the primaries of sRGB.
 //!
 //! Measurements use the doubles of [`Lab`]. The encoder, which converts millions of colours per second,
-//! uses the integers of `PackedLab`: both nonlinear functions, of sRGB and of L\*a\*b\*, are tables
-//! computed at compile time, and distances differ from those of `Lab` by less than 0.1. Rejected: a
-//! weighted distance of red, green and blue. At the same mean ΔE the encoder took a third more bytes,
-//! most of them for dark colours.
+//! uses the integers of `PackedLab`. There, both nonlinear functions (of sRGB and of L\*a\*b\*) are
+//! tables computed at compile time, and distances differ from those of `Lab` by less than 0.1.
+//! Rejected: a weighted distance of red, green and blue. At the same mean ΔE the encoder took a third
+//! more bytes, most of them for dark colours.
 
 #[cfg(feature = "terminal")]
 use super::srgb::LINEAR_16;
@@ -18,8 +18,7 @@ use super::{Rgb, product};
 pub struct Lab([f64; 3]);
 
 impl Lab {
-    /// The distance of two colours by CIE76, ΔE. Most people notice a difference of about 2.3 or
-    /// more.
+    /// The CIE76 distance ΔE between two colours. Most people notice a difference of about 2.3 or more.
     pub fn distance(self, other: Self) -> f64 {
         let squares = self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other));
         libm::sqrt(squares.sum())
@@ -71,7 +70,7 @@ impl PackedLab {
             |[r, g, b]: [u32; 3]| packed_response((r * red + g * green + b * blue) >> 16);
         let [to_x, to_y, to_z] = LIGHT_TO_XYZ;
         let (x, y, z) = (tristimulus(to_x), tristimulus(to_y), tristimulus(to_z));
-        // A response has 21 fractional bits, a step 6.
+        // A response has 21 fractional bits, and a component has 6.
         let steps = |response: i32| (response >> 15) as i16;
         Self([steps(116 * y) - 16 * STEPS as i16, steps(500 * (x - y)), steps(200 * (y - z))])
     }
@@ -106,8 +105,8 @@ static RESPONSE: [u16; 1025] = {
     table
 };
 
-/// The nonlinear function of L\*a\*b\* at `light` 65536ths, with 21 fractional bits, interpolated
-/// between two entries of [`RESPONSE`].
+/// The nonlinear function of L\*a\*b\* for `light` in 65536ths. The result has 21 fractional bits and
+/// is interpolated between two entries of [`RESPONSE`].
 #[cfg(feature = "terminal")]
 #[inline]
 fn packed_response(light: u32) -> i32 {

@@ -8,7 +8,7 @@
 use super::srgb::linear;
 use super::{Rgb, product};
 
-/// A colour by its lightness, its red–green and its yellow–blue component.
+/// A colour as its lightness, its red–green component and its yellow–blue component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oklab(pub [f64; 3]);
 
@@ -18,7 +18,7 @@ impl Oklab {
         Self(product(&FROM_CONE_ROOTS, cones(light).map(libm::cbrt)))
     }
 
-    /// The square of the distance of two colours.
+    /// The square of the distance between two colours.
     pub fn distance_squared(&self, other: &Self) -> f64 {
         self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other)).sum()
     }
@@ -53,7 +53,7 @@ const FROM_LINEAR: [[f64; 3]; 3] = [
 mod tests {
     use super::*;
 
-    /// The expected values are those of Ottosson's page.
+    /// The expected values are from Ottosson's page.
     #[test]
     fn known_colours_have_their_known_values() {
         for (color, expected) in [

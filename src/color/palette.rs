@@ -1,9 +1,9 @@
-//! Colour depths of terminals, and the palette colour that is nearest to a given one.
+//! Colour depths of terminals, and the palette colour that is nearest to a given colour.
 //!
-//! The widgets choose colours, and the terminal detects the colour depth. Both need this module, so
-//! that it depends on neither.
+//! The widgets choose colours, and the terminal detects the colour depth. Both need this module, and it
+//! depends on neither.
 //!
-//! The measure is distance in Oklab. Rejected: squared distance of the channels, weighted or not. In a
+//! Nearness is distance in Oklab. Rejected: the squared distance of the channels, weighted or not. In a
 //! palette with few dark colours it maps dark bricks to grey and wood to pink.
 
 #[cfg(feature = "tui")]
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::Rgb;
 use super::oklab::Oklab;
 
-/// How many colours a terminal can show.
+/// The number of colours that a terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum ColorDepth {
     /// 24 bits: every colour is exact.
@@ -32,19 +32,19 @@ pub enum ColorDepth {
     Mono,
 }
 
-/// How a terminal draws the shades ░, ▒ and ▓.
+/// The way in which a terminal draws the shades ░, ▒ and ▓.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum ShadeInk {
-    /// As dots of the text colour, whose light the eye mixes with that of the background.
+    /// As dots of the text colour. The eye mixes their light with the light of the background.
     Dots,
-    /// As one colour between the two, which the terminal mixes in sRGB.
+    /// As one colour between the text colour and the background colour, which the terminal mixes in sRGB.
     Flat,
-    /// As dots or as one colour.
+    /// Not known: as dots or as one colour.
     #[default]
     Unknown,
 }
 
-/// The index of the cube's first colour. The colours before it are the named ones, which users
+/// The index of the cube's first colour. The colours before it are the named ones, which users can
 /// redefine.
 const CUBE: u8 = 16;
 /// The index of the first grey.
@@ -73,7 +73,7 @@ const NAMED: [Rgb; 16] = [
 
 /// The index of the colour nearest to `color` in Oklab, among the 240 fixed colours of xterm.
 ///
-/// The first 16 of the 256 are left out, because users redefine them.
+/// The first 16 of the 256 are left out, because users can redefine them.
 pub fn nearest_of_256(color: Rgb) -> u8 {
     static NEAREST: NearestColors = NearestColors::new();
     static PALETTE: LazyLock<Palette> = LazyLock::new(|| palette(CUBE..=u8::MAX));
@@ -87,7 +87,7 @@ pub fn nearest_of_16(color: Rgb) -> u8 {
     NEAREST.of(color, &PALETTE)
 }
 
-/// The colour with that index among the 256, by xterm's defaults.
+/// The colour with this index among the 256, by xterm's defaults.
 pub fn of_256(index: u8) -> Rgb {
     if let Some(&named) = NAMED.get(usize::from(index)) {
         named
@@ -110,23 +110,25 @@ const FOUND: u16 = 1 << 15;
 /// The colours of a palette, each with its index among the 256.
 pub(crate) type Palette = Vec<(u8, Oklab)>;
 
-/// A table from the upper bits of the channels to the index of the nearest colour. An entry is
-/// computed on its first use: computing all of them would take some milliseconds, which matters to
-/// a program that draws one picture.
+/// A table from the upper bits of the channels to the index of the nearest colour. An entry is computed on
+/// its first use: computing all of them would take some milliseconds, which matters to a program that
+/// draws one picture.
 ///
-/// It is zeros at first, and the palette is no part of it, so that the program's file has no bytes for it.
+/// The table starts as zeros and does not contain the palette. It therefore takes no bytes in the
+/// executable.
 struct NearestColors {
     entries: [AtomicU16; 1 << (3 * BITS)],
 }
 
 impl NearestColors {
-    /// A table without an entry.
+    /// An empty table.
     #[expect(clippy::large_stack_arrays, reason = "it is evaluated at compile time")]
     pub(crate) const fn new() -> Self {
         Self { entries: [const { AtomicU16::new(0) }; 1 << (3 * BITS)] }
     }
 
-    /// The index of the colour that is nearest to `color` in `palette`, the same in every call.
+    /// The index of the colour in `palette` that is nearest to `color`. Each call must pass the same
+    /// palette.
     #[inline]
     pub(crate) fn of(&self, color: Rgb, palette: &LazyLock<Palette>) -> u8 {
         let index = color

@@ -1,8 +1,8 @@
 //! The transfer function of sRGB: from stored channels to linear light, and back.
 //!
-//! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is computed at compile
-//! time, and all other tables derive from it. Rejected: a power function at run time. Millions of
-//! texels are averaged in linear light.
+//! Source: IEC 61966-2-1 (1999). One table of doubles contains the function. It is computed at compile
+//! time, and all other tables derive from it. Rejected: a power function at run time, because millions
+//! of texels are averaged in linear light.
 
 use super::Rgb;
 
@@ -21,7 +21,8 @@ pub(crate) fn linear_16(color: Rgb) -> [u16; 3] {
     color.channels().map(|channel| LINEAR_16[usize::from(channel)])
 }
 
-/// Converts linear light in 65535ths to the nearest colour; of two that are as near, to the lighter.
+/// Converts linear light in 65535ths to the nearest colour, or to the lighter one if two are equally
+/// near.
 pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     let [red, green, blue] = light.map(|channel| {
         let value = NEAREST[usize::from(channel / SPACING)];
@@ -30,7 +31,7 @@ pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The mean of two colours in linear light, as of a surface that is half of each, seen from far
+/// The mean of two colours in linear light. A surface that is half of each has this colour from far
 /// away.
 pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
     let (one, other) = (linear_16(one), linear_16(other));
@@ -70,7 +71,7 @@ const fn transfer(signal: f64) -> f64 {
     square * fifth_root(square)
 }
 
-/// The fifth root of a number between a thousandth and two, by Newton's method.
+/// The fifth root of a number from 0.001 to 2, by Newton's method.
 const fn fifth_root(number: f64) -> f64 {
     const STEPS: u32 = 32;
     let mut root = 1.0;
@@ -108,8 +109,8 @@ static LEAST: [u32; 257] = {
     table
 };
 
-/// The distance of two entries of [`NEAREST`]: less than that of the two darkest channel values, so that
-/// the value of any light between two entries is one of theirs.
+/// The distance between two entries of [`NEAREST`]. It is less than the distance between the two darkest
+/// channel values. Light between two entries therefore maps to the channel value of one of them.
 const SPACING: u16 = 16;
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Damped motion in closed form: a velocity that approaches a target.
 //!
 //! The velocity v obeys dv/dt = rate · (target − v), so that the difference decays exponentially.
-//! Velocity and displacement at the end of a step are the analytic solution of that equation: steps
-//! may be of any length and rates of any size, and two steps equal one step of their sum. Rejected:
-//! the explicit Euler method, which overshoots as soon as `rate * dt` exceeds 1.
+//! The velocity and the displacement at the end of a step are the analytic solution of this
+//! equation. Steps may therefore have any length, and rates any size; two steps equal one step of
+//! their combined length. Rejected: the explicit Euler method, which overshoots as soon as
+//! `rate * dt` exceeds 1.
 
 use glam::DVec2;
 
@@ -16,12 +17,13 @@ pub struct DampedMotion<V> {
     pub displacement: V,
 }
 
-/// The motion after `duration` seconds. It begins with `velocity` and approaches `target`; the
+/// The motion after `duration` seconds. It begins with `velocity` and approaches `target`. The
 /// difference between the two shrinks by the factor e every 1 / `rate` seconds. The result is
-/// finite if all arguments are finite, `rate` is above 0 and `duration` at least 0.
+/// finite if all arguments are finite, `rate` is above 0 and `duration` is at least 0.
 pub fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
     let remains = libm::exp(-rate * duration);
-    // The displacement is that of the first velocity for this time, and of the target for the rest.
+    // The displacement is the same as if the body moved at `velocity` for this time and at `target`
+    // for the rest.
     let first_part = (-libm::expm1(-rate * duration) / rate).min(duration);
     DampedMotion {
         velocity: target + (velocity - target) * remains,
@@ -29,7 +31,7 @@ pub fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedM
     }
 }
 
-/// Does the same as [`approach`] in the plane.
+/// Does the same as [`approach`], for vectors in the plane.
 pub(crate) fn approach_in_plane(
     velocity: DVec2,
     target: DVec2,

@@ -1,32 +1,33 @@
-//! Sums, products and signs of doubles beyond the digits of a double.
+//! Exact and double-double arithmetic on doubles: sums, products, and the sign of a cross product.
 //!
-//! - The error of a rounded sum or product of two doubles is a double, too. Sources: D. E. Knuth, *The
+//! - The error of a rounded sum or product of two doubles is itself a double. Sources: D. E. Knuth, *The
 //!   Art of Computer Programming*, volume 2 (1969), section 4.2.2, theorem B, for the sum; T. J. Dekker,
-//!   "A Floating-Point Technique for Extending the Available Precision" (1971), for the product.
-//!   Rejected: the fused multiply-add, which computes the error of a product in one instruction. On
-//!   processors without it, its emulation is slow.
-//! - Double-double arithmetic (Dekker, too) has twice the digits. Where a ray only just touches a pillar,
-//!   the difference of two squares decides whether and where it hits, and the square root of that
-//!   difference turns an error in the sixteenth digit into one in the eighth. Rejected: integers. These
-//!   are products of four doubles, which exceed every integer type.
-//! - The orientation predicate says on which side of a ray a point lies, with an exact sign. The cross
+//!   "A Floating-Point Technique for Extending the Available Precision" (1971), for the product. Rejected:
+//!   the fused multiply-add, which computes the error of a product in one instruction. On processors
+//!   without it, its emulation is slow.
+//! - Double-double arithmetic (also by Dekker) has twice the digits of a double. It serves rays that
+//!   barely touch a pillar. A difference of two squares decides whether and where such a ray hits, and the
+//!   square root of that difference turns an error in the sixteenth digit into an error in the eighth.
+//!   Rejected: integers. The squares are products of four doubles, which exceed every integer type.
+//! - The orientation predicate tells on which side of a ray a point lies, with an exact sign. The cross
 //!   product of the vector to the point and the ray's direction is a difference of two products. A filter
 //!   comes first: the sign of the rounded result is right if the result exceeds its error bound (J. R.
 //!   Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
-//!   Otherwise each component is split into two doubles that add up to it exactly, and the cross product
-//!   is a sum of four products of two doubles, each an integer of at most 106 bits times a power of two.
-//!   They are added in a 128-bit integer, from the largest power down. Either it holds the whole sum, or
-//!   its value is so much larger than the remaining terms that rounding them does not change the sign.
-//!   Rejected: Shewchuk's expansions of doubles, whose products overflow and underflow at the ends of the
-//!   range, where this predicate is needed; and integers of arbitrary length, which four terms never need.
+//!   Otherwise each component is split into two doubles that add up to it exactly. The cross product is
+//!   then a sum of four products of two doubles, and each product is an integer of at most 106 bits times
+//!   a power of two. A 128-bit integer accumulates them, from the largest power down. Either it can hold
+//!   the whole sum, or its value so far exceeds the remaining terms that rounding them cannot change the
+//!   sign. Rejected: Shewchuk's expansions of doubles. Their products overflow and underflow at the ends
+//!   of the range, where this predicate is needed. Rejected: integers of arbitrary length, which four
+//!   terms never need.
 
 use std::cmp::Reverse;
 use std::ops::{Add, Mul, Sub};
 
 use glam::DVec2;
 
-/// The cross product of the vector from `origin` to `corner` and `direction`. It is positive if the
-/// ray passes the corner on the left, with y to the south.
+/// The cross product of `corner - origin` and `direction`. It is positive if the ray passes the corner on
+/// the left, with y to the south.
 pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
     let [x, x_rest] = two_sum(corner.x, -origin.x);
     let [y, y_rest] = two_sum(origin.y, -corner.y);
@@ -40,14 +41,14 @@ pub(crate) fn cross(origin: DVec2, direction: DVec2, corner: DVec2) -> Scaled {
 
 /// A number with the sign of [`cross`].
 ///
-/// Doubles decide most signs: those of results that exceed their rounding errors.
+/// Plain doubles decide the sign if the result exceeds its error bound, as most results do.
 #[inline]
 pub(crate) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f64 {
-    /// Each product is rounded three times, and their difference once.
+    /// Covers the rounding of the products, of their difference, and of the bound itself.
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let to_corner = corner - origin;
     let (one, other) = (to_corner.x * direction.y, to_corner.y * direction.x);
-    // An underflow loses less than the second term.
+    // The second term covers the loss by underflow.
     let error_bound = (one.abs() + other.abs()) * ROUNDING + f64::MIN_POSITIVE;
     let rounded = one - other;
     if rounded.abs() > error_bound { rounded } else { cross(origin, direction, corner).sign() }
@@ -55,7 +56,7 @@ pub(crate) fn sign_of_cross(origin: DVec2, direction: DVec2, corner: DVec2) -> f
 
 /// A number that may exceed the range of a double: `mantissa` · 2^`exponent`.
 ///
-/// The sign is exact, zero included; the value has 50 exact bits.
+/// The sign is exact, including zero. The value has 50 exact bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaled {
     mantissa: f64,
@@ -63,17 +64,17 @@ pub(crate) struct Scaled {
 }
 
 impl Scaled {
-    /// A number below 0, 0, or a number above 0.
+    /// A number with the sign of the value, or 0 if the value is 0.
     pub(crate) fn sign(self) -> f64 {
         self.mantissa
     }
 
-    /// The quotient by `divisor`.
+    /// The value divided by `divisor`.
     pub(crate) fn over(self, divisor: f64) -> f64 {
         self.over_scaled(divisor, 0)
     }
 
-    /// The quotient by `divisor` · 2^`exponent`. It underflows at most once.
+    /// The value divided by `divisor` · 2^`exponent`. Only the last step can underflow.
     pub(crate) fn over_scaled(self, divisor: f64, exponent: i32) -> f64 {
         let divisor = Integer::from_double(divisor);
         let quotient = self.mantissa / divisor.mantissa as f64;
@@ -107,7 +108,7 @@ impl Integer {
         Self { mantissa: if value < 0.0 { -magnitude } else { magnitude }, exponent }
     }
 
-    /// The product of two doubles, of at most 106 bits.
+    /// The product of two doubles. It has at most 106 bits.
     fn product(a: f64, b: f64) -> Self {
         let (a, b) = (Self::from_double(a), Self::from_double(b));
         Self { mantissa: a.mantissa * b.mantissa, exponent: a.exponent + b.exponent }
@@ -121,7 +122,8 @@ impl Integer {
 
 /// The sum of four products of two doubles.
 fn sum(mut terms: [Integer; 4]) -> Scaled {
-    /// More bits than the sum of all terms takes, and few enough to add them to.
+    /// The largest size of a shifted partial sum, in bits. Adding the remaining terms to it cannot
+    /// overflow, and a larger one decides the sign of the total.
     const ROOM: i32 = 124;
     terms.sort_unstable_by_key(|term| Reverse(term.exponent));
     let mut sum = terms[0];
@@ -151,8 +153,8 @@ pub(crate) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     [sum, (a - of_a) + (b - of_b)]
 }
 
-/// `TwoProduct`: the rounded product of `a` and `b`, and its error. The two add up to `a * b`
-/// exactly if neither factor exceeds 10³⁰⁰ and the error is not below the least double.
+/// `TwoProduct`: the rounded product of `a` and `b`, and its error. The two add up to `a * b` exactly if
+/// neither factor exceeds 10³⁰⁰ and the error does not underflow.
 #[inline]
 pub(crate) fn two_product(a: f64, b: f64) -> [f64; 2] {
     let product = a * b;
@@ -260,7 +262,7 @@ mod tests {
     }
 
     proptest! {
-        /// Rays pass the corner at any distance.
+        /// The rays pass within a few units in the last place of the corner.
         #[test]
         fn the_filter_agrees_with_the_exact_sign(
             (x, y) in (-9.0..9.0, -9.0..9.0),
@@ -278,7 +280,7 @@ mod tests {
             prop_assert_eq!(signs[0], signs[1]);
         }
 
-        /// Where nothing is rounded, the result is that of the formula.
+        /// For numbers that need no rounding, the result equals the integer formula.
         #[test]
         fn agrees_with_integers(
             numbers in prop::array::uniform4(-(1_i64 << 30)..1 << 30),

@@ -1,16 +1,18 @@
 //! Rounding of doubles by addition.
 //!
-//! Doubles of the size of [`INTEGERS`] are the integers, so that adding it rounds to an integer, which the
-//! lower bits of the sum are. The oldest x86-64 processors have no instruction to round a double, and the
-//! standard library calls a function there. A conversion saturates, which takes comparisons, takes twice as
-//! long as the addition, and is not vectorized.
+//! From [`INTEGERS`] to twice that number, the doubles are exactly the integers. Adding [`INTEGERS`] to a
+//! number therefore rounds it to an integer, which is in the lower bits of the sum.
+//!
+//! Rejected: the processor's rounding instruction. The oldest x86-64 processors lack it, and the standard
+//! library calls a function there. Rejected: a conversion to an integer. It saturates, which takes
+//! comparisons; it takes twice as long as the addition, and it is not vectorized.
 
-/// For numbers from 0 up.
+/// The addend for numbers of at least 0.
 const INTEGERS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
-/// For numbers of either sign.
+/// The addend for numbers of either sign.
 const SIGNED: f64 = 1.5 * INTEGERS;
 
-/// The nearest integer, away from 0 for ties; values beyond 64 bits wrap around.
+/// The nearest integer. Ties are rounded away from 0, and values beyond 64 bits wrap around.
 #[inline]
 pub(crate) fn rounded(number: f64) -> i64 {
     const MAX: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 2)) as f64;
@@ -24,13 +26,13 @@ pub(crate) fn rounded(number: f64) -> i64 {
     }
 }
 
-/// The nearest integer, the even one for ties, for numbers from 0 to 2⁶².
+/// The nearest integer, for numbers from 0 to 2⁶². Ties below 2⁵¹ are rounded to even.
 #[inline]
 pub(crate) fn rounded_to_even(number: f64) -> i64 {
     if number < INTEGERS / 2.0 {
         (number + SIGNED).to_bits().wrapping_sub(SIGNED.to_bits()) as i64
     } else {
-        // It is an integer, or the half of one.
+        // Every double of this size is an integer or an integer plus one half, which is truncated.
         number as i64
     }
 }
@@ -40,7 +42,7 @@ pub(crate) fn rounded_to_even(number: f64) -> i64 {
 fn rounded_tie_or_large(number: f64) -> i64 {
     const LARGE: f64 = (1_u64 << 62) as f64;
     if number.abs() >= LARGE {
-        // It is an integer.
+        // Every double of this size is an integer.
         return number as i128 as i64;
     }
     let whole = number as i64;
@@ -48,7 +50,7 @@ fn rounded_tie_or_large(number: f64) -> i64 {
     whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
 }
 
-/// The largest integer not above `number`, for numbers in the middle half of 64 bits.
+/// The largest integer not above `number`, for numbers from −2⁶² to 2⁶².
 #[inline]
 pub(crate) fn floor(number: f64) -> i64 {
     const MAX: f64 = (1_u64 << 62) as f64;
@@ -56,14 +58,14 @@ pub(crate) fn floor(number: f64) -> i64 {
     whole - i64::from(whole as f64 > number)
 }
 
-/// The least integer not below `number`, for the same numbers.
+/// The least integer not below `number`, for numbers from −2⁶² to 2⁶².
 #[inline]
 pub(crate) fn ceil(number: f64) -> i64 {
     -floor(-number)
 }
 
-/// The least integer not below `number`, where that is at least 0 and at most `most`, an integer of 32
-/// bits; 0 for NaN.
+/// The least integer not below `number`, clamped to the range from 0 to `most`. `most` must be an integer
+/// of at most 32 bits. Returns 0 for NaN.
 #[inline]
 pub(crate) fn ceil_within(most: f64, number: f64) -> u32 {
     let number = number.max(0.0).min(most);
@@ -72,12 +74,12 @@ pub(crate) fn ceil_within(most: f64, number: f64) -> u32 {
     sum.to_bits() as u32 + u32::from(nearest < number)
 }
 
-/// The largest integer not above `number`, which is within 2³¹.
+/// The largest integer not above `number`, which must be between −2³¹ and 2³¹.
 #[cfg(feature = "tui")]
 #[inline]
 pub(crate) fn floor_short(number: f64) -> i64 {
     let sum = number + SIGNED;
-    // Its lower bits are the nearest integer.
+    // The lower bits of the sum are the nearest integer.
     let nearest = sum.to_bits() as i32;
     i64::from(nearest) - i64::from(sum - SIGNED > number)
 }
@@ -92,7 +94,7 @@ pub(crate) fn floor_double(number: f64) -> f64 {
     if number.abs() < INTEGERS { below } else { number }
 }
 
-/// The same for numbers of at most 2⁵⁰, positive or negative.
+/// The largest integer not above `number`, as a double, for numbers from −2⁵⁰ to 2⁵⁰.
 #[expect(clippy::inline_always, reason = "its loops over lanes are vectorized")]
 #[inline(always)]
 pub(crate) fn floor_of_small(number: f64) -> f64 {
@@ -100,7 +102,7 @@ pub(crate) fn floor_of_small(number: f64) -> f64 {
     near - if near > number { 1.0 } else { 0.0 }
 }
 
-/// The integer nearest to `number`, which is from 0 to 2³¹; the upper one for ties. 0 for a NaN.
+/// The integer nearest to `number`, which must be from 0 to 2³¹. Ties are rounded up. Returns 0 for NaN.
 #[expect(clippy::inline_always, reason = "its loops over lanes are vectorized")]
 #[inline(always)]
 pub(crate) fn rounded_short(number: f64) -> u32 {

@@ -1,16 +1,14 @@
-//! The encoder: ratatui's cells to control sequences.
+//! The encoder: converts ratatui's cells to control sequences.
 //!
-//! The bytes of a frame are collected and written with one `write`, between the control sequences
-//! of synchronized output. A frame without a change writes nothing. The writer records the
-//! terminal's colours and cursor position from frame to frame, so that it sends only colours that
-//! differ and moves the cursor only if it must. Ratatui's own backends send both colours if one
-//! differs, and 25 bytes for a frame without a change.
+//! The writer collects the bytes of a frame and writes them with one `write`, between the control sequences of
+//! synchronized output. It writes nothing for a frame without a change. It records the terminal's colours and cursor
+//! position from frame to frame. It sends only the colours that differ, and moves the cursor only if it must.
+//! Ratatui's own backends send both colours if one differs, and 25 bytes for a frame without a change.
 //!
-//! The writer keeps a model of the screen, cell by cell. It does not send cells that are already
-//! right, and it has the terminal move parts of rows that moved sideways. At a [`Fidelity`] that is
-//! not exact, it searches each row for the cheapest way to show it within the tolerance: half
-//! blocks or characters, in true colour or in a palette. A screen that does not change becomes
-//! exact in ten frames.
+//! The writer keeps a model of the screen, cell by cell. It does not send cells that are already right. If parts of a
+//! row have moved sideways, it makes the terminal shift them. At a [`Fidelity`] that is not exact, it searches each
+//! row for the cheapest way to show it within the tolerance: half blocks or characters, in true colour or in a
+//! palette. A screen that does not change becomes exact in ten frames.
 
 mod block;
 mod bytes;
@@ -51,10 +49,10 @@ use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
 ///
-/// The colours and the modifiers bold, dim, italic, underlined and reversed are written; ratatui's
-/// other modifiers are left out. A cell whose text contains a control character or has no width is
-/// written as a space, and so is a wide character that the last column would cut. A wide character
-/// covers the cells after it; when it goes, they are blank until they are drawn.
+/// It writes the colours and the modifiers bold, dim, italic, underlined and reversed, and leaves out ratatui's other
+/// modifiers. It writes a space for a cell whose text contains a control character or has no width, and for a wide
+/// character that the last column would cut. A wide character covers the cells after it. When it is overwritten, these
+/// cells are blank until they are drawn.
 ///
 /// ```
 /// use cellcaster::terminal::CellWriter;
@@ -99,7 +97,7 @@ impl<W: Write> CellWriter<W> {
         }
     }
 
-    /// The number of bytes written so far.
+    /// The total number of bytes written.
     pub fn bytes_written(&self) -> u64 {
         self.bytes_written
     }
@@ -125,12 +123,10 @@ impl<W: Write> CellWriter<W> {
         self.pen.set_repeats(repeats);
     }
 
-    /// Sets whether frequent colours are defined as entries 24 to 255 of the terminal's palette
-    /// (OSC 4) and used as these, from the next frame on. A caller that turns this on must reset
-    /// the palette at the end (OSC 104).
+    /// Sets whether frequent colours are defined as entries 24 to 255 of the terminal's palette (OSC 4) and sent as
+    /// these entries, from the next frame on. A caller that turns this on must reset the palette at the end (OSC 104).
     ///
-    /// The terminal then shows ratatui's indexed colours from the sixteenth on as in xterm's
-    /// standard palette.
+    /// The terminal then shows ratatui's indexed colours from the sixteenth on as in xterm's standard palette.
     pub fn set_palette(&mut self, uses_palette: bool) {
         if self.pen.palette().is_quantizing() {
             self.screen.redraw();
@@ -138,37 +134,36 @@ impl<W: Write> CellWriter<W> {
         self.pen.palette().set_on(uses_palette);
     }
 
-    /// Shows all colours as entries 24 to 255 of the terminal's palette, which are defined to be near
-    /// the colours of the frames, from the next frame on. It is drawn whole. For terminals that show
-    /// 256 colours and let programs define them (OSC 4); the caller must reset the palette at the
-    /// end (OSC 104).
+    /// From the next frame on, shows all colours as entries 24 to 255 of the terminal's palette, and defines these
+    /// entries to be near the colours of the frames. The next frame is drawn in full. This is for terminals that show
+    /// 256 colours and let programs define them (OSC 4). The caller must reset the palette at the end (OSC 104).
     ///
-    /// [`CellWriter::shown_colors`] then returns colours of entries, and a screen that shows these is
-    /// settled. The 16 named colours and the terminal's own are not changed.
+    /// [`CellWriter::shown_colors`] then returns the colours of the entries, and a screen that shows them is settled.
+    /// The 16 named colours and the terminal's default colours do not change.
     pub fn set_own_palette(&mut self) {
         self.pen.palette().set_quantizing();
         self.screen.redraw();
     }
 
-    /// Whether the terminal shows exactly the last frame drawn. If it does not, each further draw
-    /// without a changed cell brings it nearer, and the tenth makes it exact.
+    /// Returns true if the terminal shows the last drawn frame exactly. If it does not, each further draw without a
+    /// changed cell brings it nearer, and the tenth makes it exact.
     pub fn is_settled(&self) -> bool {
         self.screen.is_exact()
     }
 
-    /// Draws a part of the inexact cells again, exactly, as a draw without a changed cell does. The
-    /// next flush writes it.
+    /// Redraws some of the inexact cells exactly, as a draw without a changed cell does. The next flush writes them.
     pub fn refine(&mut self) {
         self.refinement.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
-    /// The colours that the terminal shows in the upper and the lower half of a cell, in the dots of a
-    /// finer block and in the rest, or of its text and its background. `None` if they are unknown, and off the screen.
+    /// The two colours that the terminal shows in a cell: in its upper and its lower half, in the dots of a finer
+    /// block and in the rest, or in its text and its background. `None` if they are unknown or the cell is off the
+    /// screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
         Some(self.screen.shown_colors(column, row)?.map(Shade::color))
     }
 
-    /// The mosaic that a cell shows in its colours; `None` if it shows none, or an unknown one.
+    /// The mosaic that a cell shows in its colours. `None` if the cell shows no mosaic or is unknown.
     pub fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
         self.screen.shown_mosaic(column, row)
     }
@@ -179,8 +174,8 @@ impl<W: Write> CellWriter<W> {
         self.pen.set_size(size);
     }
 
-    /// Forgets the state of the terminal, except that the cursor is hidden: others may have written
-    /// to it.
+    /// Forgets the state of the terminal, because other code may have written to it. Only the cursor is still assumed
+    /// to be hidden.
     pub fn forget(&mut self) {
         self.screen.forget();
         self.pen.forget();
@@ -210,7 +205,7 @@ impl<W: Write> CellWriter<W> {
         self.update();
     }
 
-    /// Draws the changed rows; refines the screen if there are none.
+    /// Draws the changed rows, or refines the screen if no row has changed.
     fn update(&mut self) {
         if self.screen.is_changed() {
             self.refinement.disturb();

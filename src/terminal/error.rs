@@ -17,7 +17,7 @@ pub(crate) enum Kind {
         "{stream} is not a terminal, which playing needs; `cellcaster snapshot` draws a frame without one"
     )]
     NotATerminal {
-        /// Such as "standard input".
+        /// The name of the stream, such as "standard input".
         stream: &'static str,
     },
     #[cfg(not(unix))]
@@ -31,7 +31,7 @@ pub(crate) enum Kind {
          you have, such as TERM=xterm-256color, or draw a frame with `cellcaster snapshot`"
     )]
     Teletype { term: &'static str },
-    /// This process has a session already.
+    /// This process already has a session.
     #[error("this program has taken the terminal already, and has not left it yet")]
     AlreadyTaken,
     /// A panic in another thread has ended the session.
@@ -43,7 +43,7 @@ pub(crate) enum Kind {
 }
 
 impl Error {
-    /// Whether the user can avoid it, with a terminal or another platform.
+    /// Returns true if the user can avoid the error, with another terminal or platform.
     pub fn is_mistake(&self) -> bool {
         !matches!(self.0, Kind::AlreadyTaken | Kind::GivenBack | Kind::Io { .. })
     }

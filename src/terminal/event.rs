@@ -3,51 +3,50 @@
 //! A key is a physical key, not the text that it types: letters are lower-case, and Shift is a
 //! modifier.
 //!
-//! Bindings name Latin letters. For layouts without them, a key also has the key of a US keyboard at its place. The
-//! kitty protocol reports it. Other terminals send the letter alone, and its place is derived from the most common
-//! layout of its script. Latin letters are not mapped: users of an AZERTY or Dvorak keyboard choose keys by their
-//! letters.
+//! Bindings name Latin letters. For layouts without them, an event also contains the key of a US keyboard at the same
+//! place. The kitty protocol reports that key. Other terminals send only the letter, and its place is derived from the
+//! most common layout of its script. Latin letters are not mapped: users of an AZERTY or Dvorak keyboard choose keys by
+//! their letters.
 //!
-//! Rejected: the types of a parser. Files with bindings contain these names, and must outlive any parser.
+//! Rejected: the key types of a parser library. Files with bindings contain the names of these keys, and must outlive
+//! any library.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::color::palette::ColorDepth;
 
-/// An event of the terminal.
+/// An event from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
-    /// The mouse was moved, or one of its buttons pressed or released. Only if
+    /// The mouse was moved, or one of its buttons was pressed or released. Sent only if
     /// [`Session::set_mouse`](super::Session::set_mouse) has turned on reports.
     Mouse(MouseEvent),
     /// The window has received the focus.
     FocusGained,
     /// The window has lost the focus. Releases of held keys may not be reported.
     FocusLost,
-    /// The window may have another size, and the next frame repaints it.
+    /// The size of the window may have changed. The next frame repaints all of it.
     Resized,
-    /// The terminal, or tmux around the program, has answered that it shows this number of colours,
-    /// which is not the one assumed before.
+    /// The terminal, or the tmux around the program, has reported this colour depth, which differs from the depth
+    /// assumed before.
     ColorDepth(ColorDepth),
-    /// The terminal has said its name, so that
-    /// [`Session::glyph_support`](super::Session::glyph_support) and
+    /// The terminal has reported its name. [`Session::glyph_support`](super::Session::glyph_support) and
     /// [`Protocol::shade_ink`](super::Protocol::shade_ink) may have changed.
     Identified,
-    /// The terminal has answered whether it reports key releases. Sent at most once; before it,
-    /// releases are not reported.
+    /// The terminal has answered whether it reports key releases. Sent at most once. No release is reported before it.
     KeyReleases(bool),
-    /// Whether [`Session::tell_tmux`](super::Session::tell_tmux) has worked.
+    /// The outcome of [`Session::tell_tmux`](super::Session::tell_tmux): `true` if it has worked.
     TmuxTold(bool),
     /// The terminal is ready for the next frame. Sent only after
     /// [`Session::is_ready`](super::Session::is_ready) has returned `false`.
     Ready,
-    /// The user wants to return to the shell for a while, by Ctrl-Z or a signal. The program should
-    /// call [`Session::suspend`](super::Session::suspend).
+    /// The user wants to return to the shell for a while (Ctrl-Z or a signal). The program should call
+    /// [`Session::suspend`](super::Session::suspend).
     Suspend,
-    /// The program should end. After a signal, it is ended by force one second later.
+    /// The program should end. After a signal, it is forced to end one second later.
     Quit(QuitReason),
 }
 
@@ -60,21 +59,21 @@ pub enum QuitReason {
     Terminated,
     /// The terminal is gone: the process received SIGHUP.
     HungUp,
-    /// The input is closed, so that no more keys can arrive.
+    /// The input is closed: no more keys can arrive.
     InputClosed,
 }
 
 /// An event of the mouse.
 ///
 /// Terminals report the position of the pointer in the window, in cells or in pixels, but never the motion of the mouse
-/// itself. Both are converted to the same unit, so that a program does not depend on the difference.
+/// itself. Both kinds of position are converted to the same unit, so programs need not distinguish them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MouseEvent {
-    /// The distance of the pointer from the left edge of the window, in units of 1 /
-    /// [`MouseEvent::UNITS_PER_CELL`] of a cell's width. If the terminal reports only cells, the
-    /// middle of the cell.
+    /// The distance of the pointer from the left edge of the window, in units of 1 / [`MouseEvent::UNITS_PER_CELL`] of
+    /// a cell's width. If the terminal reports only cells, this is the middle of the cell.
     pub x: u32,
-    /// The distance of the pointer from the upper edge, in the same parts of a cell's height.
+    /// The distance of the pointer from the upper edge of the window, in units of 1 / [`MouseEvent::UNITS_PER_CELL`] of
+    /// a cell's height.
     pub y: u32,
     /// The kind of event.
     pub kind: MouseEventKind,
@@ -92,7 +91,7 @@ pub enum MouseEventKind {
     Moved,
     /// A button was pressed.
     Pressed(MouseButton),
-    /// A button was released; some terminals do not report which.
+    /// A button was released. Some terminals do not report which one.
     Released,
 }
 
@@ -107,7 +106,7 @@ pub enum MouseButton {
     Right,
 }
 
-/// A report of the mouse, as the terminal sends it.
+/// A report of a mouse event, as the terminal sends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MouseReport {
     pub(crate) kind: MouseEventKind,
@@ -159,24 +158,23 @@ pub struct WindowSize {
 }
 
 impl WindowSize {
-    /// The most columns that are used; further ones are left blank, since a terminal that reports
-    /// more is not credible.
+    /// The maximum number of columns. Further columns stay blank, because a terminal that reports more is not credible.
     pub const MOST_COLUMNS: u16 = 2048;
-    /// The most rows that are used; further ones are left blank.
+    /// The maximum number of rows. Further rows stay blank.
     pub const MOST_ROWS: u16 = 1024;
 
-    /// The assumed size of a terminal that reports none.
+    /// The assumed size of a terminal that reports no size.
     #[cfg(unix)]
     pub(crate) const UNKNOWN: Self =
         Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
-    /// A window of this many cells, whose size in pixels is unknown.
+    /// A window of this many cells. Its size in pixels is unknown.
     pub fn of_cells(columns: u16, rows: u16) -> Self {
         Self::new((columns, rows), (0, 0))
     }
 
-    /// The size of a window in columns and rows, and in pixels. Some terminals report no pixels,
-    /// some implausible numbers.
+    /// The size of a window in columns and rows, and in pixels. Pixels are ignored if they make the shape of a cell
+    /// implausible: some terminals report no pixels, and some report wrong numbers.
     pub fn new((columns, rows): (u16, u16), (width, height): (u16, u16)) -> Self {
         let cell_width = f64::from(width) / f64::from(columns);
         let cell_height = f64::from(height) / f64::from(rows);
@@ -211,8 +209,8 @@ pub struct KeyEvent {
 }
 
 impl KeyEvent {
-    /// The character that the event types into a text; `None` for other keys, with Control or Alt,
-    /// and for releases.
+    /// The character that the event types into a text. `None` for keys without a character, for keys with Control or
+    /// Alt, and for releases.
     pub fn typed(&self) -> Option<char> {
         let Key::Char(character) = self.key else { return None };
         let Modifiers { shift, control, alt } = self.modifiers;
@@ -264,31 +262,30 @@ pub enum Key {
     PageUp,
     /// Page down.
     PageDown,
-    /// Either Shift by itself. Reported only if the terminal reports releases.
+    /// Either Shift key by itself. Reported only if the terminal reports releases.
     Shift,
-    /// Either Control by itself. Reported only if the terminal reports releases.
+    /// Either Control key by itself. Reported only if the terminal reports releases.
     Control,
-    /// Either Alt by itself. Reported only if the terminal reports releases.
+    /// Either Alt key by itself. Reported only if the terminal reports releases.
     Alt,
     /// A function key, from 1 to 35.
     Function(u8),
 }
 
-/// The held modifiers during an event.
+/// The modifiers that are held during an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Modifiers {
-    /// Either Shift.
+    /// Either Shift key.
     pub shift: bool,
-    /// Either Control.
+    /// Either Control key.
     pub control: bool,
-    /// Either Alt, or Option.
+    /// Either Alt key, or Option.
     pub alt: bool,
 }
 
 /// The kind of a key event.
 ///
-/// A terminal without reports of releases sends presses only, and repeats them while the key is
-/// held.
+/// A terminal that does not report releases sends only presses, and repeats them while the key is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Phase {
     /// The key was pressed.
@@ -374,8 +371,8 @@ impl FromStr for Key {
     }
 }
 
-/// Letters, and the keys of a US keyboard at their places: of the Russian layout, with the
-/// different letters of the Ukrainian and Belarusian ones, and of the Greek layout.
+/// Letters, and the keys of a US keyboard at their places. The layouts are Russian, with the letters that differ in
+/// Ukrainian and Belarusian, and Greek.
 const PLACES: [(&str, &str); 7] = [
     ("йцукенгшщзхъ", "qwertyuiop[]"),
     ("фывапролджэ", "asdfghjkl;'"),
@@ -386,8 +383,8 @@ const PLACES: [(&str, &str); 7] = [
     ("ζχψωβνμ", "zxcvbnm"),
 ];
 
-/// The key of a US keyboard at the place of `key`, if `key` types a non-Latin letter: the key that
-/// the terminal has reported (`told`), or else the one in the table.
+/// The key of a US keyboard at the place of `key`, if `key` types a non-Latin letter. It is the key that the terminal
+/// has reported (`told`), or otherwise the key in the table.
 pub(crate) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
     let Key::Char(letter) = key else { return None };
     if !letter.is_alphabetic() || is_latin(letter) {
@@ -399,7 +396,7 @@ pub(crate) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
     told.or_else(known).map(Key::typing)
 }
 
-/// Whether `letter` is in one of Unicode's Latin blocks.
+/// Returns true if `letter` is in one of Unicode's Latin blocks.
 fn is_latin(letter: char) -> bool {
     matches!(letter, '\0'..='\u{24f}' | '\u{1e00}'..='\u{1eff}' | '\u{ff00}'..='\u{ff5e}')
 }
@@ -420,7 +417,7 @@ mod tests {
         assert_eq!(place(MouseUnits::Cells, [1, 1]), Some((32, 32)));
         assert_eq!(place(MouseUnits::Cells, [80, 24]), Some((79 * 64 + 32, 23 * 64 + 32)));
         assert_eq!(place(MouseUnits::Pixels, [1, 1]), Some((0, 0)));
-        // 9 by 18 pixels a cell.
+        // A cell has 9 by 18 pixels.
         assert_eq!(place(MouseUnits::Pixels, [10, 19]), Some((64, 64)));
         assert_eq!(place(MouseUnits::Pixels, [4, 9]), Some((21, 28)));
     }

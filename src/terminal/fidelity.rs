@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The maximum difference between the colours on a terminal and the drawn ones, which saves bytes.
+/// The maximum difference between the colours that a terminal shows and the drawn colours. A larger
+/// difference saves bytes.
 ///
 /// The tolerance is a distance between two colours in CIE L\*a\*b\*, CIE76's ΔE: 0 is exact, 2 is
 /// just noticeable side by side, and 100 is the distance from black to white. No colour exceeds it,
@@ -14,8 +15,10 @@ use std::str::FromStr;
 /// - Half blocks in true colour save the most.
 /// - A picture in 256 or 16 colours is compared after the widget has mixed the colours of the
 ///   palette. An indexed colour counts as xterm's standard one. The 16 named colours, which users
-///   redefine, can only replace each other; they save little, since few are near each other.
-/// - A character keeps its glyph and its modifiers; without modifiers, its two colours may differ.
+///   can redefine, can only replace each other. They save little, because few of them are near each
+///   other.
+/// - A character keeps its glyph and its modifiers. If it has no modifiers, its two colours may
+///   differ.
 /// - Without colours (`mono`), every cell is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Fidelity {
@@ -25,10 +28,10 @@ pub struct Fidelity {
 impl Fidelity {
     /// All colours are exact.
     pub const EXACT: Self = Self::new(0);
-    /// A mean difference of about 1 in true colour, for an eighth of the bytes of ratatui's
+    /// A mean difference of about 1 in true colour. It takes an eighth of the bytes of ratatui's
     /// encoder.
     pub const HIGH: Self = Self::new(10);
-    /// A mean difference of about 2 in true colour, for a sixteenth of the bytes.
+    /// A mean difference of about 2 in true colour. It takes a sixteenth of the bytes.
     pub const LOW: Self = Self::new(24);
 
     /// A fidelity with this tolerance, in ΔE.
@@ -46,7 +49,7 @@ impl Fidelity {
 const NAMED: [(&str, Fidelity); 3] =
     [("exact", Fidelity::EXACT), ("high", Fidelity::HIGH), ("low", Fidelity::LOW)];
 
-/// Writes the name, or the tolerance of a fidelity without a name.
+/// Writes the name, or the tolerance if the fidelity has no name.
 impl fmt::Display for Fidelity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match NAMED.iter().find(|(_, fidelity)| fidelity == self) {

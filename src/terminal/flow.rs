@@ -1,31 +1,32 @@
-//! Flow control: when to send the next frame, so that it does not wait in the link behind others.
+//! Flow control: decides when to send the next frame, so that it does not wait in the link behind others.
 //!
-//! A write shows no lag: the system and the link accept seconds of frames before they block. So
-//! each frame is followed by a request, which the terminal answers when it has processed everything
-//! before it. The number of frames in flight has three limits: the frames that occupy the link
-//! until the first of them is answered, the frames that 30 frames a second need (Little's law:
-//! frames in flight = frames a second × round-trip time), and four. While the answer to the oldest
-//! frame is late, no frame is sent: the link may have become slower, and all frames in flight
-//! arrive before a new one.
+//! Writes do not reveal lag, because the system and the link accept seconds of frames before they block. Therefore a
+//! request follows each frame, and the terminal answers it when it has processed everything before it. The number of
+//! frames in flight has three limits: the frames that occupy the link until the first of them is answered, the frames
+//! that 30 frames per second need (Little's law: frames in flight = frames per second × round-trip time), and four.
+//! While the answer to the oldest frame is late, no frame is sent. The link may have become slower, and all frames in
+//! flight arrive before a new one.
 //!
-//! Answers arrive in the order of the requests, so that the n-th answer belongs to the n-th request, however late it
-//! is. A lost answer is detected at the next *fence*, a request of another kind: when a fence is answered, no answer
-//! to an earlier request can still arrive. Every few seconds the request after a frame is a fence.
+//! Answers arrive in the order of the requests. The n-th answer therefore belongs to the n-th request, however late it
+//! is. A lost answer is detected at the next *fence*, a request of another kind: when a fence is answered, no answer to
+//! an earlier request can still arrive. Every few seconds the request after a frame is a fence.
 //!
-//! After a timeout, one fence is sent alone and then nothing more: frames that are not received
-//! delay the detection of a dead connection. An answer or a key ends this state. A terminal that
-//! stays silent, or that never answered, receives no more requests; for it a frame may be sent when
-//! the system has accepted the one before.
+//! After a timeout, one fence is sent alone and then nothing more, because frames that are not received delay the
+//! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
+//! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
 //! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take.
 //!
-//! This module has neither a clock nor a terminal. Its functions receive events and their times,
-//! which are durations since any fixed moment.
+//! This module has neither a clock nor a terminal. Its functions receive events and their times, which are durations
+//! since any fixed moment.
 //!
-//! Rejected: a limit in bytes. 16 kB make exact frames coarse (fidelity 6) at 10 Mbit/s and 100 ms. Removing frames
-//! after a timeout: their answers are then credited to newer frames, and the link seems faster than it is for as long
-//! as anything moves. Raising and lowering the fidelity step by step: it is then late at the beginning of motion, when
-//! lag is most noticeable.
+//! Rejected: a limit in bytes. A limit of 16 kB makes exact frames coarse (fidelity 6) at 10 Mbit/s and 100 ms.
+//!
+//! Rejected: removing frames after a timeout. Their answers are then credited to newer frames, and the link seems
+//! faster than it is as long as anything moves.
+//!
+//! Rejected: raising and lowering the fidelity step by step. The fidelity then reacts late at the beginning of motion,
+//! when lag is most noticeable.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -38,7 +39,7 @@ pub(crate) struct Flow {
     answers: Answers,
     /// The unanswered frames and requests, oldest first.
     in_flight: VecDeque<Sent>,
-    /// The number of frames sent so far.
+    /// The number of frames sent.
     frames_sent: u64,
     /// The time of the last frame, request or answer.
     active_at: Duration,
@@ -46,20 +47,20 @@ pub(crate) struct Flow {
     fenced_at: Duration,
     /// The number of consecutive timeouts.
     timeouts: u32,
-    /// Whether a key has arrived since the last frame or request was sent.
+    /// `true` if a key has arrived since the last frame or request was sent.
     has_input: bool,
     /// The number of removed requests whose answers may still arrive.
     forgotten: usize,
     is_remote: bool,
     link: Link,
-    /// The bytes that an exact frame of motion would take, estimated from the sent frames.
+    /// The estimated number of bytes that an exact frame of motion would take.
     exact_bytes: f64,
 }
 
 /// A request to the terminal, after a frame or alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
-    /// No request, since the terminal does not answer.
+    /// No request, because the terminal does not answer.
     Nothing,
     /// A request for the terminal's status.
     Status,
@@ -67,7 +68,7 @@ pub(crate) enum Request {
     Fence,
 }
 
-/// A sent frame, or a request alone, which counts 0 bytes.
+/// A sent frame, or a request alone, which counts as 0 bytes.
 #[derive(Clone, Copy, Debug)]
 struct Sent {
     at: Duration,
@@ -75,7 +76,7 @@ struct Sent {
     request: Request,
 }
 
-/// Whether the terminal answers requests.
+/// Tells whether the terminal answers requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Answers {
     #[default]
@@ -84,40 +85,38 @@ enum Answers {
     Never,
 }
 
-/// The maximum of frames in flight.
+/// The maximum number of frames in flight.
 const MAX_FRAMES: usize = 4;
-/// The maximum of frames in flight while the link is unknown.
+/// The maximum number of frames in flight while the link is unknown.
 const FIRST_FRAMES: usize = 1;
-/// The maximum of frames a second.
+/// The maximum number of frames per second.
 const MAX_FRAMES_PER_SECOND: f64 = 30.0;
-/// The fidelity of the first frame over a network, at which it takes a quarter of the bytes.
+/// The fidelity of the first frame over a network. The frame then takes a quarter of the bytes.
 const FIRST_FIDELITY: Fidelity = Fidelity::LOW;
 
 /// The shortest and the longest timeout.
 const MIN_TIMEOUT: Duration = Duration::from_secs(1);
 const MAX_TIMEOUT: Duration = Duration::from_secs(8);
-/// A timeout is this multiple of the expected time.
+/// A timeout is this multiple of the time in which an answer is expected.
 const TIMEOUT_FACTOR: u32 = 4;
-/// The rate of the slowest link, in bytes a second.
+/// The assumed rate of the slowest link, in bytes per second.
 const MIN_RATE: f64 = 16_000.0;
-/// After this number of consecutive timeouts, with keys between them, a terminal counts as
-/// silent.
+/// A terminal counts as silent after this number of consecutive timeouts, with keys between them.
 const MAX_TIMEOUTS: u32 = 5;
-/// The time between two requests that are fences.
+/// The time between two fences.
 const FENCE_PERIOD: Duration = Duration::from_secs(5);
 
-/// The number of frames a second for which the rate should suffice.
+/// The number of frames per second that the rate should sustain.
 const FRAMES_PER_SECOND: f64 = 18.0;
-/// An exact frame takes 1 + 0.32 t times the bytes of one at tolerance t: 3.6 times at 8, and 8.7
-/// times at 24.
+/// An exact frame takes 1 + 0.32 t times the bytes of a frame at tolerance t: 3.6 times at 8, and 8.7 times at 24.
 const SAVING: f64 = 0.32;
-/// The share of a high estimate that is left after one more frame.
+/// The factor by which a high estimate decreases with each frame.
 const DECAY: f64 = 0.99;
-/// The coarsest fidelity: beyond it, fewer frames are better than coarser ones.
+/// The coarsest fidelity. Beyond it, fewer frames are better than coarser frames.
 const MIN_FIDELITY: Fidelity = Fidelity::new(48);
 
 impl Flow {
-    /// Flow control of an unknown link; the link is a network if `is_remote`.
+    /// Flow control for an unknown link. The link is a network if `is_remote`.
     pub(crate) fn new(is_remote: bool) -> Self {
         Self { is_remote, ..Self::default() }
     }
@@ -158,7 +157,7 @@ impl Flow {
         }
         self.answers = Answers::Given;
         self.timeouts = 0;
-        // The answer to a fence would have arrived before.
+        // The answers to these fences are lost: they would have arrived before this one.
         while self.in_flight.front().is_some_and(|sent| sent.request == Request::Fence) {
             self.in_flight.pop_front();
         }
@@ -171,8 +170,7 @@ impl Flow {
         self.take_answer(now, sent);
     }
 
-    /// Records that the terminal has answered a fence, and thus all earlier requests that it will
-    /// answer.
+    /// Records that the terminal has answered a fence. No answer to an earlier request can arrive after it.
     pub(crate) fn fence_answered(&mut self, now: Duration) {
         let is_fence = |sent: &Sent| sent.request == Request::Fence;
         let Some(before) = self.in_flight.iter().position(is_fence) else { return };
@@ -212,14 +210,14 @@ impl Flow {
         }
     }
 
-    /// Forgets all requests so far: the terminal may never answer them.
+    /// Forgets all requests in flight, because the terminal may never answer them.
     pub(crate) fn forget(&mut self) {
         self.forgotten = self.in_flight.len();
         self.in_flight.clear();
         self.timeouts = 0;
     }
 
-    /// Whether a frame that is sent now would not wait behind others.
+    /// Returns true if a frame that is sent now would not wait behind others.
     pub(crate) fn may_send(&self, now: Duration) -> bool {
         match self.answers {
             Answers::Never => self.in_flight.is_empty(),
@@ -229,29 +227,29 @@ impl Flow {
         }
     }
 
-    /// Whether to send a fence alone, to learn whether the terminal is still connected.
+    /// Returns true when a fence should be sent alone, to find out whether the terminal is still connected.
     pub(crate) fn probe_is_due(&self, now: Duration) -> bool {
         self.answers == Answers::Given && self.timeouts == 0 && self.is_timed_out(now)
     }
 
-    /// The time at which to call [`Flow::may_send`] again even without an event; `None` for never.
+    /// The time at which to call [`Flow::may_send`] again even without an event. `None` means never.
     pub(crate) fn opens_at(&self) -> Option<Duration> {
         let is_silent = self.timeouts > 0 && !self.has_input;
         let due = self.active_at + self.timeout();
         (self.awaits_answers() && !is_silent).then_some(due)
     }
 
-    /// Whether answers may arrive.
+    /// Returns true while answers may arrive.
     pub(crate) fn awaits_answers(&self) -> bool {
         self.answers != Answers::Never && !self.in_flight.is_empty()
     }
 
-    /// The number of frames sent so far.
+    /// The number of frames sent.
     pub(crate) fn frames_sent(&self) -> u64 {
         self.frames_sent
     }
 
-    /// The number of frames that are not in flight any more.
+    /// The number of frames that are no longer in flight.
     pub(crate) fn frames_answered(&self) -> u64 {
         self.frames_sent - self.frames_in_flight() as u64
     }
@@ -261,7 +259,7 @@ impl Flow {
         self.link.last_round_trip()
     }
 
-    /// The fidelity of the next frame, at which the link carries it in time.
+    /// The fidelity at which the link carries the next frame in time.
     pub(crate) fn fidelity(&self) -> Fidelity {
         if self.timeouts > 0 && self.answers == Answers::Given {
             return MIN_FIDELITY;
@@ -272,8 +270,8 @@ impl Flow {
         self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.fidelity_within(rate))
     }
 
-    /// Records that a frame of motion was sent. The first frame does not count as motion, since it
-    /// paints the whole screen.
+    /// Records that a frame of motion was sent. The first frame does not count as motion, because it paints the whole
+    /// screen.
     pub(crate) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         if self.link.is_known() {
             let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
@@ -281,7 +279,7 @@ impl Flow {
         }
     }
 
-    /// The best fidelity for a link that carries `rate` bytes a second.
+    /// The best fidelity for a link that carries `rate` bytes per second.
     fn fidelity_within(&self, rate: f64) -> Fidelity {
         let excess = self.exact_bytes * FRAMES_PER_SECOND / rate;
         let tolerance = (excess - 1.0).max(0.0) / SAVING;
@@ -305,7 +303,7 @@ impl Flow {
         frames == 0 || frames < MAX_FRAMES && occupied < round_trip && frames as f64 <= needed
     }
 
-    /// Whether the answer to the oldest frame should have arrived.
+    /// Returns true if the answer to the oldest frame should have arrived.
     fn is_late(&self, now: Duration) -> bool {
         let oldest = self.in_flight.front();
         let latest = oldest.and_then(|sent| self.link.latest_answer(sent.at, sent.bytes));
@@ -331,7 +329,7 @@ impl Flow {
     }
 }
 
-/// The estimates of a link from the terminal's answers: its minimum round-trip time, rate and jitter.
+/// Estimates of a link's properties from the terminal's answers: minimum round-trip time, rate and jitter.
 #[derive(Debug, Default)]
 pub(crate) struct Link {
     min_round_trip: Option<MinRoundTrip>,
@@ -352,30 +350,29 @@ struct Transfer {
 
 /// The shortest time of a frame that can be measured.
 const MIN_TRANSFER: Duration = Duration::from_micros(100);
-/// An outlier is a frame that takes longer than expected by this number of standard deviations, and
-/// by this number of seconds.
+/// A frame is an outlier if it exceeds the expected time by this number of standard deviations, and also by this number
+/// of seconds.
 const OUTLIER_DEVIATIONS: f64 = 4.0;
 const OUTLIER_SECONDS: f64 = 0.25;
-/// An outlier of at least this number of seconds is a stall; a shorter one may be jitter.
+/// An outlier of at least this number of seconds is a stall. A shorter one may be jitter.
 const STALL_SECONDS: f64 = 1.0;
-/// The factor by which the fitted time of a byte is increased, up to the slope of the line through
-/// the origin. Where time grows with the bytes, the link is narrow, and the constant part of the
-/// time may belong to other frames on it. Without the margin, two sessions on 2 Mbit/s send finer
-/// frames than their shares carry, 12.5 a second in place of 20. With the whole margin (the line
-/// through the origin), jitter counts as slowness: at 1 Mbit/s with 0 to 50 ms of it, the largest
-/// error of frames is 41 in place of 21.
+/// The factor by which the fitted time per byte is increased, up to the slope of the line through the origin. If the
+/// time grows with the bytes, the link is narrow, and other frames on it may cause the constant part of the time.
+/// Rejected: no margin. Two sessions on 2 Mbit/s then send finer frames than their shares carry, 12.5 per second
+/// instead of 20. Rejected: the whole margin (the line through the origin). Jitter then counts as slowness: at 1 Mbit/s
+/// with 0 to 50 ms of jitter, the largest error of frames is 41 instead of 21.
 const SLOPE_MARGIN: f64 = 1.5;
 /// An answer is late after this number of standard deviations: Jacobson and Karels, RFC 6298.
 const LATE_DEVIATIONS: f64 = 4.0;
-/// The resolution of the time of an answer.
+/// The resolution of the times of answers.
 const CLOCK_GRANULARITY: Duration = Duration::from_millis(10);
-/// The limit in flight after a stall: the larger of this number of bytes and the bytes that the
-/// link carries in this number of seconds. If it stalls again, all of them arrive before anything newer.
+/// The limit of bytes in flight after a stall: this number of bytes, or the bytes that the link carries in this number
+/// of seconds, whichever is larger. If the link stalls again, all of them arrive before anything newer.
 const AFTER_STALL_BYTES: f64 = 16_000.0;
 const AFTER_STALL_SECONDS: f64 = 0.024;
-/// The duration of that limit.
+/// The time for which this limit applies.
 const AFTER_STALL: Duration = Duration::from_mins(1);
-/// The longest computed time: a day, in seconds.
+/// The longest computed time, in seconds: one day.
 const MAX_SECONDS: f64 = 86_400.0;
 
 impl Link {
@@ -383,8 +380,8 @@ impl Link {
     pub(crate) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         let round_trip = now.saturating_sub(sent_at);
         let minimum = MinRoundTrip::with(self.min_round_trip, now, round_trip);
-        // The link could begin to carry it when the first byte could arrive and the frame before it
-        // had arrived.
+        // The link carries the frame from the moment at which its first byte could arrive, but not before the previous
+        // frame has arrived.
         let begun = (sent_at + minimum.get()).max(self.answered_at);
         self.add_transfer(now, bytes, now.saturating_sub(begun));
         self.min_round_trip = Some(minimum);
@@ -398,8 +395,8 @@ impl Link {
         self.answered_at = now;
     }
 
-    /// Adds a frame to the fit. One outlier is a stall, which is no evidence about the rate; two in
-    /// a row mean that the link has changed.
+    /// Adds a frame to the fit. A single outlier is a stall, which is no evidence about the rate. Two in a row mean
+    /// that the link has changed.
     fn add_transfer(&mut self, now: Duration, bytes: usize, time: Duration) {
         if bytes == 0 {
             return;
@@ -429,12 +426,12 @@ impl Link {
         })
     }
 
-    /// Whether the link has carried a frame.
+    /// Returns true if the link has carried a frame.
     pub(crate) fn is_known(&self) -> bool {
         self.fit.mean().is_some()
     }
 
-    /// Whether an answer can arrive after this short a time.
+    /// Returns true if an answer can arrive after so short a time.
     fn is_plausible(&self, round_trip: Duration) -> bool {
         self.min_round_trip.is_none_or(|minimum| round_trip >= minimum.get() / 2)
     }
@@ -452,7 +449,7 @@ impl Link {
         self.outlier.map_or(usual, |transfer| usual.max(transfer.seconds / transfer.bytes))
     }
 
-    /// The maximum of bytes a second that should be sent; `None` for no maximum.
+    /// The maximum number of bytes to send per second. `None` means no maximum.
     fn usable_rate(&self) -> Option<f64> {
         let seconds = self.seconds_per_byte();
         let rate = (seconds > 0.0).then(|| seconds.recip());
@@ -500,8 +497,8 @@ impl Link {
     }
 }
 
-/// The time that a link takes for a frame, as a function of its bytes: a line through recent frames, by sums over them
-/// in bytes and seconds.
+/// The time for which a frame occupies the link, as a function of its bytes: a line through recent frames. It is
+/// computed from sums over the frames, in bytes and seconds.
 ///
 /// A frame of b bytes takes c + b / rate. Weighted least squares finds both coefficients, with weights that fall
 /// exponentially with age (Haykin, *Adaptive Filter Theory*, "recursive least squares"). Google's congestion control
@@ -511,8 +508,8 @@ impl Link {
 /// Frames of one size do not determine c. A point at 0 bytes and 0 seconds represents the expectation that there is no
 /// jitter. Its weight is small, and frames of different sizes outweigh it.
 ///
-/// Rejected: the quotient of bytes and time as the rate. Jitter then lowers the rate, so that frames become smaller and
-/// jitter lowers it more, until frames are as small as possible.
+/// Rejected: the quotient of bytes and time as the rate. Jitter then lowers the rate. Frames become smaller, and jitter
+/// lowers the rate further, until frames are as small as possible.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fit {
     weight: f64,
@@ -523,7 +520,7 @@ struct Fit {
     seconds_squared: f64,
 }
 
-/// The line, in seconds and seconds a byte.
+/// The line, in seconds and seconds per byte.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     /// The time of a frame of 0 bytes.
@@ -535,9 +532,9 @@ struct Line {
     deviation: f64,
 }
 
-/// The weight of the past after one more frame.
+/// The factor by which the weight of the past decreases with each frame.
 const FORGETTING_FACTOR: f64 = 0.97;
-/// The weight of the point at the origin, relative to the latest frame's.
+/// The weight of the point at the origin, relative to the latest frame's weight.
 const ORIGIN_WEIGHT: f64 = 0.25;
 
 impl Fit {
@@ -578,11 +575,11 @@ impl Fit {
     }
 }
 
-/// The minimum of recent round-trip times, of this half of a window and of the one before it: the delay of the link
-/// in both directions, without queues.
+/// The minimum of recent round-trip times, over this half of a window and the one before it: the delay of the link in
+/// both directions, without queues. This is the windowed minimum filter of BBR
+/// (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`").
 ///
-/// The minimum of all times would stay wrong after the route has become longer. This is the windowed minimum filter of
-/// BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`").
+/// Rejected: the minimum of all times. It would stay wrong after the route has become longer.
 #[derive(Clone, Copy, Debug)]
 struct MinRoundTrip {
     since: Duration,
@@ -590,7 +587,7 @@ struct MinRoundTrip {
     previous: Duration,
 }
 
-/// The length of half of the window.
+/// The length of half a window.
 const HALF_WINDOW: Duration = Duration::from_secs(30);
 
 impl MinRoundTrip {

@@ -1,9 +1,10 @@
 //! Takes the terminal and restores its previous state.
 //!
-//! The session, the panic hook and the thread that handles signals share a guard. The first of them
-//! that ends gives the terminal back, and the others do nothing.
+//! The session, the panic hook and the thread that handles signals share a guard. The first of them to end gives
+//! the terminal back, and the others do nothing.
 //!
-//! Rejected: restoring a part of the state in each. A mode that is pushed or popped twice is worse than neither.
+//! Rejected: restoring a part of the state in each of them. A mode that is pushed or popped twice is worse than a
+//! mode that is not.
 
 use std::any::Any;
 use std::fmt;
@@ -23,7 +24,7 @@ use super::unix::Device;
 use super::{Error, sequence};
 use crate::fault::printable;
 
-/// The time that a terminal has to accept the bytes that restore its state.
+/// The time within which the terminal must accept the bytes that restore its state.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
 /// The changes to the terminal's state, and the way to undo them.
@@ -45,10 +46,10 @@ struct State {
 }
 
 impl Guard {
-    /// A guard of `device`, which the panic hook uses from now on.
+    /// A guard for `device`, which the panic hook uses from now on.
     ///
     /// # Errors
-    /// If the process has a guard already.
+    /// If the process already has a guard.
     pub(crate) fn install(
         device: Device,
         recorder: Option<Box<dyn Recorder>>,
@@ -75,7 +76,7 @@ impl Guard {
     /// Gives the terminal back at the end of the session.
     pub(crate) fn uninstall(&self) {
         self.give_back();
-        // Panics are then handled as before.
+        // From here on, panics are handled as before.
         let mut current = current();
         if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), self)) {
             *current = None;
@@ -86,7 +87,7 @@ impl Guard {
         &self.device
     }
 
-    /// Whether a recorder receives the sent bytes.
+    /// Returns true if a recorder receives the sent bytes.
     pub(crate) fn is_recorded(&self) -> bool {
         self.recorder.is_some()
     }
@@ -112,18 +113,18 @@ impl Guard {
         Ok(())
     }
 
-    /// Sets what must be undone.
+    /// Sets the changes that must be undone.
     pub(crate) fn set_changes(&self, changes: Changes) {
         self.lock().changes = changes;
     }
 
-    /// Whether the terminal is taken, so that the program may write to it.
+    /// Returns true while the terminal is taken, so that the program may write to it.
     pub(crate) fn is_taken(&self) -> bool {
         self.lock().taken
     }
 
-    /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The
-    /// rest is [written later](Self::write_queued). After them, `changes` must be undone.
+    /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The rest is [written
+    /// later](Self::write_queued). From now on, `changes` must be undone.
     pub(crate) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
         let mut state = self.lock_taken()?;
         state.changes = changes;
@@ -143,28 +144,28 @@ impl Guard {
         self.device.read(buffer)
     }
 
-    /// Whether the terminal has accepted all bytes.
+    /// Returns true if the terminal has accepted all bytes.
     pub(crate) fn has_written_all(&self) -> bool {
         self.output_queue().is_empty()
     }
 
-    /// Makes all functions stop waiting for a terminal that is not ready for a frame.
+    /// Ends all waits for a terminal that is not ready for a frame.
     pub(crate) fn shut_down(&self) {
         self.shutting_down.store(true, Ordering::SeqCst);
     }
 
-    /// Whether [`Guard::shut_down`] was called.
+    /// Returns true if [`Guard::shut_down`] was called.
     pub(crate) fn is_shutting_down(&self) -> bool {
         self.shutting_down.load(Ordering::SeqCst)
     }
 
-    /// Gives the terminal back, unless that was done before. Takes six seconds at most.
+    /// Gives the terminal back, unless it was given back before. Takes six seconds at most.
     pub(crate) fn give_back(&self) {
         self.give_back_and(|| ());
     }
 
-    /// Gives the terminal back, unless that was done before, and then calls `end`. Threads that want to
-    /// write or read wait until both are done, so that none ends the program in another way.
+    /// Gives the terminal back, unless it was given back before, and then calls `end`. Threads that want to write
+    /// or read wait until both are done, so that no thread ends the program in another way.
     pub(crate) fn give_back_and(&self, end: impl FnOnce()) {
         let mut state = self.lock();
         if state.taken {
@@ -175,16 +176,16 @@ impl Guard {
         end();
     }
 
-    /// Waits until the terminal is given back; returns whether that happened within `timeout`.
+    /// Waits until the terminal is given back. Returns true if that happened within `timeout`.
     pub(crate) fn wait_until_given_back(&self, timeout: Duration) -> bool {
         let state = self.lock();
         let waited = self.given_back.wait_timeout_while(state, timeout, |state| state.taken);
         !waited.unwrap_or_else(PoisonError::into_inner).0.taken
     }
 
-    /// Locks the state of the terminal, which is taken: until the lock is released, no thread gives it
-    /// back. A thread that only looked before it wrote could write to a terminal that belongs to the
-    /// shell again.
+    /// Locks the state, or returns an error if the terminal is not taken. Until the lock is released, no thread
+    /// gives the terminal back. A thread that only checked before it wrote could write to a terminal that belongs
+    /// to the shell again.
     fn lock_taken(&self) -> io::Result<MutexGuard<'_, State>> {
         let state = self.lock();
         if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(Kind::GivenBack))) }
@@ -199,8 +200,8 @@ impl Guard {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Undoes all changes, in reverse order. After an error in one step, the others are still
-    /// tried: nothing better can be done about it.
+    /// Undoes all changes, in reverse order. After an error in one step, the others are still tried, because
+    /// nothing better can be done.
     fn leave(&self, state: &mut State) {
         if self.output_queue().withholds(sequence::PUSH_KEY_FLAGS) {
             state.changes.forget_key_flags();
@@ -208,7 +209,7 @@ impl Guard {
         let text = state.changes.end(self.now());
         let accepted = self.write_within_timeout(&text);
         if !accepted.as_ref().is_ok_and(|&length| length == text.len()) {
-            // The frame that the terminal has not accepted gives way.
+            // Discard the frame that the terminal has not accepted, and try again.
             if accepted.is_ok_and(|length| length > 0) {
                 state.changes.doubt_key_flags();
             }
@@ -252,10 +253,10 @@ impl Guard {
 
 /// A recorder of all bytes that a [`Session`](super::Session) sends.
 pub trait Recorder: Send {
-    /// The window has this `size`. Called once before any bytes, and after each change.
+    /// Records the size of the window. Called once before any bytes, and after each change.
     fn resized(&mut self, size: Size);
 
-    /// These `bytes` are sent to the terminal. They are whole characters and whole sequences.
+    /// Records bytes that are sent to the terminal. They are whole characters and whole sequences.
     fn sent(&mut self, bytes: &[u8]);
 }
 
@@ -265,8 +266,7 @@ impl fmt::Debug for dyn Recorder {
     }
 }
 
-/// Bytes for a terminal that does not accept more at present. They are few, since no frame is drawn
-/// while there are any.
+/// Bytes that the terminal has not accepted yet. They are few, because no frame is drawn while any are waiting.
 #[derive(Debug, Default)]
 struct OutputQueue {
     bytes: Vec<u8>,
@@ -298,7 +298,7 @@ impl OutputQueue {
         Ok(())
     }
 
-    /// Whether `sequence` is among the bytes, and the device has not accepted all of it.
+    /// Returns true if `sequence` is among the bytes and the device has not accepted all of it.
     fn withholds(&self, sequence: &str) -> bool {
         let mut places = self.bytes.windows(sequence.len());
         let last = places.rposition(|bytes| bytes == sequence.as_bytes());
@@ -315,13 +315,13 @@ impl OutputQueue {
     }
 }
 
-/// The guard of the current session. The hook runs in all threads, so that this belongs to the
-/// process and not to the session.
+/// The guard of the current session. It belongs to the process and not to the session, because the hook runs in all
+/// threads.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
 static HOOK: Once = Once::new();
 
 /// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
-/// panics outside of sessions. It is never removed: this would also remove a hook installed after it.
+/// panics outside of sessions. The hook is never removed, because that would also remove a hook installed after it.
 fn install_hook() {
     let outside = panic::take_hook();
     panic::set_hook(Box::new(move |info| match current().clone() {
@@ -333,7 +333,7 @@ fn install_hook() {
     }));
 }
 
-/// Prints one sentence. If standard error is closed, nothing can be reported.
+/// Prints the panic as one sentence. If standard error is closed, nothing can be reported.
 fn report(info: &PanicHookInfo) {
     let message = printable(message(info.payload()));
     _ = match info.location() {

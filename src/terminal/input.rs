@@ -1,13 +1,12 @@
-//! Input: bytes from the terminal to keys and answers to queries.
+//! Input: decodes the terminal's bytes to keys and to answers to queries.
 //!
-//! The stream is divided into complete units first, and only whole units are interpreted. So an
-//! answer never becomes typed text, however the bytes arrive, and an unknown unit is dropped at its
-//! end. A unit is a character, a control sequence or a string: the division knows the forms of ECMA-48
-//! but not their meanings, so that it always finds the start of the next unit, and never waits for bytes
-//! that would complete an unknown one.
+//! The decoder first divides the stream into units, and interprets only complete units. Therefore an answer never
+//! becomes typed text, however the bytes arrive, and an unknown unit is dropped at its end. A unit is a character, a
+//! control sequence or a string. The division uses the forms of ECMA-48 but not their meanings. It always finds the
+//! start of the next unit, and never waits for bytes that would complete an unknown one.
 //!
-//! Rejected: dividing by a parser of keys. The known ones keep a buffer for ever after a complete report that they do
-//! not know.
+//! Rejected: dividing the stream with a key parser. Existing parsers keep a buffer for ever after a complete report
+//! that they do not recognize.
 
 use std::time::Duration;
 
@@ -23,15 +22,15 @@ use super::sequence;
 pub(crate) enum Input {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
-    /// The mouse was moved, or one of its buttons pressed or released.
+    /// The mouse was moved, or one of its buttons was pressed or released.
     Mouse(MouseReport),
-    /// The window has received the focus, or lost it.
+    /// The window has received the focus (`true`) or lost it (`false`).
     Focus(bool),
     /// The terminal has answered a query.
     Answer(Answer),
 }
 
-/// An answer of the terminal.
+/// An answer from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
     /// The terminal supports the kitty keyboard protocol.
@@ -42,13 +41,13 @@ pub(crate) enum Answer {
     PixelMouse,
     /// The terminal's name and version.
     Version(Known),
-    /// The answer to a fence, after those to all earlier queries.
+    /// The answer to a fence. It follows the answers to all earlier queries.
     Fence,
     /// The answer to a status request.
     Status,
-    /// The terminal has repeated a half block.
+    /// The terminal has repeated a half block, so it supports REP.
     Repeats,
-    /// An entry of the terminal's palette has this colour, in 16 bits a channel.
+    /// An entry of the terminal's palette has this colour, with 16 bits per channel.
     PaletteEntry([u16; 3]),
 }
 
@@ -56,7 +55,7 @@ pub(crate) enum Answer {
 #[derive(Debug, Default)]
 pub(crate) struct Decoder {
     state: State,
-    /// The incomplete unit, as far as it has arrived.
+    /// The bytes of the incomplete unit.
     unit: Vec<u8>,
     is_too_long: bool,
 }
@@ -136,11 +135,11 @@ impl Decoder {
         }
     }
 
-    /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
+    /// The time to wait for more bytes after the last one. `None` if there is no incomplete unit.
     pub(crate) fn timeout(&self) -> Option<Duration> {
-        /// Longer than the gaps within a sequence, shorter than a noticeable delay.
+        /// Longer than the gaps within a sequence, and shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
-        /// This is certainly a sequence, but the link may be slow.
+        /// The unit is certainly a sequence, but the link may be slow.
         const SEQUENCE: Duration = Duration::from_secs(1);
         match self.state {
             State::Ground => None,
@@ -158,8 +157,8 @@ impl Decoder {
         self.reset();
     }
 
-    /// Whether the incomplete unit is an escape, or one and a character: the start of a sequence, or a key
-    /// by itself.
+    /// Returns true if the incomplete unit is an escape, or an escape and a character. Either may be the start of a
+    /// sequence or a key by itself.
     fn may_be_key(&self) -> bool {
         match self.state {
             State::Escape | State::SingleShift | State::ControlSequenceStart => true,
@@ -215,7 +214,7 @@ impl Decoder {
     }
 }
 
-/// The effect of `byte` after a unit in this state.
+/// The effect of `byte` on a unit in this state.
 fn step(state: State, byte: u8) -> Step {
     match (state, byte) {
         (State::Ground, ESCAPE) => Step::Continue(State::Escape),
@@ -278,12 +277,12 @@ fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
     }
 }
 
-/// Whether `unit`, a control sequence, has the form of a report, which no key has.
+/// Returns true if the control sequence `unit` has the form of a report. No key has this form.
 fn is_report(unit: &[u8]) -> bool {
     matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'] | [_, _, b'2', b';', .., b'R'])
 }
 
-/// The answer in the report `unit`; `None` if it answers no query of this program.
+/// The answer in the report `unit`. `None` if it answers no query of this program.
 fn report(unit: &[u8]) -> Option<Answer> {
     match unit {
         [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
@@ -313,7 +312,7 @@ fn channel(digits: &[u8]) -> Option<u16> {
     u16::try_from(value * u32::from(u16::MAX) / most).ok()
 }
 
-/// The answer in the device control string `unit`; `None` for a refusal, and if it answers no query
+/// The answer in the device control string `unit`. `None` if the terminal refuses, or if the string answers no query
 /// of this program.
 fn device_control(unit: &[u8]) -> Option<Answer> {
     if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
@@ -324,7 +323,7 @@ fn device_control(unit: &[u8]) -> Option<Answer> {
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
 }
 
-/// The key event of `unit`; `None` if it is not a key, or cannot be bound.
+/// The key event of `unit`. `None` if the unit is not a key, or is a key that cannot be bound.
 fn key_event(unit: &[u8]) -> Option<KeyEvent> {
     match unit {
         [0x1b, character] => {
@@ -343,8 +342,8 @@ fn told_base(unit: &[u8]) -> Option<char> {
     char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
 }
 
-/// The parser's event for `unit`. Each unit has a new parser: a parser that has kept bytes of an unknown
-/// unit would prefix them to the next.
+/// The parser's event for `unit`. The parser is new for each unit, because a parser that has kept bytes of an unknown
+/// unit would put them before the next one.
 fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
     let mut parser = termina::Parser::default();
     parser.parse(unit, false);
@@ -355,7 +354,7 @@ fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
 }
 
 fn translate(event: termina::event::KeyEvent, told_base: Option<char>) -> Option<KeyEvent> {
-    // The parser drops Shift if the terminal reports the character that it types, too.
+    // The parser drops Shift if the terminal also reports the character that Shift and the key type.
     let is_upper = matches!(event.code, KeyCode::Char(character) if character.is_uppercase());
     let modifiers = Modifiers {
         shift: is_upper || event.modifiers.contains(Reported::SHIFT),
@@ -399,9 +398,9 @@ fn name(code: KeyCode) -> Option<Key> {
     })
 }
 
-/// Bits of a report's first number besides those of the button.
+/// The bit that marks a motion, in a report's first number.
 const MOTION: u32 = 32;
-/// The bits of the wheel and of buttons beyond the third.
+/// The bits that mark the wheel and the buttons beyond the third.
 const OTHERS: u32 = 64 | 128;
 
 /// The report in `unit`, a control sequence: `CSI < button ; column ; row` and `M`, or `m` for a
@@ -418,7 +417,7 @@ fn mouse_report(unit: &[u8]) -> Option<MouseReport> {
     numbers.next().is_none().then_some(MouseReport { kind, place: [column, row] })
 }
 
-/// The report in `unit`: `CSI M` and three bytes, from old terminals without the other form.
+/// The report in `unit`: `CSI M` and three bytes. Old terminals without the other form send it.
 fn mouse_bytes(unit: &[u8]) -> Option<MouseReport> {
     let &[code, column, row] = unit.strip_prefix(b"\x1b[M")? else { return None };
     let [code, column, row] = [code, column, row].map(|byte| u32::from(byte.saturating_sub(32)));

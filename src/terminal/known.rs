@@ -1,28 +1,29 @@
-//! A terminal's properties by its environment and by the name that it reports, and how to use it.
+//! The properties of a terminal, from its environment and from the name that it reports, and the ways to use it.
 //!
 //! For the colours, the user's choice comes first (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then the terminal's
 //! own claims (`COLORTERM`, `TERM`), then a guess that a query may raise.
 //!
-//! Missing variables do not restrict the game: containers and `ssh` often set neither a locale nor `TERM`, in terminals
-//! that show UTF-8 and know every sequence.
+//! Missing variables do not restrict the game. Containers and `ssh` often set neither a locale nor `TERM`, although the
+//! terminal shows UTF-8 and understands every sequence.
 //!
-//! Rejected: a database of terminals. Half of the machines lack it, and it has wrong numbers of colours on others.
-//! A program that aborts without a locale or `TERM`, or that draws with letters then.
+//! Rejected: a database of terminals. Half of the machines lack it, and on others its numbers of colours are wrong.
+//! Rejected: aborting, or drawing with letters, without a locale or `TERM`.
 //!
 //! The reported name (XTVERSION) implies the colours, and the glyphs that the terminal draws itself, without a font:
 //!
-//! - A terminal draws glyphs of a kind from the version in the table on. Terminals before it, and
-//!   those without an entry, are trusted with half blocks only.
-//! - Shades (░▒▓) are dots or one flat colour. Where no source says which, they are unknown.
-//! - A multiplexer answers for itself; its own name says nothing about the terminal around it.
+//! - A terminal draws a kind of glyph itself from the version in the table on. Earlier versions, and terminals without
+//!   an entry, are trusted with half blocks only.
+//! - Shades (░▒▓) are dots or one flat colour. If no source tells which, they are unknown.
+//! - A multiplexer answers for itself. Its name says nothing about the terminal around it.
 //!
-//! Rejected: the width of a glyph by a cursor report. It proves the width, never the ink.
+//! Rejected: measuring the width of a glyph with a cursor report. The report proves the width, but not that the glyph
+//! has ink.
 
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::terminal::Fidelity;
 use crate::tui::GlyphSet;
 
-/// The initially known properties of a terminal, and how to use it.
+/// The properties of a terminal that are known at the start, and the ways to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
@@ -30,24 +31,24 @@ pub struct Options {
     pub color_depth: Detected,
     /// The source of the colour depth.
     pub color_source: ColorSource,
-    /// The terminal's name in `TERM`, if the terminal cannot move its cursor.
+    /// The value of `TERM`, if it names a terminal that cannot move its cursor.
     pub teletype: Option<&'static str>,
-    /// Whether the terminal shows only ASCII. Other characters are replaced by similar ones.
+    /// Whether the terminal shows only ASCII. If so, other characters are replaced by similar ones.
     pub is_ascii: bool,
     /// Whether to request reports of key releases.
     pub ask_for_key_releases: bool,
-    /// Whether to ask if mouse positions can be in pixels.
+    /// Whether to ask if the terminal can report mouse positions in pixels.
     pub ask_for_mouse_pixels: bool,
     /// Whether to ask for the terminal's name and version.
     pub ask_for_version: bool,
-    /// Whether the program runs in a tmux of this machine, which a [`Session`](super::Session) asks
-    /// about the terminal around it.
+    /// Whether the program runs in a tmux on this machine. If so, a [`Session`](super::Session) asks tmux about the
+    /// terminal around it.
     pub ask_tmux: bool,
     /// Whether the terminal is across a network. The first frame is then coarse; later frames make
     /// it exact.
     pub is_remote: bool,
-    /// Whether to probe control sequences that make frames shorter (repeated characters and the
-    /// palette), and to use those that work.
+    /// Whether to probe control sequences that make frames shorter (repeated characters and the palette), and to use
+    /// the sequences that work.
     pub probe_extensions: bool,
     /// The fidelity of frames; `None` for the best that the link allows.
     pub fidelity: Option<Fidelity>,
@@ -59,13 +60,11 @@ impl Options {
     /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in
     /// a terminal that is unknown or has no window.
     ///
-    /// A multiplexer is not asked for key releases: the ones that support them lose some, and a key
-    /// whose release is lost is held for ever. Nor is it asked for pixels, since it has none of its
-    /// own.
+    /// A multiplexer is not asked for key releases. The multiplexers that support them lose some, and a key whose
+    /// release is lost is held for ever. A multiplexer is not asked for pixels either, because it has none of its own.
     ///
-    /// Apple's Terminal is not asked for pixels: it prints the last character of that query
-    /// (DECRQM). A terminal that is unknown by its `TERM` is not asked for its version, since some
-    /// would print that query.
+    /// Apple's Terminal is not asked for pixels, because it prints the last character of that query (DECRQM). A
+    /// terminal with an unknown `TERM` is not asked for its version, because some terminals would print that query.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         /// Terminals that ignore unknown control sequences.
         const KNOWN: [&str; 14] = [
@@ -111,9 +110,9 @@ impl Options {
 /// The colour depth that an environment implies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detected {
-    /// A depth that no answer of the terminal would change.
+    /// A depth that no answer from the terminal would change.
     Certain(ColorDepth),
-    /// The greatest safe depth until the terminal has been queried.
+    /// The greatest safe depth, until the terminal has been queried.
     Guess(ColorDepth),
 }
 
@@ -141,13 +140,13 @@ pub enum ColorSource {
     Answer,
     /// The terminal shows 256 colours, and lets the program define them.
     Palette,
-    /// The answer of tmux about the terminal around it.
+    /// The answer from tmux about the terminal around it.
     Tmux,
     /// No evidence; most terminals have this depth.
     Nothing,
 }
 
-/// The colour depth that `environment` implies, which looks up variables by name, and the evidence for it.
+/// The colour depth that `environment` implies, and the evidence for it. `environment` looks up variables by name.
 fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSource) {
     use ColorSource::{ColorTerm, ForceColor, NoColor, Nothing, Term};
     let certain = |depth, source| (Detected::Certain(depth), source);
@@ -164,13 +163,13 @@ fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSourc
         None => variable("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
     };
     if matches!(variable("COLORTERM").as_deref(), Some("truecolor" | "24bit")) {
-        // tmux passes on the variable of the terminal in which it began, and knows better itself.
+        // tmux passes on the variable of the terminal in which it was started, and its own answer is better.
         let is_certain = variable("TMUX").is_none();
         let depth = if is_certain { Detected::Certain } else { Detected::Guess };
         return (depth(ColorDepth::True), ColorTerm);
     }
     let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
-    // In tmux, TERM may be `screen`, whatever tmux sends.
+    // In tmux, TERM may be `screen`, whatever number of colours tmux sends.
     let is_tmux = variable("TMUX").is_some() && variable("STY").is_none();
     match named {
         Detected::Certain(depth @ ColorDepth::Indexed256) if is_tmux => {
@@ -207,29 +206,29 @@ fn of(term: &str) -> Detected {
     } else if SIXTEEN.contains(&term) {
         Detected::Certain(ColorDepth::Indexed16)
     } else if is(&"screen") {
-        // It forwards the query to the terminal around it, whose answer does not apply to it.
+        // screen forwards the query to the terminal around it, and the answer does not apply to screen.
         Detected::Certain(ColorDepth::Indexed256)
     } else {
         Detected::Guess(ColorDepth::Indexed256)
     }
 }
 
-/// Values of `TERM` for terminals that cannot move their cursors, all without `cup` in the database
-/// of terminals: the values that programs and systems set, and teletypes.
+/// Values of `TERM` for terminals that cannot move their cursor: values that programs and systems set, and teletypes.
+/// None of them has `cup` in the database of terminals.
 const TELETYPES: [&str; 12] = [
     "dumb", "unknown", "vanilla", "emacs", "glasstty", "printer", "lpr", "tty33", "tty35", "tty37",
     "tty40", "tty43",
 ];
 
-/// The value of `TERM` in `environment`, which looks up variables by name, if it names a terminal that cannot move its
-/// cursor.
+/// The value of `TERM` in `environment`, if it names a terminal that cannot move its cursor. `environment` looks up
+/// variables by name.
 fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
     let term = environment("TERM")?;
     TELETYPES.into_iter().find(|&known| known == term)
 }
 
-/// The setting of the locale in `environment`, such as `LANG=C`, if it is not a setting for UTF-8.
-/// `None` if it is, and without a setting, since most terminals show UTF-8.
+/// The locale setting in `environment`, such as `LANG=C`, if it does not select UTF-8. `None` if it does, or if there
+/// is no setting, because most terminals show UTF-8.
 ///
 /// The first non-empty variable of `LC_ALL`, `LC_CTYPE` and `LANG` counts, as in POSIX. A locale
 /// without a character set is not UTF-8.
@@ -248,34 +247,33 @@ pub fn locale_without_utf8(environment: impl Fn(&str) -> Option<String>) -> Opti
     (!is_utf8).then(|| format!("{name}={value}"))
 }
 
-/// The properties of a terminal, by its name and version.
+/// The properties of a terminal, derived from its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Known {
     pub(crate) colors: Colors,
-    /// The finest blocks that it is known to draw well.
+    /// The finest blocks that the terminal is known to draw well.
     pub(crate) blocks: GlyphSet,
     pub(crate) shades: ShadeInk,
     pub(crate) is_tmux: bool,
 }
 
-/// Whether a terminal of some name and version shows 24-bit colours.
+/// The support for 24-bit colours that a terminal's name and version imply.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Colors {
     #[default]
     Unknown,
-    /// The terminal shows them.
+    /// The terminal shows 24-bit colours.
     True,
-    /// The terminal is xterm, which is built with or without them and answers a further query. Other
-    /// terminals print that query (blessed#382 names `QTerminal`, `PuTTY`, `ConEmu` and Apple's
-    /// Terminal).
+    /// The terminal is xterm, which is built with or without 24-bit colours and answers a further query. Other
+    /// terminals print that query (blessed#382 names `QTerminal`, `PuTTY`, `ConEmu` and Apple's Terminal).
     Ask,
 }
 
-/// An entry of the table.
+/// An entry of [`TERMINALS`].
 struct Terminal {
     /// The reported name, in lower case.
     name: &'static str,
-    /// The first versions that draw quadrants, sextants and octants themselves.
+    /// The first versions that draw quadrants, sextants and octants themselves. `None` if no version does.
     blocks: [Option<Version>; 3],
     shades: ShadeInk,
 }
@@ -285,7 +283,8 @@ type Version = (u32, u32);
 
 const ALL: Option<Version> = Some((0, 0));
 
-/// Every version of these that answers the query shows 24-bit colours, except xterm.
+/// The known terminals. Every version that answers the query shows 24-bit colours. xterm has no entry, because it may
+/// lack them.
 const TERMINALS: [Terminal; 13] = [
     // Octants: kitty's changelog, 0.40. Sextants and dots: seen with 0.26.
     terminal("kitty", [ALL, Some((0, 26)), Some((0, 40))], ShadeInk::Dots),
@@ -297,14 +296,14 @@ const TERMINALS: [Terminal; 13] = [
     terminal("vte", [ALL, Some((7800, 0)), Some((7800, 0))], ShadeInk::Flat),
     // Octants come after its last stable release (WezTerm#6502).
     terminal("wezterm", [ALL, None, None], ShadeInk::Flat),
-    // Sextants: alacritty#7534. It has no answer in most versions.
+    // Sextants: alacritty#7534. Most versions do not answer the query.
     terminal("alacritty", [ALL, ALL, None], ShadeInk::Flat),
     terminal("contour", [ALL, ALL, None], ShadeInk::Unknown),
     // Sextants: xterm.js#5467.
     terminal("xterm.js", [ALL, Some((6, 0)), None], ShadeInk::Unknown),
     // Sextants: terminal#20424, which is in no release that could be tested.
     terminal("windows terminal", [ALL, None, None], ShadeInk::Unknown),
-    // Fonts draw the finer ones in these.
+    // In the following terminals, fonts draw the finer blocks.
     terminal("iterm2", [ALL, None, None], ShadeInk::Unknown),
     terminal("mintty", [ALL, None, None], ShadeInk::Unknown),
     terminal("rio", [ALL, None, None], ShadeInk::Unknown),
@@ -315,8 +314,8 @@ const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: Shad
     Terminal { name, blocks, shades }
 }
 
-/// The properties of the terminal that reports this name and version, such as `kitty(0.42.1)` or `WezTerm
-/// 20240203-110809`.
+/// The properties of the terminal that reports this name and version, such as `kitty(0.42.1)` or
+/// `WezTerm 20240203-110809`.
 pub(crate) fn known(report: &str) -> Known {
     let end = report.find(|letter: char| letter == '(' || letter.is_ascii_digit());
     let (name, version) = report.split_at(end.unwrap_or(report.len()));
@@ -349,7 +348,7 @@ pub(crate) fn known(report: &str) -> Known {
     }
 }
 
-/// The first two numbers of a version; missing ones are 0.
+/// The first two numbers of a version. Missing ones are 0.
 fn numbers(version: &str) -> Version {
     let mut numbers = version
         .trim_start_matches(|letter: char| !letter.is_ascii_digit())

@@ -1,19 +1,19 @@
 //! The protocol between a program and a terminal: bytes in, events and bytes out.
 //!
-//! A [`Protocol`] has neither a device nor a clock: times are arguments, durations since any fixed
-//! moment. So one implementation serves the terminal of the process ([`Session`](super::Session)), a
-//! channel of an SSH server, and a test that decides what arrives when.
+//! A [`Protocol`] has neither a device nor a clock. Times are arguments: durations since any fixed moment. One
+//! implementation therefore serves the terminal of the process ([`Session`](super::Session)), a channel of an SSH
+//! server, and a test that decides what arrives when.
 //!
-//! Some control sequences make frames shorter, and are used if the terminal proves that they work. The program probes
-//! two at the beginning. A repeated half block (REP) must move the cursor as far as it should. An entry of the
+//! Some control sequences make frames shorter. They are used only if the terminal proves that they work. The program
+//! probes two at the beginning. A repeated half block (REP) must move the cursor as far as it should. An entry of the
 //! palette, defined in the form that frames use (OSC 4), must be reported as defined, and with its old colour after a
-//! reset (OSC 104). Some terminals claim to repeat characters and fail on half blocks, so that no terminal is trusted
-//! by its name or version. A terminal of 256 colours whose palette can be defined and reset shows 24-bit colours as
-//! entries of its own. Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
-//! the sent bytes, since a recording must play on any terminal.
+//! reset (OSC 104). No terminal is trusted by its name or version, because some terminals claim to repeat characters
+//! and fail on half blocks. A terminal with 256 colours whose palette can be defined and reset shows 24-bit colours
+//! as palette entries. Neither sequence is probed in a multiplexer, because it would answer for itself. Neither is
+//! probed if a recorder receives the sent bytes, because a recording must play on any terminal.
 //!
-//! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a
-//! thread for each of them.
+//! Rejected: a device trait. A server waits for many channels at once, and a device that blocks would need a thread
+//! for each of them.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -33,12 +33,12 @@ use super::{
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::tui::GlyphSet;
 
-/// One side of the protocol between a program and a terminal: it turns the terminal's bytes into
+/// The program's side of the protocol between a program and a terminal: it turns the terminal's bytes into
 /// [`Event`]s, and frames into bytes.
 ///
-/// The caller passes the received bytes to [`Protocol::receive`], takes events from
-/// [`Protocol::next_event`], sends what is in [`Protocol::output`], and reports with
-/// [`Protocol::written`] that it was sent. Frames are drawn while [`Protocol::is_ready`].
+/// The caller passes the received bytes to [`Protocol::receive`], takes events from [`Protocol::next_event`], sends
+/// the bytes in [`Protocol::output`], and reports with [`Protocol::written`] that they were sent. It draws frames
+/// while [`Protocol::is_ready`] returns `true`.
 ///
 /// ```
 /// use std::time::Duration;
@@ -61,7 +61,7 @@ use crate::tui::GlyphSet;
 /// ```
 #[derive(Debug)]
 pub struct Protocol {
-    /// How to use the terminal, and what is known of it by now.
+    /// The properties of the terminal as far as they are known, and the ways to use it.
     options: Options,
     /// Bytes that the caller has not taken yet.
     output: Vec<u8>,
@@ -71,19 +71,19 @@ pub struct Protocol {
     received_at: Duration,
     events: VecDeque<Event>,
     size: WindowSize,
-    /// The terminal's properties, by its name.
+    /// The terminal's properties, derived from its name.
     known: Known,
     /// The client of the tmux in which the program runs.
     tmux: Option<TmuxClient>,
-    /// Whether the terminal has not answered yet if it reports key releases.
+    /// `true` while an answer about reports of key releases is expected.
     awaits_key_releases: bool,
     mouse: Mouse,
     flow: Flow,
-    /// The frame that is encoded and not yet in `output`.
+    /// The kind of the frame that is encoded but not yet in `output`.
     drawn: Option<Drawn>,
     palette: PaletteProbe,
     changes: Changes,
-    /// Whether the terminal is given back, so that no report is switched on any more.
+    /// `true` once the terminal is being given back. From then on, no report is switched on.
     is_ending: bool,
     /// The number of frames that were sent before the keyboard flags were pushed.
     frames_before_key_flags: u64,
@@ -94,21 +94,21 @@ pub struct Protocol {
 enum Drawn {
     /// A new picture, at this fidelity.
     Motion(Fidelity),
-    /// The last picture, more exactly.
+    /// The last picture again, more exact.
     Refinement,
 }
 
-/// The state of mouse reports, whose unit is among the changes of the terminal.
+/// The state of mouse reports. Their unit is in [`Changes`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Mouse {
     /// Whether the terminal can report positions in pixels.
     has_pixels: bool,
-    /// Whether reports may still be in the previous unit.
+    /// `true` while reports may still be in the previous unit.
     is_changing: bool,
 }
 
 impl Protocol {
-    /// The protocol with a terminal that has these `options`. Nothing is sent yet.
+    /// A protocol for a terminal with these `options`. Nothing is sent yet.
     pub fn new(options: Options, size: WindowSize) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size.cells());
         writer.set_ascii(options.is_ascii);
@@ -154,13 +154,13 @@ impl Protocol {
         }
         // A terminal that does not understand a query may print a part of it.
         queries.push_str(sequence::ERASE);
-        // As after a frame: if the fence is answered first, no answer to this request will arrive.
+        // As after a frame, if the fence is answered first, no answer to this request will arrive.
         queries.push_str(sequence::QUERY_STATUS);
         self.flow.sent(now, 0, Request::Status);
         self.queue_queries(&queries, now);
     }
 
-    /// Takes the screen again after others had it; the next frame is drawn whole.
+    /// Takes the screen again after other programs have used it. The next frame is drawn in full.
     pub(crate) fn begin_again(&mut self, size: WindowSize) {
         self.take_screen();
         self.repaint(size);
@@ -174,7 +174,7 @@ impl Protocol {
         self.output.extend_from_slice(text.as_bytes());
     }
 
-    /// Forgets what the terminal has not answered, and half a key: others have the terminal now.
+    /// Drops unsent bytes, unanswered requests and the start of a key, because other programs use the terminal now.
     pub(crate) fn interrupt(&mut self) {
         self.output.clear();
         self.writer.output_mut().clear();
@@ -185,32 +185,31 @@ impl Protocol {
         self.mouse.is_changing = false;
     }
 
-    /// Undoes all changes of the terminal's state, except that it shows the alternate screen until
-    /// [`Protocol::finish`]. Between the two, what the terminal still sends is discarded, so that
-    /// no answer and no key release reaches a shell.
+    /// Undoes all changes to the terminal's state, but keeps the alternate screen until [`Protocol::finish`]. Between
+    /// the two calls, input from the terminal is discarded, so that no answer and no key release reaches a shell.
     pub fn end(&mut self, now: Duration) {
         let text = self.changes.end(now);
         self.output.extend_from_slice(text.as_bytes());
         self.is_ending = true;
     }
 
-    /// Whether nothing is expected from the terminal after [`Protocol::end`] any more.
+    /// Returns true when no more input is expected from the terminal after [`Protocol::end`].
     pub fn has_ended(&self, now: Duration) -> bool {
         self.changes.fences.time_left(now).is_none()
     }
 
-    /// Leaves the alternate screen, which is the last thing to send.
+    /// Leaves the alternate screen. These are the last bytes to send.
     pub fn finish(&mut self) {
         self.output.extend_from_slice(sequence::of(LeaveAlternateScreen).as_bytes());
     }
 
-    /// The bytes to send at `now`, in this order. The caller removes the bytes that it has taken.
+    /// The bytes to send at `now`, in order. The caller removes the bytes that it has taken.
     pub fn output(&mut self, now: Duration) -> &mut Vec<u8> {
         self.queue_frame(now);
         &mut self.output
     }
 
-    /// Records that the system has accepted all bytes so far.
+    /// Records that the system has accepted all bytes of the output.
     pub fn written(&mut self, now: Duration) {
         self.flow.written(now);
     }
@@ -240,17 +239,17 @@ impl Protocol {
         self.known.blocks
     }
 
-    /// How the terminal draws shades, as far as it is known.
+    /// The way in which the terminal draws shades, as far as it is known.
     pub fn shade_ink(&self) -> ShadeInk {
         self.known.shades
     }
 
-    /// Whether the terminal has answered that it is tmux.
+    /// Returns true if the terminal has answered that it is tmux.
     pub fn is_tmux(&self) -> bool {
         self.known.is_tmux
     }
 
-    /// The client of the tmux in which the program runs, if that has answered.
+    /// The client of the tmux in which the program runs, if tmux has answered.
     pub fn tmux_client(&self) -> Option<&TmuxClient> {
         self.tmux.as_ref()
     }
@@ -270,19 +269,19 @@ impl Protocol {
         self.events.pop_front()
     }
 
-    /// Records a new size of the window; the next frame is drawn whole.
+    /// Records a new size of the window. The next frame is drawn in full.
     pub fn resize(&mut self, size: WindowSize, now: Duration) {
         self.repaint(size);
         self.update_mouse_units(now);
     }
 
-    /// The time at which to call [`Protocol::wake`], if no bytes arrive before; `None` for never.
+    /// The time at which to call [`Protocol::wake`] if no bytes arrive before. `None` means never.
     pub fn wakes_at(&self) -> Option<Duration> {
         self.gives_up_at().into_iter().chain(self.opens_at()).min()
     }
 
-    /// Does what is due: ends the wait for the rest of a key, and asks a terminal that answers no
-    /// more whether it is still there.
+    /// Does the work that is due: ends the wait for the rest of a key, and asks a terminal that has stopped answering
+    /// whether it is still there.
     pub fn wake(&mut self, now: Duration) {
         if self.gives_up_at().is_some_and(|time| time <= now) {
             self.give_up();
@@ -290,8 +289,8 @@ impl Protocol {
         self.probe(now);
     }
 
-    /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
-    /// terminal can report them.
+    /// Turns reports of the mouse on or off. They are off at first. Positions are in pixels if the terminal can
+    /// report them.
     pub fn set_mouse(&mut self, is_reported: bool) {
         if self.changes.mouse.is_some() != is_reported && !self.is_ending {
             self.mouse.is_changing = false;
@@ -303,17 +302,17 @@ impl Protocol {
         self.events.push_back(event);
     }
 
-    /// Whether `is_such` holds for an event that was not taken yet.
+    /// Returns true if `is_such` holds for an event that has not been taken yet.
     pub(crate) fn has_event(&self, is_such: impl Fn(&Event) -> bool) -> bool {
         self.events.iter().any(is_such)
     }
 
-    /// Whether an event asks the program to end.
+    /// Returns true if an event asks the program to end.
     pub(crate) fn is_asked_to_quit(&self) -> bool {
         self.has_event(|event| matches!(event, Event::Quit(_)))
     }
 
-    /// The time at which half a key is taken for a whole one.
+    /// The time at which the start of a key is taken for a whole key.
     pub(crate) fn gives_up_at(&self) -> Option<Duration> {
         self.decoder.timeout().map(|timeout| self.received_at + timeout)
     }
@@ -322,7 +321,7 @@ impl Protocol {
     pub(crate) fn give_up(&mut self) {
         let events = &mut self.events;
         self.decoder.give_up(|input| {
-            // An answer is always a whole unit, never the rest of one.
+            // An answer is always a whole unit, never the start of one.
             if let Input::Key(event) = input {
                 events.push_back(meaning(event));
             }
@@ -440,15 +439,14 @@ impl Protocol {
             }
             Colors::Ask | Colors::Unknown => {}
         }
-        // In tmux, its answer about the terminal around it says more.
+        // In tmux, tmux itself describes the terminal around it in more detail.
         if self.tmux.is_none() && self.known != known {
             self.known = known;
             self.events.push_back(Event::Identified);
         }
     }
 
-    /// Records what tmux says of the client that shows the program. A depth that the user has chosen
-    /// stays.
+    /// Records tmux's report about the client that shows the program. A depth that the user has chosen stays.
     pub(crate) fn take_tmux_client(&mut self, client: TmuxClient) {
         if let Detected::Guess(before) = self.options.color_depth {
             let depth =
@@ -475,12 +473,12 @@ impl Protocol {
         }
     }
 
-    /// Forgets the screen, so that the next frame is drawn whole, in a window of this size.
+    /// Forgets the screen and records the size of the window. The next frame is drawn in full.
     pub(crate) fn repaint(&mut self, size: WindowSize) {
         self.size = size;
         self.writer.forget();
         self.writer.set_size(self.size.cells());
-        // The writer writes only to memory, so that nothing can fail.
+        // The writer writes only to memory, so this cannot fail.
         _ = Backend::clear(&mut self.writer);
         if self.events.back() != Some(&Event::Resized) {
             self.events.push_back(Event::Resized);
@@ -507,23 +505,23 @@ impl Protocol {
         self.writer.output_mut().push(BELL);
     }
 
-    /// Whether the terminal shows exactly the last frame drawn. If it does not, a few calls of
+    /// Returns true if the terminal shows the last drawn frame exactly. If it does not, a few calls of
     /// [`Protocol::refine`] make it exact.
     pub fn is_settled(&self) -> bool {
         self.writer.is_settled()
     }
 
-    /// Whether a frame would be shown at once, not behind others in flight.
+    /// Returns true if a frame would be shown at once, not behind other frames in flight.
     pub fn is_ready(&self, now: Duration) -> bool {
         self.output.is_empty() && self.flow.may_send(now)
     }
 
-    /// Sets the fidelity of frames of motion; `None` for the best that the link allows.
+    /// Sets the fidelity of frames of motion. `None` means the best fidelity that the link allows.
     pub fn set_fidelity(&mut self, fidelity: Option<Fidelity>) {
         self.options.fidelity = fidelity;
     }
 
-    /// Sets whether frames are restricted to ASCII. If that changes, the next one is sent whole.
+    /// Sets whether frames are restricted to ASCII. After a change, the next frame is sent in full.
     pub fn set_ascii(&mut self, is_ascii: bool) {
         if self.options.is_ascii != is_ascii {
             self.options.is_ascii = is_ascii;
@@ -531,71 +529,70 @@ impl Protocol {
         }
     }
 
-    /// The present fidelity of frames of motion.
+    /// The current fidelity of frames of motion.
     pub fn fidelity(&self) -> Fidelity {
         self.options.fidelity.unwrap_or_else(|| self.flow.fidelity())
     }
 
-    /// Whether a network makes frames of motion coarser than necessary; `ssh -C` then helps if it
-    /// is not in use.
+    /// Returns true if a network makes frames of motion coarser than necessary. In that case, `ssh -C` helps if it is
+    /// not in use.
     pub fn is_limited_by_network(&self) -> bool {
         self.options.is_remote
             && self.options.fidelity.is_none()
             && self.flow.fidelity() > Fidelity::EXACT
     }
 
-    /// The round-trip time of the terminal's latest answer; `None` if the terminal does not answer.
+    /// The round-trip time of the terminal's latest answer. `None` if the terminal does not answer.
     pub fn round_trip(&self) -> Option<Duration> {
         self.flow.round_trip()
     }
 
-    /// The number of frames sent so far. One that changed nothing does not count.
+    /// The number of frames sent. A frame that changed nothing does not count.
     pub fn frames_sent(&self) -> u64 {
         self.flow.frames_sent()
     }
 
-    /// The number of frames that the terminal shows, as far as is known: the ones that it has answered,
-    /// or, if it never answers, the ones that the system has accepted.
+    /// The number of frames that the terminal shows, as far as is known. These are the frames that it has answered
+    /// or, if it never answers, the frames that the system has accepted.
     pub fn frames_answered(&self) -> u64 {
         self.flow.frames_answered()
     }
 
-    /// The number of bytes of all frames.
+    /// The total number of bytes of all frames.
     pub fn bytes_drawn(&self) -> u64 {
         self.writer.bytes_written()
     }
 
-    /// The time at which to check again whether a frame may be sent, even if nothing arrives before
-    /// then; `None` for never.
+    /// The time at which to check again whether a frame may be sent, even if nothing arrives before. `None` means
+    /// never.
     pub(crate) fn opens_at(&self) -> Option<Duration> {
         self.flow.opens_at()
     }
 
-    /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
+    /// Sends a fence alone after a timeout, to find out whether the terminal is still there.
     pub(crate) fn probe(&mut self, now: Duration) {
         if self.output.is_empty() && self.flow.probe_is_due(now) {
             self.queue_queries("", now);
         }
     }
 
-    /// Adds `queries` with a fence after them to the output.
+    /// Adds `queries` to the output, and a fence after them.
     fn queue_queries(&mut self, queries: &str, now: Duration) {
         self.flow.sent(now, 0, Request::Fence);
         self.output.extend_from_slice(queries.as_bytes());
         self.queue_fence(now);
     }
 
-    /// Moves the bytes of the drawn frame to the output, with a request after them. Nothing is added
-    /// after a frame of no bytes.
+    /// Moves the bytes of the drawn frame to the output, with a request after them. An empty frame adds nothing.
     pub(crate) fn queue_frame(&mut self, now: Duration) {
         let Some(drawn) = self.drawn.take() else { return };
-        // The writer writes only to memory, so that nothing can fail.
+        // The writer writes only to memory, so this cannot fail.
         _ = Backend::flush(&mut self.writer);
         let frame = self.writer.output_mut();
         let bytes = frame.len();
         if bytes > 0 {
             if self.output.is_empty() {
-                // The memory of the frame leaves with it.
+                // Hand the frame's buffer over instead of copying it.
                 std::mem::swap(&mut self.output, frame);
             } else {
                 self.output.append(frame);
@@ -634,8 +631,8 @@ impl Protocol {
         }
     }
 
-    /// Shows all colours as entries of the palette if they can be defined and reset and the terminal
-    /// has not answered that it shows 24-bit colours. Called after all its answers.
+    /// Shows all colours as entries of the palette if they can be defined and reset and the terminal has not answered
+    /// that it shows 24-bit colours. Called once the terminal has answered all queries.
     fn use_own_palette(&mut self) {
         let shows_few = self.options.color_depth == Detected::Guess(ColorDepth::Indexed256);
         if self.palette == PaletteProbe::Reset && shows_few && !self.is_ending {
@@ -660,7 +657,7 @@ fn meaning(event: KeyEvent) -> Event {
     }
 }
 
-/// The reported state of the probed palette entry, as colours of 16 bits a channel.
+/// The reported state of the probed palette entry. Colours have 16 bits per channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum PaletteProbe {
     #[default]

@@ -19,10 +19,10 @@ use crate::tui::GlyphSet;
 
 /// A terminal in use by the program: it delivers keys and shows frames.
 ///
-/// During a session, the terminal is in raw mode and shows its alternate screen without a cursor.
-/// Its previous state is restored when the session is dropped, on a panic in any thread, and on the
-/// signals that end a program, except those that cannot be caught and those that report a fault of
-/// the program. Such a signal has its own effect afterwards, also if the program handles it itself. A
+/// During a session, the terminal is in raw mode and shows its alternate screen without a cursor. Its
+/// previous state is restored when the session is dropped, on a panic in any thread, and on the signals that
+/// end a program. Exceptions are signals that cannot be caught, and signals that report a fault of the
+/// program. After the restoration, the signal has its own effect, even if the program handles it itself. A
 /// process has one session at a time.
 #[derive(Debug)]
 pub struct Session {
@@ -31,7 +31,7 @@ pub struct Session {
     protocol: Protocol,
     /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
-    /// Whether the program runs in tmux, and the requests to it without an answer.
+    /// Whether the program runs in tmux. The next two fields are unanswered requests to tmux.
     is_in_tmux: bool,
     tmux: Option<Request<TmuxClient>>,
     tmux_remedy: Option<Request<()>>,
@@ -43,14 +43,13 @@ impl Session {
     /// does not wait for them.
     ///
     /// # Errors
-    /// If standard input or output is not a terminal, if the terminal cannot move its cursor, if
-    /// the process already has a session, if the platform has no Unix terminals, and if a write to
-    /// the terminal fails.
+    /// If standard input or output is not a terminal, if the terminal cannot move its cursor, if the process
+    /// already has a session, if the platform has no Unix terminals, or if a write to the terminal fails.
     pub fn enter(options: Options) -> Result<Self, Error> {
         Self::enter_recorded(options, None)
     }
 
-    /// Begins a session as [`Session::enter`] does; `recorder` receives all sent bytes.
+    /// Begins a session like [`Session::enter`]. `recorder` receives all sent bytes.
     ///
     /// # Errors
     /// As [`Session::enter`].
@@ -66,8 +65,8 @@ impl Session {
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
-    /// Waits for an event, for `timeout` at most; without a timeout, for ever. Returns `None` if no
-    /// event arrived.
+    /// Waits for an event, for at most `timeout`, or for ever without one. Returns `None` if no event has
+    /// arrived.
     ///
     /// # Errors
     /// If the terminal cannot be read, or a panic in another thread has given it back.
@@ -108,8 +107,8 @@ impl Session {
         }
     }
 
-    /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
-    /// terminal can report them.
+    /// Turns reports of the mouse on or off. They are off at first. Positions are in pixels if the terminal
+    /// can report them.
     ///
     /// # Errors
     /// If a write to the terminal fails.
@@ -130,12 +129,13 @@ impl Session {
         self.take_again().map_err(Error::while_doing("taking the terminal again"))
     }
 
-    /// The protocol of the session: what is known of the terminal and the link, and what was drawn.
+    /// The protocol of the session, with the known properties of the terminal and of the link, and counts of
+    /// frames.
     pub fn protocol(&self) -> &Protocol {
         &self.protocol
     }
 
-    /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] follows.
+    /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] reports the outcome.
     pub fn tell_tmux(&mut self) {
         self.tmux_remedy = self.protocol.tmux_client().and_then(Request::remedy);
         if self.tmux_remedy.is_none() {
@@ -152,9 +152,9 @@ impl Session {
         self.protocol.glyph_support()
     }
 
-    /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the
-    /// terminal is [ready](Self::is_ready) for it. If the program must end during the wait, the
-    /// frame is dropped and the next event says so.
+    /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the terminal is
+    /// [ready](Self::is_ready) for it. If the program must end during the wait, the frame is dropped and the
+    /// next event reports the end.
     ///
     /// # Errors
     /// If a write to the terminal fails, or a panic in another thread has given the terminal back.
@@ -175,7 +175,7 @@ impl Session {
         self.protocol.ring_bell();
     }
 
-    /// Whether a frame would be shown at once, not behind others in flight. If it would not,
+    /// Returns true if a frame would be shown at once, not behind other frames in flight. If not,
     /// [`Event::Ready`](crate::terminal::Event::Ready) follows.
     pub fn is_ready(&mut self) -> bool {
         let is_ready = self.may_send();
@@ -183,8 +183,8 @@ impl Session {
         is_ready
     }
 
-    /// Whether an event for which `is_such` holds has arrived and was not returned yet. Does not wait. After
-    /// an error, which [`Session::next_event`] returns, it is `true`.
+    /// Returns true if an event for which `is_such` holds has arrived and has not been returned yet. Does
+    /// not wait. Also returns true after an error, which [`Session::next_event`] then returns.
     pub fn has_event(&mut self, is_such: impl Fn(&Event) -> bool) -> bool {
         self.receive(Some(Duration::ZERO)).is_err() || self.protocol.has_event(is_such)
     }
@@ -214,14 +214,14 @@ impl Session {
         Ok(session)
     }
 
-    /// Asks tmux about the terminal around it, unless a question is open.
+    /// Asks tmux about the terminal around it, unless a request is open.
     fn ask_tmux(&mut self) {
         if self.is_in_tmux && self.tmux.is_none() {
             self.tmux = Some(Request::client());
         }
     }
 
-    /// Whether `event` may come from a client of tmux that has just attached.
+    /// Returns true if `event` may come from a client of tmux that has just attached.
     fn may_have_another_client(&mut self, event: Event) -> bool {
         match event {
             Event::FocusGained | Event::Resized => true,
@@ -254,7 +254,7 @@ impl Session {
         self.send()
     }
 
-    /// The present size of the window, which the recorder learns, too.
+    /// The current size of the window. If it has changed, the recorder receives it, too.
     fn measured(&self) -> WindowSize {
         let size = self.guard.device().size();
         if size.cells() != self.protocol.size().cells() {
@@ -279,7 +279,7 @@ impl Session {
         }
     }
 
-    /// Waits until a frame may be sent; returns `false` if the program must end instead.
+    /// Waits until a frame may be sent. Returns `false` if the program must end instead.
     fn wait_until_ready(&mut self) -> io::Result<bool> {
         while !self.may_send() {
             if self.is_ending() {
@@ -291,7 +291,7 @@ impl Session {
         Ok(true)
     }
 
-    /// Whether the program has been asked to end.
+    /// Returns true if the program has been asked to end.
     fn is_ending(&self) -> bool {
         self.guard.is_shutting_down() || self.protocol.is_asked_to_quit()
     }
@@ -300,13 +300,13 @@ impl Session {
         self.guard.has_written_all() && self.protocol.is_ready(self.guard.now())
     }
 
-    /// The time at which to check again whether a frame may be sent, even without an event before
-    /// then; `None` for never.
+    /// The time at which to check again whether a frame may be sent, even without an event before. `None`
+    /// means never.
     fn opens_at(&self) -> Option<Duration> {
         if self.guard.has_written_all() { self.protocol.opens_at() } else { None }
     }
 
-    /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
+    /// Sends a fence alone after a timeout, to find out whether the terminal is still there.
     fn probe(&mut self) -> io::Result<()> {
         if self.guard.has_written_all() {
             self.protocol.probe(self.guard.now());
@@ -338,7 +338,7 @@ impl Session {
         }
     }
 
-    /// Waits until `wake_at` for input, signals, or room for bytes. Returns whether there was any of them.
+    /// Waits until `wake_at` for input, signals, or room for bytes. Returns true if any of them arrived.
     fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<bool> {
         let timeout = wake_at.map(|time| time.saturating_sub(self.guard.now()));
         let has_queued = !self.guard.has_written_all();
@@ -388,9 +388,9 @@ impl Session {
     }
 }
 
-/// The time between looks for an answer of tmux.
+/// The time between two checks for an answer from tmux.
 const TMUX_POLL: Duration = Duration::from_millis(10);
-/// The least time without a key while somebody detaches and attaches again.
+/// The minimum time without a key while somebody detaches from tmux and attaches again.
 const TIME_TO_ATTACH: Duration = Duration::from_secs(1);
 
 fn is_past(time: Option<Duration>, now: Duration) -> bool {

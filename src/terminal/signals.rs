@@ -1,12 +1,11 @@
-//! Signals: a thread receives them, passes them on as bytes that can be polled, and ensures that
-//! the signals that end the program do so.
+//! Signals: a thread receives them, passes them on as bytes that can be polled, and makes sure that the signals that
+//! should end the program do end it.
 //!
-//! On a signal that asks the program to end, the program may still keep what was played. On every
-//! other signal that would end it, the thread gives the terminal back and lets the signal have its
-//! own effect.
+//! If a signal asks the program to end, the program may still save the game. On every other signal that would end it,
+//! the thread gives the terminal back and lets the signal have its own effect.
 //!
-//! Rejected: doing so for signals that report a fault of the program, which are SIGILL, SIGFPE, SIGSEGV and SIGBUS. The
-//! faulty instruction would run again and again before the thread is done.
+//! Rejected: doing the same for SIGILL, SIGFPE, SIGSEGV and SIGBUS, which report a fault of the program. The faulty
+//! instruction would run again and again before the thread is done.
 
 use std::io::{self, Read, Write};
 use std::mem;
@@ -32,13 +31,13 @@ use super::QuitReason;
 use super::guard::Guard;
 use super::unix::wait;
 
-/// The time from a signal that should end the program until the program is ended by force.
+/// The time from a signal that should end the program until the thread ends it by force.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// The signals that ask the program to end or to stop, which they also do by default.
+/// The signals that ask the program to end or to stop. By default, they end or stop it.
 const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
 
-/// The signals that end the program by default and ask for nothing.
+/// The signals that end the program by default and do not ask for anything.
 const ENDS: [i32; 10] =
     [SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU];
 
@@ -50,20 +49,20 @@ const NAMELESS: [RangeInclusive<i32>; 4] = [16..=16, 29..=29, 30..=30, 34..=64];
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 const NAMELESS: [RangeInclusive<i32>; 0] = [];
 
-/// A shell adds this to the number of a signal.
+/// A shell reports a signal as an exit status: this number plus the number of the signal.
 const STATUS: i32 = 128;
 
-/// The signals that have no effect, by default or, as SIGXFSZ, here: without that effect, a write
-/// beyond the largest size of a file fails as one on a full disk does.
+/// The signals without an effect. By default, SIGXFSZ has one. Without its effect, a write beyond the largest size of a
+/// file fails like a write to a full disk.
 const NOTICES: [i32; 3] = [SIGCONT, SIGWINCH, SIGXFSZ];
 
-/// Signals with what the system tells about each.
+/// Signals, each with the system's information about it.
 type Incoming = SignalsInfo<WithRawSiginfo>;
 
 /// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Signal {
-    /// The window has another size.
+    /// The size of the window has changed.
     Resized,
     /// The program should stop for a while.
     Suspend,
@@ -84,8 +83,8 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Begins to receive signals. If a signal should end the program and the program continues, the
-    /// thread gives the terminal back through `guard` and ends the program.
+    /// Starts to receive signals. If a signal should end the program and the program continues, the thread gives the
+    /// terminal back through `guard` and ends the program.
     pub(crate) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
         let (receiver, sender) = UnixStream::pair()?;
         receiver.set_nonblocking(true)?;
@@ -94,7 +93,7 @@ impl Signals {
         let incoming = Incoming::new(REQUESTS.iter().chain(&ENDS).chain(&NOTICES))?;
         let handle = incoming.handle();
         for number in nameless() {
-            // A C library may keep some for itself.
+            // The C library may reserve some of them.
             _ = handle.add_signal(number);
         }
         let thread = thread::Builder::new().name("signals".to_owned()).spawn({
@@ -114,8 +113,8 @@ impl Signals {
         signals
     }
 
-    /// Stops this program and the ones started with it until the shell continues them.
-    /// Returns at once if there is no shell to continue them.
+    /// Stops this program and the programs that were started with it, until the shell continues them. Returns at once
+    /// if there is no shell to continue them.
     pub(crate) fn stop_until_continued(&mut self) -> io::Result<()> {
         // A shell gives every job a process group of its own. In the session's first group, no parent can continue a
         // stopped program.
@@ -123,7 +122,7 @@ impl Signals {
             return Ok(());
         }
         kill_current_process_group(ProcessSignal::STOP)?;
-        // Another thread may receive the signal, a little later than this point.
+        // Another thread may receive the signal shortly after this point.
         self.wait_until_continued()
     }
 
@@ -151,7 +150,7 @@ impl Drop for Signals {
     fn drop(&mut self) {
         self.handle.close();
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread has no consequences here.
+            // A panic in the thread has no consequences here.
             _ = thread.join();
         }
         if let Ok(default_effects) = default_effects() {
@@ -160,8 +159,8 @@ impl Drop for Signals {
     }
 }
 
-/// Whether signals have their default effects. A handler stays for the life of the process; without
-/// this flag, Ctrl-C would have no effect after a session.
+/// The flag that is `true` while signals have their default effects. A handler stays for the life of the process.
+/// Without this flag, Ctrl-C would have no effect after a session.
 fn default_effects() -> io::Result<&'static AtomicBool> {
     static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     if let Some(flag) = FLAG.get() {
@@ -191,7 +190,7 @@ fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
             }
             continue;
         }
-        // Fails only if thousands of bytes are waiting; then no session reads them any more.
+        // The write fails only if thousands of bytes are waiting. In that case, no session reads them any more.
         _ = sender.write(&[number as u8]);
         if let Some(Signal::Quit(_)) = meaning(number) {
             guard.shut_down();
@@ -212,15 +211,15 @@ fn end(number: i32, guard: &Guard) {
     guard.give_back_and(|| _ = emulate_default_handler(number));
 }
 
-/// Whether the system has sent a signal with this code, and not a process. SIGQUIT then comes from a key
-/// that was pressed while the terminal interpreted keys, for a moment before or after a stop; in raw
-/// mode, the same key does nothing.
+/// Returns true if the system, not a process, has sent a signal with this code. A SIGQUIT from the system comes from a
+/// key that was pressed while the terminal interpreted keys, for a moment before or after a stop. In raw mode, the same
+/// key does nothing.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 fn is_from_system(code: i32) -> bool {
     code > 0
 }
 
-/// Not known: other systems use the codes in other ways.
+/// Always false, because other systems use the codes in other ways.
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 fn is_from_system(_: i32) -> bool {
     false

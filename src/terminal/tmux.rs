@@ -1,18 +1,20 @@
-//! The terminal around tmux, as tmux knows it.
+//! The terminal around tmux, according to tmux.
 //!
-//! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux
-//! itself knows which features the attached client has, and which terminal it is.
+//! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux itself
+//! knows which features the attached client has, and which terminal it is.
 //!
-//! - A thread runs each command of tmux and stops it after a time-out. The start never waits for it.
-//! - Only [`remedy`](TmuxClient::remedy) changes tmux, and only a player who has seen it runs it.
-//! - What a client reports is text from a stranger: names with unusual characters are dropped.
+//! - A thread runs each tmux command and stops it after a timeout. The start of a session never waits
+//!   for it.
+//! - Only the command in [`remedy`](TmuxClient::remedy) changes tmux, and it runs only for a player who
+//!   has seen it.
+//! - A client's report is text from a stranger. Names with unusual characters are dropped.
 //! - tmux reads a terminal's features only when a client attaches (measured with 3.3a: after
 //!   `set -as terminal-features`, an attached client got RGB by attaching again, not before).
-//! - Nothing tells a program that a client attaches if the window stays the same and `focus-events` is
-//!   off, as by default. A key after a pause may come from another client.
+//! - If the window keeps its size and `focus-events` is off, which is the default, nothing tells a
+//!   program that a client attaches. Therefore a key after a pause may come from another client.
 //!
-//! Rejected: a palette of one's own in a pane without RGB, even if the pane answers OSC 4. tmux
-//! sends the nearest of its client's fixed 256 colours for a defined entry (measured with 3.3a).
+//! Rejected: defining palette entries in a pane without RGB, even if the pane answers OSC 4. For a
+//! defined entry, tmux sends the nearest of its client's fixed 256 colours (measured with 3.3a).
 
 use std::io::Read;
 use std::process::{Command, Stdio};
@@ -28,23 +30,23 @@ use crate::tui::GlyphSet;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TmuxClient {
     has_true_color: bool,
-    /// The value of `TERM` outside of tmux; empty if it is unusual.
+    /// The value of `TERM` outside of tmux. Empty if it contains unusual characters.
     term: String,
     known: Known,
 }
 
-/// The separator of the answer's parts, which no part contains.
+/// The separator between the parts of the answer. No part contains it.
 const SEPARATOR: char = '|';
 const FORMAT: &str = "#{client_termfeatures}|#{client_termtype}|#{client_termname}";
 
 impl TmuxClient {
-    /// Whether tmux sends 24-bit colours to the client.
+    /// Returns true if tmux sends 24-bit colours to the client.
     pub fn has_true_color(&self) -> bool {
         self.has_true_color
     }
 
-    /// The command that makes tmux send 24-bit colours to the client from the next attachment on; `None`
-    /// if it does so already, and if the client's terminal is not known to show them.
+    /// The command that makes tmux send 24-bit colours to the client from the next attachment on. `None`
+    /// if tmux does so already, or if the client's terminal is not known to show them.
     pub fn remedy(&self) -> Option<String> {
         let feature = self.missing_feature()?;
         Some(format!("set -as terminal-features '{feature}'"))
@@ -58,8 +60,8 @@ impl TmuxClient {
 
     /// The properties of the client's terminal, as far as tmux passes them on.
     pub(crate) fn known(&self) -> Known {
-        // tmux drops characters that its C library does not know, and the rest of the line moves: with
-        // glibc 2.36 all octants (measured with 3.3a), with older ones also sextants.
+        // tmux drops characters that its C library does not know, and the rest of the line moves. With
+        // glibc 2.36 it drops all octants (measured with 3.3a), with older versions also sextants.
         let blocks = match self.known.blocks {
             GlyphSet::Sextant | GlyphSet::Octant => GlyphSet::Quadrant,
             blocks => blocks,
@@ -67,7 +69,7 @@ impl TmuxClient {
         Known { is_tmux: true, blocks, ..self.known }
     }
 
-    /// The client in tmux's answer; `None` if the answer has another form.
+    /// The client in tmux's answer. `None` if the answer has another form.
     pub(crate) fn parse(answer: &str) -> Option<Self> {
         let mut parts = answer.trim_end_matches('\n').split(SEPARATOR);
         let (features, name, term) = (parts.next()?, parts.next()?, parts.next()?);
@@ -85,7 +87,7 @@ impl TmuxClient {
     }
 }
 
-/// A command of tmux that may still run, and the part of its answer that matters.
+/// A tmux command that may still be running, with the parsed part of its answer.
 #[derive(Debug)]
 pub(crate) struct Request<T>(Receiver<Option<T>>);
 
@@ -100,7 +102,7 @@ impl Request<TmuxClient> {
 }
 
 impl Request<()> {
-    /// Runs the remedy for `client`; `None` if there is none.
+    /// Runs the remedy for `client`. `None` if there is no remedy.
     pub(crate) fn remedy(client: &TmuxClient) -> Option<Self> {
         let feature = client.missing_feature()?;
         Some(Self::begin(move || {
@@ -113,7 +115,7 @@ impl Request<()> {
 impl<T: Send + 'static> Request<T> {
     fn begin(work: impl FnOnce() -> Option<T> + Send + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
-        // Without a thread there is no answer, as without tmux.
+        // If no thread starts, there is no answer, as without tmux.
         _ = thread::Builder::new().name("tmux".to_owned()).spawn(move || {
             // The session may have ended.
             _ = sender.send(work());
@@ -121,7 +123,7 @@ impl<T: Send + 'static> Request<T> {
         Self(receiver)
     }
 
-    /// The answer, once there is one; `None` if the command has failed or its answer is unknown.
+    /// The answer, once there is one. It is `None` if the command has failed or its answer is unknown.
     pub(crate) fn reply(&self) -> Poll<Option<T>> {
         match self.0.try_recv() {
             Err(TryRecvError::Empty) => Poll::Pending,
@@ -130,12 +132,12 @@ impl<T: Send + 'static> Request<T> {
     }
 }
 
-/// The time that tmux has to answer.
+/// The time within which tmux must answer.
 const TIMEOUT: Duration = Duration::from_secs(2);
 /// The largest answer that is read, in bytes.
 const MOST: u64 = 4096;
 
-/// The output of `command`; `None` if it fails or runs longer than `timeout`.
+/// The output of `command`. `None` if it fails or runs longer than `timeout`.
 fn output(command: &mut Command, timeout: Duration) -> Option<String> {
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = quiet.spawn().ok()?;

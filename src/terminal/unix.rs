@@ -17,10 +17,9 @@ use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
 ///
-/// Both are opened again where possible: a descriptor of the process's own can be set not to block,
-/// where setting a shared one would affect the shell, too. A program that cannot block in a write
-/// can still be ended while the link is down. For the same reason, raw mode and sizes do not use
-/// crossterm, which queries whatever terminal it finds.
+/// Both are opened again if possible. A descriptor of the process's own can be set not to block, while setting a
+/// shared one would also affect the shell. A program that cannot block in a write can still be ended while the
+/// link is down. Raw mode and sizes do not use crossterm, because it queries whatever terminal it finds.
 #[derive(Debug)]
 pub(crate) struct Device {
     input: OwnedFd,
@@ -31,11 +30,11 @@ pub(crate) struct Device {
 /// The results of a wait.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ready {
-    /// There are bytes to read, or the input has ended.
+    /// `true` if there are bytes to read, or the input has ended.
     pub(crate) input: bool,
-    /// There are signals.
+    /// `true` if there are signals.
     pub(crate) signals: bool,
-    /// There is room for bytes to write, or the output has ended.
+    /// `true` if there is room for bytes to write, or the output has ended.
     pub(crate) output: bool,
 }
 
@@ -70,8 +69,8 @@ impl Device {
         })
     }
 
-    /// Writes the part of `bytes` that the terminal accepts at once, and returns its length. Where that is
-    /// not all, the terminal is not asked again: it would accept nothing.
+    /// Writes the part of `bytes` that the terminal accepts at once, and returns its length. If that is not all,
+    /// it does not try again, because the terminal would accept nothing.
     pub(crate) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
         if bytes.is_empty() {
             return Ok(0);
@@ -104,7 +103,7 @@ impl Device {
     }
 
     /// Discards received bytes that were not read, and restores the attributes from when the terminal was opened.
-    /// After an error in one step, the other is still tried: nothing better can be done about it.
+    /// After an error in one step, the other is still tried, because nothing better can be done.
     pub(crate) fn give_back(&self) {
         _ = tcflush(&self.input, QueueSelector::IFlush);
         _ = tcsetattr(&self.input, OptionalActions::Now, &self.attributes);
@@ -127,7 +126,7 @@ impl Device {
         wait(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(timeout))
     }
 
-    /// Waits for bytes, signals or, if `wants_room`, room to write; for `timeout` at most.
+    /// Waits for bytes, for signals or, if `wants_room`, for room to write, for at most `timeout`.
     pub(crate) fn wait(
         &self,
         signals: &impl AsFd,
@@ -147,9 +146,8 @@ impl Device {
     }
 }
 
-/// Replaces standard input, which was read to its end and is not needed any more, by the terminal
-/// of standard output. Rejected:
-/// "/dev/tty", which cannot be polled on every system.
+/// Replaces standard input, which was read to its end and is no longer needed, by the terminal of standard
+/// output. Rejected: "/dev/tty", which cannot be polled on every system.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let output = rustix::stdio::stdout();
@@ -157,15 +155,14 @@ pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let terminal = rustix::fs::open(name, OFlags::RDONLY | OFlags::NOCTTY, Mode::empty());
     match terminal {
         Ok(terminal) => rustix::stdio::dup2_stdin(terminal)?,
-        // The terminal belongs to another user, as after `su`; the open descriptor can still be
-        // read.
+        // The terminal belongs to another user, as after `su`. The open descriptor can still be read.
         Err(_) => rustix::stdio::dup2_stdin(output)?,
     }
     Ok(())
 }
 
-/// Opens the terminal `stream` again, so that reads and writes do not block; duplicates it if its
-/// name does not lead to it.
+/// Opens the terminal `stream` again, so that reads and writes do not block. Duplicates it if its name does not
+/// lead to the terminal.
 fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
     let flags = access | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let again =
@@ -173,7 +170,7 @@ fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
     again.or_else(|_| stream.try_clone_to_owned())
 }
 
-/// Polls `streams`; a signal ends the wait early.
+/// Polls `streams`. A signal ends the wait early.
 pub(crate) fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
     // A timeout too long for the system's type is infinite.
     let timeout = timeout.and_then(|timeout| Timespec::try_from(timeout).ok());

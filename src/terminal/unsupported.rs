@@ -1,6 +1,6 @@
-//! The interfaces of `unix` and `signals` on platforms where no terminal can be opened.
+//! The interfaces of `unix` and `signals` on platforms on which no terminal can be opened.
 //!
-//! A device cannot exist here, so that functions with a device are never called.
+//! A device cannot exist here, so functions with a device are never called.
 
 use std::io;
 use std::sync::Arc;
@@ -10,11 +10,11 @@ use super::error::Kind;
 use super::guard::Guard;
 use super::{Error, QuitReason, WindowSize};
 
-/// A device; there are none.
+/// A device. None can exist on this platform.
 #[derive(Debug)]
 pub(crate) enum Device {}
 
-/// Signals; there are none.
+/// The signals of a session. None can exist on this platform.
 #[derive(Debug)]
 pub(crate) enum Signals {}
 

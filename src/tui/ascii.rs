@@ -1,11 +1,11 @@
 //! The glyph sets `ascii` and `ramp`: a cell shows one pixel.
 //!
-//! In `ascii`, the character says first which surface it is, and then how bright. Each surface has its own characters,
-//! so that x sides and y sides of walls, floor, ceiling and sky differ without colour. Without colour, the cells around
-//! a thing are blank, too. Within a surface, four characters stand for four shades. In `ramp`, sixteen characters show
-//! the brightness of every surface.
+//! In `ascii`, the character shows first which surface the pixel belongs to, and then how bright it is. Each surface
+//! has its own characters, so that x sides and y sides of walls, floor, ceiling and sky differ without colour. Without
+//! colour, the cells around a thing are also blank. Within a surface, four characters stand for four shades. In `ramp`,
+//! sixteen characters show the brightness of every surface.
 //!
-//! Rejected: `ramp` alone. A dark wall in front of a bright one looks the same as a bright floor in front of a dark
+//! Rejected: `ramp` alone. A dark wall in front of a bright wall looks the same as a bright floor in front of a dark
 //! wall.
 
 use ratatui::style::Color;
@@ -15,7 +15,7 @@ use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;
 
-/// The black corner of the cube. The nearest colour to an almost black one is a grey.
+/// The black corner of the cube. The nearest colour to an almost black colour would be a grey.
 const BLACK_OF_256: u8 = 16;
 
 /// The colours of a character that shows the brightness of `color`. They are at full brightness, because a dark wall
@@ -43,9 +43,8 @@ fn brightened(color: Rgb) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The index of the named colour with the hue nearest to a bright `color`'s, or white. Users
-/// redefine the sixteen colours, but red stays red. Blue is the bright one, because the dark one is
-/// hard to read.
+/// The index of the named colour with the hue nearest to a bright `color`'s, or white. Users can redefine the sixteen
+/// colours, but red stays red. Blue is the bright blue, because the dark blue is hard to read.
 fn named_color(color: Rgb) -> u8 {
     const WHITE: u8 = 7;
     const NAMES: [u8; 8] = [WHITE, 1, 2, 3, 12, 5, 6, WHITE];
@@ -59,7 +58,7 @@ fn named_color(color: Rgb) -> u8 {
     NAMES[on[0] | on[1] << 1 | on[2] << 2]
 }
 
-/// The character for a pixel of `surface` with that colour.
+/// The character for a pixel of `surface` with this colour.
 pub(crate) fn character(surface: Surface, color: Rgb) -> char {
     let shades = shades(surface);
     let brightness = match surface {
@@ -82,10 +81,10 @@ fn shades(surface: Surface) -> [char; 4] {
     }
 }
 
-/// The sixteen characters, by the share of the cell that they light, from most to none.
+/// The sixteen characters of the ramp, by the share of the cell that they light, from most to none.
 const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
 
-/// The character of the ramp for a pixel with that colour.
+/// The character of the ramp for a pixel with this colour.
 pub(crate) fn ramp_character(color: Rgb) -> char {
     let darkness = usize::from(u8::MAX - color.luma());
     char::from(RAMP[darkness * RAMP.len() / 256])

@@ -1,20 +1,21 @@
 //! Blocks: a cell shows two, four, six or eight pixels, each in one of two colours.
 //!
-//! [`split`] chooses the two colours of a cell and the pixels that have the first of them. Flat colours, such as
-//! the colours of a map, become the nearest colours.
+//! [`split`] chooses the two colours of a cell and the pixels that have the first of them. Flat colours, such as the
+//! colours of a map, become the nearest colours of the colour depth.
 //!
 //! In a small palette, each cell of a picture is a block in two palette colours or one of the shades ░ ▒ ▓, whichever
 //! shows it better (see [`mixture`](crate::color::palette::mixture)).
 //!
-//! Without colour, a cell has one of the densities of ` ░▒▓█` for its brightness and for its contrast with the
+//! Without colour, a cell shows one of the densities ` ░▒▓█`, by its brightness and its contrast with the
 //! surroundings, so that joints and edges show. A cell whose pixels differ is a block of lit and unlit pixels instead.
 //! Things have an outline: their outermost pixels are lit, and the pixels next to them are unlit.
 //!
 //! Nothing depends on earlier frames, and patterns are fixed to the screen, so that a still picture stays still.
 //!
-//! Rejected: error diffusion, since one changed pixel changes all pixels after it. Without colour: measuring a frame
-//! and stretching its range of brightness, since one lamp that comes into view would change every cell; and lit and
-//! unlit pixels in a pattern (Bayer's matrix), whose dots hide joints, and a guard among them.
+//! Rejected: error diffusion. One changed pixel changes all pixels after it. Rejected without colour: measuring a
+//! frame and stretching its range of brightness. One lamp that comes into view would change every cell. Rejected
+//! without colour: lit and unlit pixels in a pattern (Bayer's matrix). Joints, and even a guard, are lost among its
+//! dots.
 
 mod split;
 
@@ -32,8 +33,8 @@ use crate::color::palette::mixture::{Look, Mixer, WHOLE};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{Frame, Surface};
 
-/// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
-/// `surface` is needed without colours only.
+/// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge. `surface` is used
+/// only without colours.
 pub(crate) fn draw_frame(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -52,7 +53,7 @@ pub(crate) fn draw_frame(
     draw(area, canvas, colors, above, frame, surface);
 }
 
-/// Does the same with `PIXELS` pixels in each cell.
+/// Does the same as [`draw_frame`], with `PIXELS` pixels in each cell.
 fn draw_frame_of<const PIXELS: usize, C: Canvas, S: Fn(u32, u32) -> Option<Surface>>(
     area: Rect,
     canvas: &mut C,
@@ -73,8 +74,8 @@ fn draw_frame_of<const PIXELS: usize, C: Canvas, S: Fn(u32, u32) -> Option<Surfa
     }
 }
 
-/// Draws the pixels of each cell of `area` as `glyphs`, in the nearest colours of `depth`. `row(y)` is a
-/// row of pixels, as a function of the column.
+/// Draws the pixels of each cell of `area` as `glyphs`, in the nearest colours of `depth`. `row(y)` returns a row of
+/// pixels, as a function of the column.
 pub(crate) fn draw<Row: Fn(u32) -> Rgb>(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -99,13 +100,13 @@ fn draw_cells<const PIXELS: usize, C: Canvas, Row: Fn(u32) -> Rgb>(
     let [columns, rows] = pixels_per_cell::<PIXELS>();
     for (top, y) in (0..).step_by(rows as usize).zip(area.top()..area.bottom()) {
         if PIXELS == 2 && depth == ColorDepth::True {
-            // Most cells of most pictures, which need no search.
+            // These are most cells of most pictures, and need no search.
             let [upper, lower] = [row(top), row(top + 1)];
             let pixels = (0..u32::from(area.width)).map(|x| [upper(x), lower(x)]);
             canvas.draw_pixels(area.x, y, pixels);
             continue;
         }
-        // A row is there once for each of its pixels in a cell.
+        // Each row occurs once for each of its pixels in a cell.
         let pixel_rows: [Row; PIXELS] = array::from_fn(|pixel| row(top + pixel as u32 / columns));
         let pixel = |x: u32, place: usize| pixel_rows[place](columns * x + place as u32 % columns);
         let cells = Splits::of_row::<PIXELS>(area.width, pixel).map(|Split { mask, colors }| {
@@ -125,7 +126,7 @@ fn draw_mixed<const PIXELS: usize>(
 ) {
     let [columns, rows] = pixels_per_cell::<PIXELS>();
     let pixel = |x, y| match depth {
-        // In 16 colours, the shades of a dark wall would otherwise be one.
+        // In 16 colours, the shades of a dark wall would otherwise all look the same.
         ColorDepth::Indexed16 => {
             raised(frame.pixel(x, y), contrast(frame, [x, y], [columns, rows]))
         }
@@ -182,7 +183,7 @@ fn draw_mono<const PIXELS: usize>(
 struct MonoPixel {
     /// The brightness, raised or lowered by the contrast with the pixels around it.
     brightness: i32,
-    /// Whether it is lit, if it is part of an outline.
+    /// `true` if the pixel is lit, `false` if it is unlit. `None` if it is not part of an outline.
     outline: Option<bool>,
 }
 
@@ -205,7 +206,7 @@ fn mono_character<const PIXELS: usize>(pixels: &[MonoPixel; PIXELS]) -> char {
     densities[((mean - DARKEST) / step).clamp(0, densities.len() as i32 - 1) as usize]
 }
 
-/// The contrast of a pixel of `frame` with those around it, in steps of luma.
+/// The contrast of a pixel of `frame` with the pixels around it, in steps of luma.
 fn contrast(frame: &Frame, place: [u32; 2], pixels_per_cell: [u32; 2]) -> i32 {
     let luma = |x, y| frame.pixel(x, y).luma();
     local_contrast([frame.width(), frame.height()], luma, place, pixels_per_cell)
@@ -217,7 +218,7 @@ pub(crate) fn lit(glyphs: GlyphSet, dots: impl Iterator<Item = bool>) -> Mosaic 
     Mosaic::of_dots((columns * rows) as usize, mask(dots))
 }
 
-/// The columns and the rows of pixels in a cell of that number of them.
+/// The numbers of columns and rows of pixels in a cell of `PIXELS` pixels.
 const fn pixels_per_cell<const PIXELS: usize>() -> [u32; 2] {
     if PIXELS == 2 { [1, 2] } else { [2, PIXELS as u32 / 2] }
 }

@@ -1,10 +1,10 @@
-//! The canvas: cells that pictures and widgets are drawn on.
+//! The canvas: cells on which pictures and widgets are drawn.
 //!
-//! Ratatui's [`Buffer`] is a canvas, so that this crate's pictures are ordinary widgets. The encoder's own screen
-//! is the other one: it draws cells directly and never builds ratatui's cells. These take forty bytes and a string
-//! each. Clearing, filling, comparing and decoding them took half the time of a frame.
+//! Ratatui's [`Buffer`] is a canvas, so this crate's pictures are ordinary widgets. The other canvas is the encoder's
+//! own screen. It draws cells directly and never builds ratatui's cells, which take forty bytes and a string each.
+//! Clearing, filling, comparing and decoding them took half the time of a frame.
 //!
-//! Rejected: an intermediate type of cell, from which both canvases are filled. It would be one more copy of each
+//! Rejected: an intermediate type of cell, from which both canvases are filled. It would add one more copy of each
 //! picture.
 
 use ratatui::buffer::Buffer;
@@ -47,8 +47,8 @@ impl Canvas for Buffer {
         self.area
     }
 
-    /// A mosaic and its inverse show the same two colours. Chooses whichever shares more colours with the cell
-    /// to the left, since most encoders need not send those again. A cell of one colour is a space.
+    /// A mosaic and its inverse show the same two colours. Chooses whichever shares more colours with the cell to the
+    /// left, because most encoders need not send shared colours again. A cell of one colour is a space.
     fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
         let mut before = [Color::Reset; 2];
         for (x, (mosaic, [dots, rest])) in (x..self.area.right()).zip(row) {
@@ -84,8 +84,8 @@ impl Canvas for Buffer {
     }
 }
 
-/// Draws a character in each cell of `area`. `cell(x, y)` returns the character and its colours, and counts from the
-/// top left corner.
+/// Draws a character in each cell of `area`. `cell(x, y)` returns the character and its colours. `x` and `y` count
+/// from the top left corner.
 pub(crate) fn draw_characters(
     area: Rect,
     canvas: &mut impl Canvas,
@@ -116,15 +116,15 @@ fn shared(one: [Color; 2], other: [Color; 2]) -> u8 {
 /// A block mosaic: a character that divides a cell into dots, each in the text or the background colour.
 ///
 /// A cell has two columns and two, three or four rows of dots: quadrants, sextants and octants. Quadrants, halves and
-/// the whole cell are octants in pairs, and so are four of the sextants. A mosaic is identified by its dots and not by
-/// its character, so that two that look the same are equal.
+/// the whole cell consist of pairs of octants, and so do four of the sextants. A mosaic is identified by its dots and
+/// not by its character, so that mosaics that look the same are equal.
 ///
-/// Unicode has sextants since version 13 and octants since version 16. Both blocks omit patterns that had a character
-/// before.
+/// Unicode has sextants since version 13 and octants since version 16. Both blocks omit patterns that already had a
+/// character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Mosaic(u16);
 
-/// The number of octant patterns. Those of sextants follow.
+/// The number of octant patterns. The sextant patterns follow them.
 const OCTANTS: u16 = 256;
 
 impl Mosaic {
@@ -135,14 +135,14 @@ impl Mosaic {
     /// The upper half.
     pub const UPPER_HALF: Self = Self(0x0F);
 
-    /// A mosaic of two halves: the lowest bit of `mask` is the upper one.
+    /// A mosaic of two halves. The lowest bit of `mask` is the upper half.
     pub const fn halves(mask: u8) -> Self {
         const MOSAICS: [u16; 4] = [0, 0x0F, 0xF0, 0xFF];
         Self(MOSAICS[(mask & 3) as usize])
     }
 
-    /// A mosaic of two by two dots. The lowest bit of `mask` is the upper left dot, the next one the dot to the
-    /// right of it, and so on by rows; bits without a dot are ignored.
+    /// A mosaic of two by two dots. The lowest bit of `mask` is the upper left dot, the next bit is the dot to the
+    /// right of it, and so on by rows. Bits without a dot are ignored.
     pub const fn quadrants(mask: u8) -> Self {
         const ROWS: [u16; 4] = [0, 0x05, 0x0A, 0x0F];
         Self(ROWS[(mask & 3) as usize] | ROWS[(mask >> 2 & 3) as usize] << 4)
@@ -164,7 +164,7 @@ impl Mosaic {
         Self(mask as u16)
     }
 
-    /// A mosaic of that number of dots: octants, sextants, quadrants or halves.
+    /// A mosaic of this number of dots: octants, sextants, quadrants or halves.
     #[inline]
     pub(crate) const fn of_dots(dots: usize, mask: u8) -> Self {
         match dots {
@@ -175,13 +175,13 @@ impl Mosaic {
         }
     }
 
-    /// The mosaic whose other dots have the text colour.
+    /// The mosaic in which exactly the other dots have the text colour.
     #[must_use]
     pub const fn inverse(self) -> Self {
         if self.0 < OCTANTS { Self(self.0 ^ 0xFF) } else { Self(self.0 ^ 0x3F) }
     }
 
-    /// The mask of octants, or the mask of sextants.
+    /// `Ok` with the mask of octants, or `Err` with the mask of sextants.
     pub(crate) const fn mask(self) -> Result<u8, u8> {
         if self.0 < OCTANTS { Ok(self.0 as u8) } else { Err((self.0 - OCTANTS) as u8) }
     }
@@ -219,8 +219,8 @@ impl Mosaic {
     }
 
     #[cfg(feature = "terminal")]
-    /// Whether the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
-    /// and octants are rows of such parts.
+    /// Returns true if the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
+    /// and octants are several rows of such parts.
     pub const fn has(self, x: u32, y: u32) -> bool {
         match self.mask() {
             Ok(mask) => mask >> (y / 3 * 2 + x) & 1 == 1,
@@ -236,7 +236,7 @@ const RIGHT_SEXTANTS: u8 = 0b10_10_10;
 const FIRST_OCTANT: u32 = 0x1CD00;
 const LAST_OCTANT: u32 = FIRST_OCTANT + NEW_OCTANTS.len() as u32 - 1;
 
-/// The place of a sextant among the 60 that have a character of their own.
+/// The place of a sextant among the 60 sextants that have a character of their own.
 const fn sextants_before(mask: u8) -> u32 {
     mask as u32 - 1 - (mask > LEFT_SEXTANTS) as u32 - (mask > RIGHT_SEXTANTS) as u32
 }
@@ -271,7 +271,7 @@ const OLDER: [(u8, char); 26] = [
     (0xFF, '█'),
 ];
 
-/// The character of each octant pattern. Those that had none before follow each other in Unicode.
+/// The character of each octant pattern. The patterns that had none before follow each other in Unicode.
 const OCTANT_CODES: [u32; OCTANTS as usize] = {
     let mut codes = [0; OCTANTS as usize];
     let (mut mask, mut older, mut next) = (0, 0, FIRST_OCTANT);

@@ -1,29 +1,30 @@
-//! Contrast: corrections of a picture for eyes that see less of it, or no difference between red and green, and
-//! outlines of things in pictures without colours.
+//! Contrast: corrections of a picture for players who see contrast poorly or cannot tell red from green, and outlines
+//! of things in pictures without colours.
 //!
-//! A correction changes pixels, before they become cells of any depth. It depends on the picture alone, so that a
-//! still picture stays still. An outline sets a thing apart from any surface: a guard a few pixels wide is lost among
-//! the dots and characters of the wall behind, whatever its brightness.
+//! A correction changes pixels before they become cells of any depth. It depends only on the picture, so that a still
+//! picture stays still. An outline sets a thing apart from any surface. Without it, a guard a few pixels wide is lost
+//! among the dots and characters of the wall behind, whatever its brightness.
 
 use serde::{Deserialize, Serialize};
 
 use crate::color::Rgb;
 use crate::render::{Frame, FrameSize, Surface};
 
-/// How a picture is changed for the eyes that look at it.
+/// A correction of the picture for the player's eyesight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Correction {
-    /// Not at all.
+    /// No correction.
     #[default]
     None,
-    /// Edges and things stand out from what is around them.
+    /// Edges and things stand out from their surroundings.
     Contrast,
     /// Reds and greens differ in blue, too, and edges stand out.
     RedGreen,
 }
 
 impl Correction {
-    /// Changes the pixels of `frame`, in cells of `pixels_per_cell`. `luma` is memory that is used again.
+    /// Corrects the pixels of `frame`, whose cells have `pixels_per_cell` columns and rows of pixels. `luma` is
+    /// scratch memory that each call reuses.
     pub(crate) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
         if self == Self::None {
             return;
@@ -44,9 +45,9 @@ impl Correction {
     }
 }
 
-/// How much brighter the pixel at `[x, y]` is than those around it, in steps of luma. A cell is
-/// `pixels_per_cell` wide and high; the eight pixels that are compared are three columns of cells away,
-/// or one and a half rows.
+/// The difference in luma between the pixel at `place` and the mean of the pixels around it. A cell is
+/// `pixels_per_cell` wide and high. The eight pixels around it are three columns of cells and one and a half rows of
+/// cells away.
 pub(crate) fn local_contrast(
     size: [u32; 2],
     luma: impl Fn(u32, u32) -> u8,
@@ -64,7 +65,8 @@ pub(crate) fn local_contrast(
     luma(4) - around / 8
 }
 
-/// `color` made lighter or darker by `by` steps of luma, to between a third and twice of its own.
+/// `color`, made lighter or darker by `by` steps of luma. The result has between a third and twice the luma of
+/// `color`.
 pub(crate) fn raised(color: Rgb, by: i32) -> Rgb {
     let luma = i32::from(color.luma());
     let wanted = (luma + by).clamp(luma / 3, 2 * luma + 1);
@@ -73,18 +75,18 @@ pub(crate) fn raised(color: Rgb, by: i32) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// `color` with more blue the redder it is, and less the greener. People without red or green cones
-/// see blue.
+/// `color` with more blue if it is more red than green, and with less blue if it is more green than red. People
+/// without red or green cones see blue.
 ///
-/// Rejected: to move what they lose of red and green to green and blue (Fidaner and others, 2005). Two
-/// of six simulated pairs become more alike.
+/// Rejected: moving the lost part of red and green to green and blue (Fidaner and others, 2005). Two of six simulated
+/// pairs become more alike.
 fn apart(color: Rgb) -> Rgb {
     let [red, green, blue] = color.channels();
     let moved = (i32::from(red) - i32::from(green)) * 7 / 10;
     Rgb::new(red, green, (i32::from(blue) + moved).clamp(0, 255) as u8)
 }
 
-/// A side of the edge between a thing and what is behind it.
+/// A side of the edge between a thing and its background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edge {
     /// The outermost pixels of the thing.
@@ -93,8 +95,8 @@ pub(crate) enum Edge {
     Outer,
 }
 
-/// The side of an edge of a thing on which a pixel is, if it is next to one. The edge of the frame
-/// is not an edge of a thing.
+/// The side of a thing's edge on which a pixel is, if it is next to an edge. The edge of the frame is not an edge of
+/// a thing.
 pub(crate) fn outline(
     frame: FrameSize,
     surface: impl Fn(u32, u32) -> Option<Surface>,
@@ -116,7 +118,8 @@ mod tests {
     use crate::color::srgb::linear;
     use crate::render::{FrameSize, PixelAspect};
 
-    /// The colours that people without green cones and without red cones see (Machado and others, 2009).
+    /// Matrices for the colours that people without green cones, and people without red cones, see (Machado and
+    /// others, 2009).
     const BLIND: [[[f64; 3]; 3]; 2] = [
         [
             [0.367_322, 0.860_646, -0.227_968],

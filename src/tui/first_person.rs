@@ -66,9 +66,9 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// Sets the glyph set. In [`GlyphSet::Ascii`] the characters of a grid show surfaces, and
-    /// those of bodies show brightness: shading gives a body its shape, and a surface has four
-    /// characters only.
+    /// Sets the glyph set. In [`GlyphSet::Ascii`], the characters of a grid show surfaces, and the
+    /// characters of bodies show brightness. Shading gives a body its shape, and a surface has only four
+    /// characters.
     #[must_use]
     pub fn glyphs(self, glyphs: GlyphSet) -> Self {
         Self { glyphs, ..self }
@@ -86,7 +86,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Self { shade_ink, ..self }
     }
 
-    /// Sets how the picture is changed for the eyes that look at it.
+    /// Sets the correction for the player's eyesight.
     #[must_use]
     pub fn correction(self, correction: Correction) -> Self {
         Self { correction, ..self }
@@ -104,14 +104,14 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Self { filter, ..self }
     }
 
-    /// Sets the time, on which animated things depend. [`View::next_change`] returns the time of
+    /// Sets the time in seconds. Animated things depend on it. [`View::next_change`] returns the time of
     /// the next change.
     #[must_use]
     pub fn time(self, seconds: f64) -> Self {
         Self { seconds, ..self }
     }
 
-    /// Renders the picture for an area of that size into `view`, as pixels only.
+    /// Renders the picture for an area of this size into `view`, as pixels only.
     ///
     /// Rendering the widget calls this function and [`FirstPerson::paint`]. Call them separately to
     /// paint a large picture in bands of rows.
@@ -119,8 +119,9 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         self.draw_while(size, view, &mut || true);
     }
 
-    /// Does the same as [`FirstPerson::draw`], but may stop once `go_on` returns `false`. Returns whether
-    /// the picture is complete. It can be painted in either case: the rest shows earlier pictures.
+    /// Does the same as [`FirstPerson::draw`], but may stop once `go_on` returns `false`. Returns true if
+    /// the picture is complete. The picture can be painted in either case: where it is incomplete, it
+    /// shows earlier pictures.
     pub fn draw_while(
         &self,
         size: Size,
@@ -143,11 +144,11 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Some(self.scene.explain(self.camera, self.options(), renderer, frame))
     }
 
-    /// Fills `area` with cells of the picture in `view`, beginning with its row of cells
+    /// Fills `area` with cells of the picture in `view`, beginning with the picture's row of cells
     /// `first_row`.
     ///
     /// # Panics
-    /// If the picture has fewer cells than that.
+    /// If the picture has fewer cells than `area` needs.
     pub fn paint(&self, view: &View<S>, first_row: u16, area: Rect, canvas: &mut impl Canvas) {
         if area.is_empty() {
             return;
@@ -182,8 +183,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// Resizes the frame of `view` to an area of that size. Returns `None` if the area has no
-    /// cells.
+    /// Resizes the frame of `view` to an area of this size. Returns `None` if the area has no cells.
     fn resized<'v>(&self, size: Size, view: &'v mut View<S>) -> Option<&'v mut View<S>> {
         let [columns, rows] = self.glyphs.pixels_per_cell();
         let (width, height) = (u32::from(size.width) * columns, u32::from(size.height) * rows);
@@ -215,7 +215,7 @@ impl<S: Renderable> Copy for FirstPerson<'_, S> {}
 pub struct View<S: Renderable = World> {
     renderer: S::Renderer,
     frame: Frame,
-    /// The memory of a [`Correction`].
+    /// Memory for a [`Correction`].
     luma: Vec<u8>,
 }
 
@@ -234,21 +234,21 @@ impl<S: Renderable> View<S> {
         &mut self.frame
     }
 
-    /// The time, as in [`FirstPerson::time`], of the next change in the last picture that does not
-    /// depend on the camera; `None` if there is none.
+    /// The time of the next change in the last picture that does not depend on the camera, as in
+    /// [`FirstPerson::time`]. `None` if there is no such change.
     pub fn next_change(&self) -> Option<f64> {
         S::next_change(&self.renderer)
     }
 }
 
 impl View {
-    /// A view whose renderer finds walls by `caster`.
+    /// A view whose renderer finds walls with `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { renderer: Renderer::with_caster(caster), ..Self::default() }
     }
 
-    /// Whether `figure` may be seen in the last picture, wherever the figure was then. `world` and
-    /// `camera` must be the ones of the picture.
+    /// Returns true if `figure` may be visible in the last picture, wherever the figure was then. `world`
+    /// and `camera` must be the world and the camera of the picture.
     #[cfg(feature = "terminal")]
     pub(crate) fn may_show(&self, world: &World, camera: &Camera, figure: &Figure) -> bool {
         self.renderer.may_show(world, camera, &self.frame, figure)

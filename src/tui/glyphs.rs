@@ -1,4 +1,4 @@
-//! Glyph sets and the shape of cells: how pixels become characters.
+//! Glyph sets and the shape of cells, which determine how pixels become characters.
 
 use ratatui::style::Color;
 use serde::{Deserialize, Serialize};
@@ -8,28 +8,28 @@ use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
 use crate::tui::canvas::true_color;
 
-/// The characters that pixels are drawn with.
+/// A set of characters with which pixels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum GlyphSet {
     /// Two pixels per cell, one above the other: `▀`, `▄`, `█` and space.
     #[default]
     Half,
-    /// Two by two pixels per cell: also `▘`, `▚`, `▙` and the like. Of this and the finer sets, each cell shows
-    /// the two colours and the dots with the least error.
+    /// Two by two pixels per cell: also `▘`, `▚`, `▙` and the like. In this set and the finer sets, each cell
+    /// shows the two colours and the dots with the least error.
     Quadrant,
     /// Two by three pixels per cell: the sextants of Unicode 13.
     Sextant,
-    /// Two by four pixels per cell: the octants of Unicode 16, which few fonts and terminals have.
+    /// Two by four pixels per cell: the octants of Unicode 16, which few fonts and terminals support.
     Octant,
-    /// One pixel per cell. The shape of the character shows which surface it is: for terminals and
-    /// fonts without block characters, and for readers without colour.
+    /// One pixel per cell. The shape of the character shows the surface. This set is for terminals and fonts
+    /// without block characters, and for use without colour.
     Ascii,
     /// One pixel per cell, as one of sixteen characters for its brightness.
     Ramp,
 }
 
 impl GlyphSet {
-    /// The columns and the rows of pixels in a cell.
+    /// The numbers of columns and rows of pixels in a cell.
     pub const fn pixels_per_cell(self) -> [u32; 2] {
         match self {
             Self::Half => [1, 2],
@@ -40,15 +40,15 @@ impl GlyphSet {
         }
     }
 
-    /// A wedge that falls from left to right, eight cells long. In a terminal without the glyphs of this
-    /// set, it looks broken: no query of a terminal can tell that.
+    /// A wedge that falls from left to right, eight cells long. It looks broken in a terminal without the
+    /// glyphs of this set, which no query of a terminal can detect.
     #[cfg(feature = "terminal")]
     pub(crate) fn wedge(self) -> String {
         const CELLS: u32 = 8;
         let [columns, rows] = self.pixels_per_cell();
         let cell = |cell: u32| {
             let dots = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-            // Whether the middle of a dot is below the line.
+            // True if the middle of a dot is below the line.
             let dots = dots.map(|(column, row)| {
                 let across = cell * columns + column;
                 (2 * across + 1) * rows < (2 * row + 1) * CELLS * columns
@@ -58,7 +58,7 @@ impl GlyphSet {
         (0..CELLS).map(cell).collect()
     }
 
-    /// Whether pixels are parts of a cell and not characters.
+    /// Returns true if pixels are parts of a cell and not characters.
     pub const fn has_blocks(self) -> bool {
         !matches!(self, Self::Ascii | Self::Ramp)
     }
@@ -79,7 +79,7 @@ impl CellAspect {
         self.0
     }
 
-    /// The shape of the pixels into which `glyphs` divides such a cell.
+    /// The shape of the pixels into which `glyphs` divides a cell of this shape.
     pub fn of_pixels(self, glyphs: GlyphSet) -> PixelAspect {
         let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
         PixelAspect::new(self.0 * columns / rows).unwrap_or(PixelAspect::SQUARE)
@@ -93,7 +93,7 @@ impl Default for CellAspect {
     }
 }
 
-/// The colour that represents `color` outside a terminal; `None` for the terminal's own colours.
+/// The colour that represents `color` outside a terminal. `None` for the terminal's own colours.
 pub fn rgb_of(color: Color) -> Option<Rgb> {
     match color {
         Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
@@ -102,7 +102,7 @@ pub fn rgb_of(color: Color) -> Option<Rgb> {
     }
 }
 
-/// `color` as a terminal of that depth shows it best.
+/// `color` in the form in which a terminal of this depth shows it best.
 #[inline]
 pub fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {

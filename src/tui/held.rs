@@ -1,39 +1,38 @@
 //! The keys that are held, in terminals with and without key releases, and the intents that they mean.
 //!
-//! Some terminals report when a key is released. Others send a byte when a key is pressed, send it
-//! again while the key is held, and stop for good when another key is pressed. [`HeldKeys`] gives
-//! both the same behaviour: a press is a tap of a number of steps, and a key that stays down is
-//! held after its tap.
+//! Some terminals report when a key is released. Others send a byte when a key is pressed, send it again while the key
+//! is held, and stop for good when another key is pressed. [`HeldKeys`] behaves the same in both: a press is a tap of
+//! a number of steps, and a key that stays down is held after its tap.
 //!
 //! Without releases:
 //!
 //! - A press is a tap. Taps are queued, so that two of them have exactly twice the effect of one.
-//! - A second byte counts as another tap. It may be the first repetition: if the next byte follows
-//!   sooner than people tap, the key is held. The repeat delay and interval are learned from that.
+//! - A second byte counts as another tap, but may be the first repetition. If the next byte follows sooner than people
+//!   tap, the key is held. The repeat delay and interval are learned from that.
 //! - A held key is released when no repetition comes for a few of its intervals.
-//! - A held key whose repetition is ended by another key stays held while the other key may be
-//!   held, and for [`LINGER`] after that. It is released earlier if it is pressed again, if an
-//!   opposing key is pressed, or by [`HeldKeys::release_lingering`].
-//! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats. Any other
-//!   key that has not repeated stays a tap.
+//! - If another key ends the repetition of a held key, the held key stays held while the other key may be held, and
+//!   for [`LINGER`] after that. It is released earlier if it is pressed again, if an opposing key is pressed, or by
+//!   [`HeldKeys::release_lingering`].
+//! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats. Any other key that has
+//!   not repeated stays a tap.
 //!
 //! The time is an argument, measured from a fixed moment, so that tests need not wait.
 //!
-//! Rejected: taking a byte at the learned delay for a repetition at once. It gains one interval, and people who tap at
-//! that rate keep walking. Counting a tap as held until the first repetition could have come: one tap then walks 1.75
-//! cells.
+//! Rejected: taking a byte at the learned delay for a repetition at once. It gains one interval, but people who tap at
+//! that rate keep walking. Rejected: counting a tap as held until the first repetition could have come. One tap then
+//! walks 1.75 cells.
 
 use std::time::Duration;
 
 use crate::game::{Intent, Intents};
 
-/// How long a key stays held after the newer key that ended its repetition is released.
+/// The time for which a key stays held after the newer key that ended its repetition is released.
 pub const LINGER: Duration = Duration::from_millis(300);
 /// Two keys pressed within this time are meant to be held together. People who tap one key and then
 /// hold another take longer.
 pub const CHORD: Duration = Duration::from_millis(50);
 
-/// The most keys that are stored: more than there are fingers.
+/// The maximum number of stored keys, which is more than there are fingers.
 const MOST_KEYS: usize = 16;
 
 /// The keys that are held. `K` is any type that identifies keys.
@@ -61,13 +60,13 @@ pub struct HeldKeys<K> {
     reports_releases: bool,
     /// The last element is the key whose event came last.
     keys: Vec<HeldKey<K>>,
-    /// The timing of any key, for keys that have not repeated yet.
+    /// The timing of the last key that repeated, for keys that have not repeated yet.
     timing: RepeatTiming,
-    /// Keys whose repetition a newer key has ended are held until then.
+    /// The time until which keys are held if a newer key has ended their repetition.
     lingers_until: Duration,
 }
 
-/// How a key is held.
+/// The state of a key: up, tapped or held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hold {
     /// The key is up.
@@ -113,14 +112,13 @@ impl<K: Copy + Eq> HeldKeys<K> {
         }
     }
 
-    /// Whether releases are reported.
+    /// Returns true if releases are reported.
     pub fn reports_releases(&self) -> bool {
         self.reports_releases
     }
 
-    /// Handles a press or a repetition of `key` at time `now`. A press is a tap of `steps` steps,
-    /// or no tap if `steps` is 0. If releases are not reported, the keys for which `opposes` is
-    /// true are released.
+    /// Handles a press or a repetition of `key` at time `now`. A press is a tap of `steps` steps, or no tap if `steps`
+    /// is 0. If releases are not reported, releases the keys for which `opposes` returns `true`.
     pub fn press(
         &mut self,
         key: K,
@@ -179,12 +177,12 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.release_each(|_| true);
     }
 
-    /// Releases in this way each key for which `is_meant` is true, and ends its taps.
+    /// Releases each key for which `is_meant` returns `true`, as [`HeldKeys::release_all`] does, and ends its taps.
     pub fn release_each(&mut self, is_meant: impl Fn(K) -> bool) {
         self.keys.iter_mut().filter(|held| is_meant(held.key)).for_each(HeldKey::suppress);
     }
 
-    /// Releases the keys whose repetition has not come by `now`.
+    /// Releases the keys whose next repetition has not come by `now`.
     pub fn advance(&mut self, now: Duration) {
         let (timing, lingers_until) = (self.timing, self.lingers_until);
         let keys = self.keys.iter_mut();
@@ -197,16 +195,16 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.keys.iter_mut().for_each(|held| held.tap.step());
     }
 
-    /// Holds the keys whose repetition a newer key has ended until [`LINGER`] after `now`. Call it
-    /// in each step in which the player is in the air, so that they keep their direction until they
-    /// land.
+    /// Keeps holding the keys whose repetition a newer key has ended, until [`LINGER`] after `now`. Call it in each
+    /// step in which the player is in the air, so that the player keeps the direction until landing.
     pub fn keep(&mut self, now: Duration) {
         self.lingers_until = self.lingers_until.max(now + LINGER);
     }
 
-    /// Holds the last key before the newest one for which `is_meant` is true, if it could not have
-    /// repeated yet, and the keys pressed together with it. A player who presses a direction and then
-    /// jumps wants to jump in that direction. Does nothing if one of those keys is held already.
+    /// Finds the last key before the newest one for which `is_meant` returns `true`. If that key could not have
+    /// repeated yet, holds it and the keys pressed together with it. A player who presses a direction and then jumps
+    /// wants to jump in that direction. Does nothing if one of the keys for which `is_meant` returns `true` is held
+    /// already.
     pub fn join_newest(&mut self, is_meant: impl Fn(K) -> bool) {
         let Some((newest, others)) = self.keys.split_last_mut() else { return };
         let meant: Vec<_> = others.iter_mut().filter(|held| is_meant(held.key)).collect();
@@ -219,25 +217,25 @@ impl<K: Copy + Eq> HeldKeys<K> {
         }
     }
 
-    /// Releases each key for which `is_meant` is true and which is held only because a newer key ended
-    /// its repetition. Call it when another key is pressed, for keys that should not outlast it:
-    /// somebody who turns and then walks wants to walk straight on.
+    /// Releases each key for which `is_meant` returns `true`, if it is held only because a newer key ended its
+    /// repetition. Call it when another key is pressed, for keys that should not outlast it: a player who turns and
+    /// then walks wants to walk straight on.
     pub fn release_lingering(&mut self, is_meant: impl Fn(K) -> bool) {
         let lingering = self.keys.iter_mut().filter(|held| held.state == State::Lingers);
         lingering.filter(|held| is_meant(held.key)).for_each(HeldKey::mark_as_up);
     }
 
-    /// When the next key expires if no event of it comes until then.
+    /// The time at which the next key expires if no event of that key comes before.
     pub fn next_expiry(&self) -> Option<Duration> {
         self.keys.iter().filter_map(|held| held.expiry(self.timing, self.lingers_until)).min()
     }
 
-    /// Whether any key is in the steps of its tap, so that its state may change with the next step.
+    /// Returns true if any key is in the steps of its tap, so that its state may change with the next step.
     pub fn has_taps(&self) -> bool {
         self.keys.iter().any(HeldKey::has_taps)
     }
 
-    /// Whether a key that was pressed at or before `time` may have been down ever since.
+    /// Returns true if a key that was pressed at or before `time` may have been down ever since.
     pub fn is_any_down_since(&self, time: Duration) -> bool {
         self.keys.iter().any(|held| held.is_down_since(time))
     }
@@ -253,8 +251,8 @@ impl<K: Copy + Eq> HeldKeys<K> {
         holds.filter(|&(_, hold)| hold != Hold::Up)
     }
 
-    /// Removes the state of `key` from the list, or creates it. If the list is full, the oldest key
-    /// makes room.
+    /// Removes the state of `key` from the list, or creates it. If the list is full, removes a key that is up, or the
+    /// oldest key.
     fn take(&mut self, key: K) -> HeldKey<K> {
         if let Some(index) = self.keys.iter().position(|held| held.key == key) {
             return self.keys.remove(index);
@@ -267,7 +265,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
     }
 }
 
-/// The most taps in the queue: a link that stalled delivers many bytes at once.
+/// The maximum number of queued taps. A link that stalled delivers many bytes at once.
 const MOST_QUEUED: u32 = 4;
 /// The longest time between two bytes of a repetition.
 const LONGEST_INTERVAL: Duration = Duration::from_millis(150);
@@ -280,7 +278,7 @@ const SURE_SPAN: Duration = Duration::from_millis(200);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Up,
-    /// The key is down; releases are reported.
+    /// The key is down, and releases are reported.
     Down,
     /// The key was pressed, and may be down.
     Pressed,
@@ -298,27 +296,27 @@ struct HeldKey<K> {
     key: K,
     state: State,
     timing: RepeatTiming,
-    /// The time of its last byte, if any.
+    /// The time of the key's last byte, if any.
     last_byte: Option<Duration>,
-    /// The time at which it was last pressed, as far as that is certain.
+    /// The time at which the key was last pressed, as far as that is certain.
     pressed: Duration,
     tap: Tap,
     series: Series,
-    /// Whether it repeated when it was last marked as up.
+    /// `true` if the key repeated when it was last marked as up.
     repeated: bool,
 }
 
-/// The steps left of a tap, and the taps after it.
+/// The remaining steps of a tap, and the queued taps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tap {
     steps: u32,
     left: u32,
     queued: u32,
-    /// Whether the key counts as up for one step, which separates two taps.
+    /// `true` if the key counts as up for one step, to separate two taps.
     pauses: bool,
 }
 
-/// A series of bytes as close together as in a repetition.
+/// A series of bytes that are as close together as in a repetition.
 #[derive(Clone, Copy, Debug, Default)]
 struct Series {
     start: Duration,
@@ -326,7 +324,7 @@ struct Series {
     count: u32,
     /// The time between the first byte and the one before it.
     after: Option<Duration>,
-    /// Whether the first byte may have been a repetition.
+    /// `true` if the first byte may have been a repetition.
     is_suspect: bool,
 }
 
@@ -363,7 +361,7 @@ impl<K: Copy + Eq> HeldKey<K> {
         self.tap.left > 0 || self.tap.pauses
     }
 
-    /// Handles a press where releases are reported.
+    /// Handles a press if releases are reported.
     fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
         let was_held = self.hold() == Hold::Held;
         self.tap.add(steps, was_held);
@@ -372,8 +370,8 @@ impl<K: Copy + Eq> HeldKey<K> {
         Press::Fresh
     }
 
-    /// Handles a byte of the key where releases are not reported. `is_newest` says whether the last
-    /// byte was of the same key.
+    /// Handles a byte of the key if releases are not reported. `is_newest` is `true` if the last byte was of the same
+    /// key.
     fn byte(&mut self, steps: u32, now: Duration, is_newest: bool, prior: RepeatTiming) -> Press {
         let gap =
             self.last_byte.filter(|_| is_newest).map(|last_byte| now.saturating_sub(last_byte));
@@ -437,18 +435,18 @@ impl<K: Copy + Eq> HeldKey<K> {
         }
     }
 
-    /// Whether this key may have been down without a repetition when `newer` was pressed.
+    /// Returns true if this key may have been down without a repetition when `newer` was pressed.
     fn may_be_down_at(&self, newer: &Self, prior: RepeatTiming) -> bool {
         self.was_pressed_within(self.timing.or(prior).delay_or_default(), newer)
     }
 
-    /// Whether this key was pressed at or before `time` and may have been down ever since.
+    /// Returns true if this key was pressed at or before `time` and may have been down ever since.
     fn is_down_since(&self, time: Duration) -> bool {
         let may_be_down = !matches!(self.state, State::Up | State::Suppressed);
         may_be_down && self.pressed <= time
     }
 
-    /// Whether this key was pressed once, at most `most` before `newer`.
+    /// Returns true if this key was pressed once, at most `most` before `newer`.
     fn was_pressed_within(&self, most: Duration, newer: &Self) -> bool {
         let apart = newer.pressed.checked_sub(self.pressed);
         let is_single = self.last_byte == Some(self.pressed) && !self.is_held();
@@ -472,8 +470,7 @@ impl<K: Copy + Eq> HeldKey<K> {
         self.tap = Tap::default();
     }
 
-    /// The time at which the key expires if no byte of it comes until then; `None` if it does not
-    /// expire by itself.
+    /// The time at which the key expires if no byte of it comes before. `None` if it does not expire by itself.
     fn expiry(&self, prior: RepeatTiming, lingers_until: Duration) -> Option<Duration> {
         let timing = self.timing.or(prior);
         match self.state {
@@ -486,8 +483,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 }
 
 impl Series {
-    /// Handles a byte that came `gap` after the last one. Returns whether the series is a
-    /// repetition.
+    /// Handles a byte that came `gap` after the last one. Returns true if the series is a repetition.
     fn continues(&mut self, now: Duration, gap: Option<Duration>, timing: RepeatTiming) -> bool {
         if gap.is_none_or(|gap| gap > LONGEST_INTERVAL) {
             *self = Self { start: now, count: 0, after: gap, is_suspect: false };
@@ -529,29 +525,28 @@ impl Tap {
 /// The shortest and the longest delay of any keyboard.
 const SHORTEST_DELAY: Duration = Duration::from_millis(200);
 const LONGEST_DELAY: Duration = Duration::from_secs(1);
-/// The first timeout as long as no delay is known: the longest default delay of a system, X11's 660
-/// ms, plus an interval.
+/// The first timeout while no delay is known: the longest default delay of a system, X11's 660 ms, plus an interval.
 const DEFAULT_FIRST_TIMEOUT: Duration = Duration::from_millis(750);
 /// The default delay of most systems.
 const DEFAULT_DELAY: Duration = Duration::from_millis(500);
-/// People do not tap a key faster than once in this time. For further taps in a row, the mean time
-/// is longer by a slack for each of them, up to a limit.
+/// People do not tap a key faster than once in this time. In a series of taps, the mean time is longer by a slack for
+/// each further tap, up to a limit.
 const SHORTEST_TAP: Duration = Duration::from_millis(80);
 const TAP_SLACK: Duration = Duration::from_millis(10);
 const MOST_SLACKS: u32 = 2;
-/// The number of half intervals without a byte after which a key has stopped repeating, and the
-/// bounds of that time: a link that delivers bytes in bursts makes the interval look too short.
+/// The number of half intervals without a byte after which a key has stopped repeating, and the bounds of that time. A
+/// link that delivers bytes in bursts makes the interval look too short.
 const MISSED_HALVES: u32 = 5;
 const SHORTEST_TIMEOUT: Duration = Duration::from_millis(90);
 const LONGEST_TIMEOUT: Duration = Duration::from_millis(300);
-/// The interval as long as none has been measured.
+/// The assumed interval until one has been measured.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(60);
 
 /// The delay and the interval of a keyboard, as far as they are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct RepeatTiming {
     delay: Option<Duration>,
-    /// The longest recent interval; it decays slowly.
+    /// The longest recent interval. It decays slowly.
     interval: Option<Duration>,
 }
 
@@ -561,13 +556,13 @@ impl RepeatTiming {
         Self { delay: self.delay.or(prior.delay), interval: self.interval.or(prior.interval) }
     }
 
-    /// Whether the first repetition of a key may come after `gap`.
+    /// Returns true if the first repetition of a key may come after `gap`.
     fn may_begin_after(self, gap: Duration) -> bool {
         let earliest = self.delay.map_or(SHORTEST_DELAY, |delay| delay * 3 / 4);
         (earliest.max(SHORTEST_DELAY)..=LONGEST_DELAY).contains(&gap)
     }
 
-    /// Whether `count` bytes in the time `span` are too many for taps.
+    /// Returns true if `count` bytes in the time `span` are too many for taps.
     fn is_repetition(self, count: u32, span: Duration) -> bool {
         let mean = SHORTEST_TAP + TAP_SLACK * (count.saturating_sub(1)).min(MOST_SLACKS);
         let known = self.interval.map_or(Duration::ZERO, |interval| interval * 5 / 4);
@@ -577,7 +572,7 @@ impl RepeatTiming {
     /// Learns from a first repetition that came after `delay`.
     fn learn_delay(&mut self, delay: Duration) {
         if (SHORTEST_DELAY..=LONGEST_DELAY).contains(&delay) {
-            // A link can delay a byte, but not advance it: shorter delays are taken at once.
+            // A link can delay a byte, but not advance it, so shorter delays are adopted at once.
             let known = self.delay.unwrap_or(delay);
             self.delay = Some(delay.min(known + delay.saturating_sub(known) / 4));
         }
@@ -589,25 +584,24 @@ impl RepeatTiming {
         self.interval = Some(interval.max(longest));
     }
 
-    /// How long a pressed key may be down before its first repetition.
+    /// The time for which a pressed key may be down before its first repetition.
     fn first_timeout(self) -> Duration {
         self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + SHORTEST_TAP)
     }
 
-    /// The delay; if it is unknown, the default of most systems.
+    /// The delay, or the default of most systems if it is unknown.
     fn delay_or_default(self) -> Duration {
         self.delay.unwrap_or(DEFAULT_DELAY)
     }
 
-    /// How long a repeating key may send nothing.
+    /// The time for which a repeating key may send nothing.
     fn timeout(self) -> Duration {
         let interval = self.interval.unwrap_or(DEFAULT_INTERVAL);
         (interval * MISSED_HALVES / 2).clamp(SHORTEST_TIMEOUT, LONGEST_TIMEOUT)
     }
 }
 
-/// The number of steps for which a tap of a key wants `intent`, as an argument of
-/// [`HeldKeys::press`].
+/// The number of steps of a tap of a key that is bound to `intent`, as an argument of [`HeldKeys::press`].
 pub fn tap_steps(intent: Intent) -> u32 {
     match intent {
         once if once.acts_once() => 1,
@@ -618,7 +612,7 @@ pub fn tap_steps(intent: Intent) -> u32 {
     }
 }
 
-/// The intents of a step, given the intents that are bound to keys and how each key is held.
+/// The intents of a step, given the intents that are bound to keys and the state of each key.
 ///
 /// A tap has a small, exact effect, because motion that starts and stops smoothly covers the same distance as motion
 /// that does not: 5 steps of walking are a quarter of a cell, and 10 steps of turning slowly are 5 degrees. Taps turn

@@ -1,7 +1,7 @@
 //! The minimap: the map from above, with north at the top.
 //!
-//! Floor is shaded by its height. Cells that the player has not seen can be hidden; [`Explored`]
-//! stores the seen ones. Nothing on the map is as bright as the arrow for the player.
+//! Floor is shaded by its height. Cells that the player has not seen can be hidden; [`Explored`] stores the seen
+//! cells. Nothing on the map is as bright as the arrow for the player.
 
 mod explored;
 mod top_view;
@@ -22,8 +22,8 @@ use crate::color::palette::{self, ColorDepth};
 use crate::render::Column;
 use crate::world::{Camera, Heading, World};
 
-/// A widget that shows the map from above: walls in their colours, floor by its height, the player
-/// as an arrow, and the visible part of the floor, by the rays of the picture.
+/// A widget that shows the map from above: walls in their colours, floor by its height, the player as an arrow, and
+/// the visible part of the floor, bounded by the rays of the picture.
 ///
 /// The map is as large as its area allows, with a whole number of pixels per cell. A map that does
 /// not fit scrolls with the player.
@@ -83,15 +83,14 @@ impl<'a> Minimap<'a> {
         Self { ghost, ..self }
     }
 
-    /// Sets the zoom. Each level about doubles or halves the map's size; 0 is the size that fits.
-    /// The map is not made smaller than the size that shows all of it.
+    /// Sets the zoom. Each level roughly doubles or halves the map's size. At 0, the map has the size that fits. It
+    /// is never made smaller than the size that shows all of it.
     #[must_use]
     pub fn zoom(self, levels: i32) -> Self {
         Self { zoom: levels, ..self }
     }
 
-    /// Moves the shown part by that many cells to the east and the south of the player, up to the
-    /// edge of the map.
+    /// Moves the shown part by this many cells to the east and the south of the player, up to the edge of the map.
     #[must_use]
     pub fn offset(self, cells: DVec2) -> Self {
         Self { offset: cells, ..self }
@@ -139,7 +138,7 @@ impl Minimap<'_> {
                 (point.look().character, colors.map(|color| color_at(self.depth, color)))
             }),
         }
-        // To the east, south, west and north, and for the player also between these.
+        // Pointers to the east, south, west and north, and for the player also between these.
         let (mark_pointers, ghost_pointers, arrows) = if self.glyphs.has_blocks() {
             let arrows = ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'];
             (['▸', '▾', '◂', '▴'], ['▹', '▿', '◃', '▵'], arrows)
@@ -153,7 +152,7 @@ impl Minimap<'_> {
             canvas.draw_character(area.x + x, area.y + y, pointer, colors);
         };
         if let Some(ghost) = &self.ghost {
-            // Hollow, or a letter, and pale: it is nobody who could see the player.
+            // The ghost is hollow, or a letter, and pale, because it cannot see the player.
             draw(ghost, &ghost_pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]));
         }
         let colors = self.colors([MARK_TEXT, MARK], [15, 9]);
@@ -164,7 +163,7 @@ impl Minimap<'_> {
         draw(&player, &arrows, self.colors([Rgb::BLACK, PLAYER], [0, 11]));
     }
 
-    /// The part of `room` that the map fills; the rest would be blank.
+    /// The size of the part of `room` that the map fills. The rest would be blank.
     #[cfg(feature = "terminal")]
     pub(crate) fn size_within(&self, room: Size) -> Size {
         let pixels = pixels_within(room, self.glyphs);
@@ -174,7 +173,7 @@ impl Minimap<'_> {
         Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
     }
 
-    /// The number of the map's cells that an area of that size shows.
+    /// The number of the map's cells that an area of this size shows.
     #[cfg(feature = "terminal")]
     pub(crate) fn extent_within(&self, room: Size) -> DVec2 {
         let Window { size, scale, .. } = self.window(Rect::from(room));
@@ -229,12 +228,12 @@ impl Minimap<'_> {
     }
 }
 
-/// Somebody on the map besides the player.
+/// A character on the map other than the player.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapMark {
     /// The position, in cells.
     pub position: DVec2,
-    /// The direction in which they look.
+    /// The direction in which the character looks.
     pub heading: Heading,
 }
 
@@ -248,8 +247,7 @@ const GHOST: Rgb = Rgb::new(0x38, 0x58, 0x78);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
 
-/// The numbers of pixels per cell of the map, for the levels of the zoom; below 1, a pixel shows
-/// several cells.
+/// The numbers of pixels per cell of the map, for the levels of the zoom. Below 1, a pixel shows several cells.
 const SCALES: [f64; 10] = [0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0];
 
 /// The part of the map that an area shows.
@@ -286,7 +284,7 @@ impl Window {
             corner_along(spare.x, center.x, size.x),
             corner_along(spare.y, center.y, size.y),
         );
-        // Rounding up is a function call on older processors.
+        // Computed once, because rounding up is a function call on older processors.
         let cells_per_pixel = [scale.x, scale.y].map(|scale| (1.0 / scale).ceil() as u32);
         Self { size, scale, corner, cells_per_pixel, pixels_per_cell }
     }
@@ -315,9 +313,8 @@ fn pixels_within(cells: Size, glyphs: GlyphSet) -> DVec2 {
     DVec2::new(f64::from(cells.width) * columns, f64::from(cells.height) * rows)
 }
 
-/// The number of pixels per cell of the map: the largest whole number with which the whole map fits
-/// into `pixels`, but at least one, enlarged or reduced by `zoom` levels. The map is not reduced
-/// further than to fit.
+/// The number of pixels per cell of the map: the largest whole number with which the whole map fits into `pixels`,
+/// but at least one, enlarged or reduced by `zoom` levels. The map is not reduced further than necessary to fit.
 fn scale(world: &World, pixels: DVec2, glyphs: GlyphSet, zoom: i32) -> DVec2 {
     // A cell is about twice as high as wide.
     let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);

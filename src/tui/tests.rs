@@ -1,4 +1,4 @@
-//! Every widget on areas of every small size, after every other.
+//! Tests of every widget on areas of every small size, each after every other.
 
 use glam::DVec2;
 use ratatui::buffer::Buffer;
@@ -47,7 +47,7 @@ fn heights() -> World {
     parse_str(HEIGHTS).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// The areas of 0 to 3 columns and rows, and a large one; each comes after each.
+/// The areas of 0 to 3 columns and rows, and a large area. Each area follows each area once.
 fn areas_in_turn() -> impl Iterator<Item = Rect> {
     let areas = || {
         let small =
@@ -57,7 +57,7 @@ fn areas_in_turn() -> impl Iterator<Item = Rect> {
     areas().flat_map(move |before| areas().flat_map(move |area| [before, area]))
 }
 
-/// Asserts that `draw` fills each of the areas, and nothing outside of it.
+/// Asserts that `draw` fills each of the areas and draws nothing outside of it.
 fn assert_filled(mut draw: impl FnMut(Rect, &mut Buffer)) {
     let mut buffer = Buffer::empty(Rect::new(0, 0, 9, 5));
     for area in areas_in_turn() {
@@ -111,7 +111,7 @@ fn maps_fill_exactly_their_area() {
     }
 }
 
-/// The layout of the example of this module, in windows that have no room for the picture.
+/// The layout of this module's example, in windows that have no room for the picture.
 #[test]
 fn the_example_of_a_layout_works_in_any_window() {
     use ratatui::layout::{Constraint, Layout};

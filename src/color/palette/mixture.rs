@@ -1,22 +1,23 @@
-//! Mixtures: the two colours of a palette, and the glyph, that make a cell look like given colours.
+//! Mixtures: the two palette colours and the glyph that make a cell look like given colours.
 //!
-//! A cell has two parts, such as the halves of a half block. In a small palette it shows each part in
-//! the palette colour nearest to its own, or all of the cell in one of the shades ░ ▒ ▓, which mix
-//! two palette colours with a grain of one dot. The 240 fixed colours have no dark hues: the darkest
-//! red has an Oklab lightness of 0.31, the darkest brown 0.51. The shades give some 40,000 mixtures
-//! of colours that are near each other.
+//! A cell has two parts, such as the halves of a half block. In a small palette, either each part
+//! has the palette colour nearest to its own, or one of the shades ░ ▒ ▓ fills the whole cell. A
+//! shade mixes two palette colours with a grain of one dot. The 240 fixed colours have no dark
+//! hues: the darkest red has an Oklab lightness of 0.31, the darkest brown 0.51. The shades add
+//! some 40,000 mixtures of colours that are near each other.
 //!
 //! - An error is a squared distance in Oklab, with chroma weighted by [`CHROMA_WEIGHT`].
-//! - The contrast of the two colours of a shade is an error of its own, since the dots can be seen.
-//! - The eye blurs the parts of a cell: most of its error is that of its mean.
-//! - A cell keeps the two colours of the cell to its left unless that adds [`SHARING`] to its
-//!   error: colours that are not sent again save bytes, and surfaces look calmer.
-//! - Choices are made in integers from tables, the same on every machine.
+//! - The contrast between the two colours of a shade adds to its error, because the dots are
+//!   visible.
+//! - Most of a cell's error is the error of its mean, because the eye blurs the parts.
+//! - A cell keeps the two colours of the cell to its left unless that adds [`SHARING`] or more to
+//!   its error. Colours that are not sent again save bytes, and surfaces look calmer.
+//! - All choices are made in integers from tables, so they are the same on every machine.
 //!
-//! The tables have 64 levels a channel. Their entries are computed on first use: a picture needs some
-//! thousands of them, and all 262,144 would take half a second. The levels are equal steps of the
-//! cube root of light, and so of lightness. Rejected: the upper six bits of sRGB, whose lowest levels
-//! are as far apart as black and the darkest grey.
+//! The tables have 64 levels per channel. Their entries are computed on first use: a picture needs
+//! some thousands of them, and all 262,144 would take half a second. The levels are equal steps of
+//! the cube root of light, and therefore of lightness. Rejected: the upper six bits of sRGB. Its
+//! lowest levels are as far apart as black and the darkest grey.
 
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
@@ -33,7 +34,8 @@ use crate::color::srgb::linear;
 pub(crate) enum Look {
     /// Each part in its own palette colour.
     Parts([u8; 2]),
-    /// A shade of this number of quarters, from 1 to 3, in a text and a background colour.
+    /// A shade with this number of quarters of text colour, from 1 to 3, in a text and a background
+    /// colour.
     Shade(u8, [u8; 2]),
 }
 
@@ -44,8 +46,8 @@ pub(crate) struct Mixer {
     left: [u8; 2],
 }
 
-/// The share of a cell that is all of it, for [`Mixer::look`]: divisible by the numbers of dots of
-/// all glyph sets.
+/// The share of a cell that is the whole cell, for [`Mixer::look`]. It is divisible by the number
+/// of dots of every glyph set.
 pub(crate) const WHOLE: u8 = 24;
 
 impl Mixer {
@@ -55,8 +57,8 @@ impl Mixer {
         Self { mixtures: Mixtures::of(depth, ink), left: [black; 2] }
     }
 
-    /// The look of a cell whose parts have these colours. The first covers this share of the cell,
-    /// from 0 to [`WHOLE`].
+    /// The look of a cell whose parts have these colours. The first part covers `share` of the
+    /// cell, from 0 to [`WHOLE`].
     #[inline]
     pub(crate) fn look(&mut self, colors: [Rgb; 2], share: u8) -> Look {
         let shares = [share, WHOLE - share].map(u32::from);
@@ -69,7 +71,7 @@ impl Mixer {
 /// The limits of mixing in a palette.
 struct Limits {
     indices: RangeInclusive<u8>,
-    /// The largest distances of two mixed colours, in lightness and in chroma.
+    /// The largest distances between two mixed colours, in lightness and in chroma.
     lightness: f64,
     chroma: f64,
     /// The error of a shade's contrast, in 4096ths of the squared distance of its two colours.
@@ -77,7 +79,7 @@ struct Limits {
 }
 
 impl Limits {
-    /// The error of the contrast of two mixed colours.
+    /// The error that the contrast between two mixed colours adds.
     #[inline]
     fn contrast(&self, [one, other]: [Place; 2]) -> u32 {
         (distance(one, other) >> 12) * self.contrast
@@ -89,19 +91,19 @@ static LIMITS_OF_256: Limits =
 static LIMITS_OF_16: Limits =
     Limits { indices: 0..=CUBE - 1, lightness: 1.0, chroma: 0.35, contrast: 7 };
 
-/// The weight of the red–green and the yellow–blue component.
+/// The weight of the red–green and the yellow–blue component, relative to lightness.
 const CHROMA_WEIGHT: f64 = 1.5;
 /// The error that a cell may add to keep the colours of the cell to its left.
 const SHARING: u32 = squared(0.015);
-/// The weight of the errors of a cell's parts, beside that of the whole, in 256ths.
+/// The weight of the errors of a cell's parts, in 256ths. The error of the whole has the rest.
 const DETAIL_WEIGHT: u32 = 90;
 
-/// A colour in Oklab, weighted, in steps of which [`UNIT`] are one.
+/// A weighted colour in Oklab, in steps of 1 / [`UNIT`].
 type Place = [i16; 3];
 
 const UNIT: f64 = 8192.0;
 
-/// The squared distance of two places.
+/// The squared distance between two places.
 #[inline]
 fn distance(one: Place, other: Place) -> u32 {
     (0..3).fold(0, |sum, i| {
@@ -120,7 +122,7 @@ fn place(Oklab([lightness, red, yellow]): Oklab) -> Place {
         .map(|part| libm::round(part * UNIT) as i16)
 }
 
-/// The mixtures of one palette on one kind of terminal, with tables of what was computed.
+/// The mixtures of one palette on one kind of terminal, with tables of computed results.
 struct Mixtures {
     limits: &'static Limits,
     ink: ShadeInk,
@@ -133,8 +135,8 @@ struct Mixtures {
     places: Table,
 }
 
-/// Words that are zero until they are computed. Every thread computes the same word, so that it does
-/// not matter which one stores it.
+/// Words that are zero until they are computed. Every thread computes the same word, so it does not
+/// matter which thread stores it.
 struct Table(Box<[AtomicU64]>);
 
 impl Table {
@@ -142,7 +144,7 @@ impl Table {
         Self(iter::repeat_with(|| AtomicU64::new(0)).take(1 << bits).collect())
     }
 
-    /// The word at `index`, which must not be zero.
+    /// The word at `index`. Calls `compute` on first use, which must not return zero.
     #[inline]
     fn get(&self, index: usize, compute: impl FnOnce() -> u64) -> u64 {
         let word = self.0[index].load(Ordering::Relaxed);
@@ -200,7 +202,8 @@ impl Mixtures {
         }
     }
 
-    /// The look of a cell after one in the colours `left`, and the two colours of the cell.
+    /// The look of a cell to the right of a cell in the colours `left`, and the two colours of the
+    /// cell.
     #[inline]
     fn look(&self, colors: [Rgb; 2], shares: [u32; 2], left: [u8; 2]) -> (Look, [u8; 2]) {
         let light = Light::get();
@@ -234,7 +237,7 @@ impl Mixtures {
         (look, colors_after(look, left))
     }
 
-    /// The error of parts in these palette colours.
+    /// The error of drawing the parts in these palette colours.
     #[inline]
     fn error_of_parts(&self, wanted: &Wanted, colors: [u8; 2]) -> u32 {
         let [one, other] = colors.map(|color| self.place(color));
@@ -246,7 +249,7 @@ impl Mixtures {
         wanted.error(shown, [one, other])
     }
 
-    /// The error of a shade, with that of its contrast.
+    /// The error of a shade, including the error of its contrast.
     #[inline]
     fn error_of_shade(&self, wanted: &Wanted, quarters: u8, colors: [u8; 2]) -> u32 {
         let shown = self.place_of_shade(quarters, colors);
@@ -299,8 +302,8 @@ struct Wanted {
 }
 
 impl Wanted {
-    /// The error of a cell whose parts look like `parts`, and as a whole like `mean`. Most of it
-    /// is that of the whole, because the eye blurs the parts.
+    /// The error of a cell whose parts look like `parts` and that looks like `mean` as a whole.
+    /// Most of it is the error of the whole, because the eye blurs the parts.
     #[inline]
     fn error(&self, mean: Place, parts: [Place; 2]) -> u32 {
         let apart = [0, 1].map(|i| self.shares[i] * (distance(self.parts[i], parts[i]) >> 8));
@@ -309,7 +312,8 @@ impl Wanted {
     }
 }
 
-/// The colours of a cell after one in the colours `left`. One of one colour keeps the other of `left`.
+/// The two colours of a cell to the right of a cell in the colours `left`. A cell of a single
+/// colour keeps one colour of `left` beside its own.
 #[inline]
 fn colors_after(look: Look, left: [u8; 2]) -> [u8; 2] {
     match look {
@@ -339,7 +343,7 @@ struct Shades {
     colors: Vec<(u8, Place)>,
     /// In the order of their bins.
     all: Vec<Shade>,
-    /// The index of the first shade of each bin, and the number of shades at the end.
+    /// The index of the first shade of each bin. The last entry is the number of shades.
     starts: Vec<u32>,
 }
 
@@ -392,7 +396,9 @@ impl Shades {
         self.colors.iter().min_by_key(by_distance).map_or(0, |&(index, _)| index)
     }
 
-    /// The shade with the least sum of error and contrast. The bins around the place are searched, farther and farther, until no shade in them can be better.
+    /// The shade with the least sum of error and contrast. The search starts in the bin of the
+    /// place and continues in bins that are farther and farther away, until none of them can
+    /// contain a better shade.
     fn nearest(&self, place: Place) -> &Shade {
         let mut best = (u32::MAX, &self.all[0]);
         let middle = bin(place);
@@ -428,7 +434,7 @@ impl Shades {
 }
 
 impl ShadeInk {
-    /// The colour of a shade of so many quarters, in a text and a background colour.
+    /// The colour of a shade with this number of quarters of text colour.
     pub(crate) fn mixed(self, quarters: u8, colors: [u8; 2]) -> Oklab {
         let share = f64::from(quarters) / 4.0;
         let colors = colors.map(of_256);
@@ -454,7 +460,7 @@ impl ShadeInk {
     }
 }
 
-/// The light of colours, and the levels of light.
+/// Tables from channel values and from steps of light to levels.
 struct Light {
     of_channel: [u32; 256],
     level_of_channel: [u8; 256],
@@ -464,7 +470,7 @@ struct Light {
 
 impl Light {
     const STEPS: usize = 1 << 12;
-    /// Full light, such that the sum of [`WHOLE`] shares has no more than 32 bits.
+    /// Full light. The sum of [`WHOLE`] shares of it has at most 32 bits.
     const FULL: f64 = (Self::STEPS << 3) as f64;
 
     #[inline]
@@ -527,7 +533,7 @@ mod tests {
         (ColorDepth::Indexed16, ShadeInk::Dots),
     ];
 
-    /// The colour of a cell of one colour.
+    /// The colour that a cell shows for one given colour.
     fn shown(color: Rgb, (depth, ink): (ColorDepth, ShadeInk)) -> Oklab {
         match Mixer::new(depth, ink).look([color; 2], WHOLE / 2) {
             Look::Parts([one, other]) => {
@@ -573,7 +579,8 @@ mod tests {
                 let cost =
                     |&(shown, contrast): &(Oklab, f64)| libm::hypot(error(shown, wanted), contrast);
                 let least = all.iter().map(cost).fold(f64::INFINITY, f64::min);
-                // A level is up to 0.008 off in lightness; a dark cell may keep the black at its left.
+                // A level is up to 0.008 off in lightness, and a dark cell may keep the black to
+                // its left.
                 assert!(error(shown(color, look), wanted) < least + 0.02, "{look:?} {color:?}");
             }
         }

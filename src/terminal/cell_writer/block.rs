@@ -1,33 +1,34 @@
 //! Blocks: cells of two colours, and the characters that show them.
 //!
-//! A mosaic and its inverse with swapped colours look the same. Of the two, a shape is the one without the last dot,
-//! so that cells that look the same are equal. The first colour of a cell is the colour of the shape's dots, the
-//! second the colour of the rest. A half block is the shape of the upper half.
+//! A mosaic and its inverse with swapped colours look the same. A shape is the one of the two that lacks the last dot,
+//! so that cells that look the same are equal. The first colour of a cell is the colour of the shape's dots, and the
+//! second is the colour of the rest. A half block is the shape of the upper half.
 //!
-//! Two cells of different shapes are compared by the parts of a cell that their colours have in common. An edge
-//! that moves by a dot within one wall then leaves the cells whose colours are near.
+//! Two cells of different shapes are compared by the parts of a cell that their colours have in common. If an edge then
+//! moves by a dot within one wall, the cells with near colours can be kept.
 
 use super::style::{Shade, Style};
 use crate::tui::canvas::Mosaic;
 
-/// A mosaic without the last dot. There are fewer than [`Shape::COUNT`].
+/// A mosaic without the last dot. Its number is below [`Shape::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shape(u8);
 
 /// The number of octant shapes. The sextant shapes follow them.
 const OCTANTS: u8 = 128;
 
-/// The parts that the dots and the rest of a cell have in common with the dots and the rest of another.
+/// The parts that the dots and the rest of a cell have in common with the dots and the rest of another cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Overlap {
-    /// Of dots and dots, and of rest and rest.
+    /// The parts that are dots in both cells, and the parts that are rest in both.
     straight: [u8; 2],
-    /// Of the first cell's dots and the other's rest, and the reverse.
+    /// The parts that are dots in the first cell and rest in the other, and the reverse.
     crossed: [u8; 2],
 }
 
 impl Overlap {
-    /// For each pair of colours, the index of the first cell's and of the other's, and the number of parts.
+    /// For each pair of colours: the index of the first cell's colour, the index of the other's, and the number of
+    /// parts.
     #[inline]
     pub(crate) fn pairs(self) -> [([usize; 2], u8); 4] {
         let Self { straight, crossed } = self;
@@ -38,13 +39,13 @@ impl Overlap {
 impl Shape {
     /// The upper half, in cells of two pixels.
     pub(crate) const HALF: Self = Self(0);
-    /// No dot: a cell has another shape.
+    /// No dot. No cell has this shape.
     pub(crate) const NONE: Self = Self(Self::HALF_MASK);
     pub(crate) const COUNT: u8 = OCTANTS + 32;
     /// The mask of the upper half, whose shape has the number 0.
     const HALF_MASK: u8 = 0x0F;
 
-    /// The shape of a mosaic, and whether its colours change places.
+    /// The shape of a mosaic, and `true` if its colours must be swapped.
     #[inline]
     pub(crate) const fn of(mosaic: Mosaic) -> (Self, bool) {
         match mosaic.mask() {
@@ -74,13 +75,14 @@ impl Shape {
         self.0
     }
 
-    /// The shape with this number, which must be from [`Shape::get`].
+    /// The shape with this number, which must come from [`Shape::get`].
     #[inline]
     pub(crate) const fn new(number: u8) -> Self {
         Self(number)
     }
 
-    /// The character that shows the shape as `element` does a half block, in UTF-8, and the number of its bytes.
+    /// The character that shows the shape in the way in which `element` shows a half block, in UTF-8, and the number of
+    /// its bytes.
     #[inline]
     pub(crate) fn encoded(self, element: BlockElement) -> ([u8; 4], usize) {
         let inverse = match element {
@@ -92,13 +94,13 @@ impl Shape {
         (encoded, if encoded[3] == 0 { 3 } else { 4 })
     }
 
-    /// The bytes of its character.
+    /// The number of bytes of its character.
     #[inline]
     pub(crate) fn bytes(self) -> f32 {
         if ENCODED[usize::from(self.0)][0][3] == 0 { 3.0 } else { 4.0 }
     }
 
-    /// The parts of a cell, in twenty-fourths, with the colour of the dots and with the other.
+    /// The numbers of parts of a cell, in twenty-fourths, that have the colour of the dots and the other colour.
     #[inline]
     pub(crate) fn parts(self) -> [u8; 2] {
         let dots = PARTS[usize::from(self.0)].count_ones() as u8;
@@ -108,7 +110,7 @@ impl Shape {
     /// The number of parts of a cell.
     pub(crate) const PARTS: u8 = 24;
 
-    /// The parts of a cell of this shape that another shape colours alike, and otherwise.
+    /// The parts that this shape's dots and rest have in common with the dots and the rest of another shape.
     #[inline]
     pub(crate) fn overlap(self, other: Self) -> Overlap {
         let [one, other] = [self, other].map(|shape| PARTS[usize::from(shape.0)]);
@@ -122,7 +124,7 @@ impl Shape {
     }
 }
 
-/// The characters of each shape and of its inverse in UTF-8. The last byte is zero if there are three.
+/// The characters of each shape and of its inverse in UTF-8. The last byte is zero if a character has three.
 static ENCODED: [[[u8; 4]; 2]; Shape::COUNT as usize] = {
     let mut table = [[[0; 4]; 2]; Shape::COUNT as usize];
     let mut number = 0;
@@ -156,11 +158,12 @@ static PARTS: [u32; Shape::COUNT as usize] = {
     table
 };
 
-/// A character that shows at most two colours, each in a whole half of its cell.
+/// A character that shows one colour in each half of its cell.
 ///
-/// A cell of two pixels can be written as an upper half block, or as a lower one with the colours swapped; a cell of
-/// two equal pixels as a space or a full block. They look the same, so the pen uses the one with the fewest bytes
-/// after the terminal's present style. A space has no foreground, so that it keeps the foreground of the cell before it.
+/// A cell of two pixels can be written as an upper half block, or as a lower half block with swapped colours. A cell of
+/// two equal pixels can be written as a space or a full block. The alternatives look the same, so the pen uses the one
+/// with the fewest bytes after the terminal's current style. A space has no foreground, so it keeps the foreground of
+/// the cell before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlockElement {
     /// The upper half in the text colour, the lower half in the background colour.
@@ -194,7 +197,7 @@ impl BlockElement {
         }
     }
 
-    /// Finds the element by its bytes in UTF-8, since this runs for every changed cell.
+    /// Finds the element by its bytes in UTF-8, because this runs for every changed cell.
     #[inline]
     pub(crate) fn of(symbol: &str) -> Option<Self> {
         match *symbol.as_bytes() {
@@ -206,7 +209,7 @@ impl BlockElement {
         }
     }
 
-    /// Whether it shows one colour.
+    /// Returns true if the element shows only one colour.
     #[inline]
     pub(crate) fn is_flat(self) -> bool {
         matches!(self, Self::Full | Self::Space)
@@ -237,8 +240,8 @@ impl BlockElement {
         plain(element, colors)
     }
 
-    /// The block element and the colours with the fewest bytes after a text colour and a background that show
-    /// these two halves; there must be no modifiers if they are equal.
+    /// The block element and the colours with the fewest bytes after a text colour and a background that show these two
+    /// halves. If the halves are equal, the current style must have no modifiers.
     #[inline]
     pub(crate) fn cheapest_after(
         [text, ground]: [Shade; 2],

@@ -1,9 +1,9 @@
 //! A buffer of bytes with spare memory at its end, and the control sequences that are written to it.
 //!
-//! The bytes of a cell are written in their final place, in parts of fixed sizes that may exceed
-//! their lengths: a copy of four bytes is faster than a copy of a variable number, and the capacity
-//! is checked once for a whole cell. With a buffer of its own, a cell would be copied right after
-//! it was written, and processors stall on that.
+//! The bytes of a cell are written directly to their final place, in parts of fixed sizes. A part may be
+//! longer than its text, because a copy of four bytes is faster than a copy of a variable number. The
+//! capacity is checked once for a whole cell. Rejected: a buffer for each cell. It would be copied right
+//! after it was written, and processors stall on that.
 
 use std::hint::select_unpredictable;
 use std::io::{self, Write as _};
@@ -21,14 +21,14 @@ pub(crate) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
     /// The number of bytes in this piece, at most [`LONGEST`].
     end: usize,
-    /// The length of all bytes before it.
+    /// The length of all bytes before the piece.
     length: &'a mut usize,
 }
 
-/// The maximum length of a piece, which a motion, a style with all its parameters and a character do not
-/// reach. All of its bits are set: masking an offset takes less time than checking it.
+/// The maximum length of a piece. A motion, a style with all its parameters and a character together
+/// stay below it. All of its bits are set, because masking an offset takes less time than checking it.
 const LONGEST: usize = 127;
-/// The bytes behind a piece that its last part may exceed it by.
+/// The number of bytes by which the last part of a piece may exceed it.
 const EXCESS: usize = 8;
 const ROOM: usize = LONGEST + 1 + EXCESS;
 
@@ -106,7 +106,7 @@ impl io::Write for Bytes {
     }
 }
 
-/// A control sequence in progress, with at least one parameter at its end.
+/// A control sequence in progress. It must have at least one parameter when it ends.
 pub(crate) struct ControlSequence<'a, 'b> {
     piece: &'a mut Piece<'b>,
     start: usize,
@@ -128,7 +128,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         self.piece.push(decimal.text(), decimal.length());
     }
 
-    /// Adds parameters in decimal, each after a separator: the first `count` bytes of `text`.
+    /// Adds the first `count` bytes of `text`: parameters in decimal, each after a separator.
     #[inline]
     pub(crate) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         self.piece.push(text, count);
@@ -157,8 +157,8 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
         }
     }
 
-    /// Calls `write` to add parameters, and removes them unless `needed`. Where the branch is badly
-    /// predictable, this takes less time than a test first.
+    /// Calls `write` to add parameters, and removes them unless `needed`. If the branch is hard to
+    /// predict, this takes less time than testing first.
     #[inline]
     pub(crate) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
         let before = self.piece.end;
@@ -184,7 +184,7 @@ pub(crate) fn digits(number: u8) -> usize {
     DECIMALS[usize::from(number)].length() - 1
 }
 
-/// A number in decimal, after a separator, in one word: four bytes of text, and the length of the text.
+/// A separator and a number in decimal, in one word: four bytes of text, and the length of the text.
 #[derive(Clone, Copy)]
 struct Decimal(u64);
 
@@ -204,7 +204,7 @@ impl Decimal {
     }
 }
 
-/// The decimal text of every byte: a division would take longer than the rest of a cell's encoding.
+/// The decimal text of every byte. A division would take longer than the rest of a cell's encoding.
 static DECIMALS: [Decimal; 256] = {
     let mut table = [Decimal(0); 256];
     let mut number = 0;
@@ -230,7 +230,7 @@ pub(crate) struct Definitions<'a> {
     count: usize,
 }
 
-/// The number of definitions in one sequence: some terminals accept at most sixteen parameters.
+/// The maximum number of definitions in one sequence. Some terminals accept at most sixteen parameters.
 const AT_ONCE: usize = 7;
 
 impl<'a> Definitions<'a> {
@@ -245,7 +245,7 @@ impl<'a> Definitions<'a> {
             self.bytes.push_text(b"\x1b]4");
         }
         self.count += 1;
-        // Memory accepts every byte.
+        // A write to memory cannot fail.
         _ = write!(self.bytes, ";{entry};#{red:02x}{green:02x}{blue:02x}");
     }
 

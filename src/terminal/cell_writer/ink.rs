@@ -9,8 +9,8 @@ use crate::terminal::Fidelity;
 
 /// A colour, and its place in CIE L\*a\*b\*.
 ///
-/// Users redefine the 16 named colours, and the terminal's default colours are unknown. Both are
-/// far from all other colours, so that no tolerance mistakes one for another.
+/// Users can redefine the 16 named colours, and the terminal's default colours are unknown. Both
+/// are placed far from all other colours, so that no tolerance confuses them with others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ink {
     pub(crate) lab: [f32; 3],
@@ -18,7 +18,7 @@ pub(crate) struct Ink {
 }
 
 impl Ink {
-    /// The ink of `shade`; an indexed colour counts as xterm's standard one.
+    /// The ink of `shade`. An indexed colour counts as xterm's standard colour.
     #[inline(never)]
     pub(crate) fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {
@@ -32,13 +32,13 @@ impl Ink {
         Self { lab, shade }
     }
 
-    /// The number of bytes of its parameters.
+    /// The number of bytes of the colour's parameters.
     #[inline]
     pub(crate) fn bytes(self) -> f32 {
         self.shade.bytes() as f32
     }
 
-    /// CIE76's ΔE.
+    /// The distance ΔE of CIE76.
     #[inline]
     pub(crate) fn distance(self, other: Self) -> f32 {
         distance(self.lab, other.lab)
@@ -52,7 +52,7 @@ const NAMED: f32 = 20_000.0;
 /// The place of the terminal's default colours.
 const OWN: f32 = 1e6;
 
-/// CIE76's ΔE.
+/// The distance ΔE of CIE76.
 #[inline]
 pub(crate) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     let [l, a, b] = [one[0] - other[0], one[1] - other[1], one[2] - other[2]];
@@ -79,7 +79,7 @@ pub(crate) fn nearest([ls, as_, bs]: &[Vec<f32>; 3], [l, a, b]: [f32; 3]) -> (u8
 /// The inks of recent colours, in a direct-mapped cache.
 ///
 /// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place,
-/// which holds the last one requested of all colours with that place.
+/// and a place holds the last requested of the colours that share it.
 #[derive(Debug)]
 pub(crate) struct Inks {
     places: Box<[Ink; 1 << PLACE_BITS]>,
@@ -106,7 +106,8 @@ impl Inks {
         shades.map(|shade| self.of(shade))
     }
 
-    /// The colour halfway between two, or the colour nearest to that in their common palette.
+    /// The colour halfway between two colours, or the colour nearest to that in their common
+    /// palette. If they have no common palette, `one`.
     pub(crate) fn between(&mut self, one: Ink, other: Ink) -> Ink {
         let middle = |one: [u8; 3], other: [u8; 3]| -> [u8; 3] {
             std::array::from_fn(|channel| one[channel].midpoint(other[channel]))
@@ -138,18 +139,18 @@ impl Default for Inks {
     }
 }
 
-/// A colour that may be sent for another.
+/// A colour that may be sent in place of another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Telling {
     pub(crate) ink: Ink,
-    /// The bytes of its parameters.
+    /// The number of bytes of its parameters.
     pub(crate) bytes: f32,
     /// The price of its error, in bytes.
     pub(crate) error: f32,
 }
 
 impl Telling {
-    /// The bytes and the price together.
+    /// The sum of the bytes and the price.
     #[inline]
     pub(crate) fn cost(self) -> f32 {
         self.bytes + self.error
@@ -162,7 +163,7 @@ pub(crate) struct Price {
     /// The maximum error, in ΔE.
     pub(crate) farthest: f32,
     /// The price in bytes of a ΔE of one in half a cell. It was chosen so that the mean errors at
-    /// high and low fidelity are the documented ones.
+    /// high and low fidelity match the documentation.
     pub(crate) bytes: f32,
 }
 
@@ -180,20 +181,20 @@ impl Price {
         Self { farthest, bytes: worth / farthest }
     }
 
-    /// The price in so many parts of a cell, as [`Shape`] counts them.
+    /// The price in this number of parts of a cell, as [`Shape`] counts them.
     #[inline]
     pub(crate) fn of_parts(self, parts: u8) -> Self {
         const HALF: f32 = Shape::PARTS as f32 / 2.0;
         Self { bytes: self.bytes * f32::from(parts) / HALF, ..self }
     }
 
-    /// The price of an error of `distance`, in bytes; infinite if it exceeds the maximum.
+    /// The price of an error of `distance`, in bytes. Infinite if the error exceeds the maximum.
     #[inline]
     pub(crate) fn of_distance(self, distance: f32) -> f32 {
         if distance > self.farthest { f32::INFINITY } else { distance * self.bytes }
     }
 
-    /// The price of showing one colour in place of another, in bytes; infinite if the error exceeds
+    /// The price of showing one colour in place of another, in bytes. Infinite if the error exceeds
     /// the maximum.
     #[inline]
     pub(crate) fn of(self, shown: Ink, wanted: Ink) -> f32 {

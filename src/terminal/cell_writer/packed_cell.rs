@@ -1,8 +1,8 @@
 //! Cells in one word, and the table of a screen's glyphs.
 //!
-//! A character and its modifiers take 26 bits, and two colours 52. So each glyph has an id of few bits, with which a
-//! packed cell fits in one word. Most screens show some dozens of characters. If the table is full, further characters
-//! are still shown, but not compared.
+//! A character and its modifiers take 26 bits, and two colours take 52. Therefore each glyph has an id of few bits, so
+//! that a packed cell fits in one word. Most screens show some dozens of characters. If the table is full, further
+//! characters are still shown, but not compared.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,23 +24,24 @@ pub(crate) enum Form {
     Glyph(GlyphId),
 }
 
-/// A cell in one word. Equal words look the same.
+/// A cell in one word. Cells with equal words look the same.
 ///
-/// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half, of a
-/// shape's dots and the rest, or of the text and the background. A block of one colour is one of halves.
+/// The upper twelve bits are the form. The other bits are two colours: of the upper and the lower half, of a shape's
+/// dots and the rest, or of the text and the background. A block of one colour has the shape of halves.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PackedCell(u64);
 
 impl PackedCell {
     /// An unknown cell. No target is equal to it.
     pub(crate) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
-    /// A cell of several characters, of a character wider than a cell, or of a glyph without an id.
-    /// It is sent whenever its row changes.
+    /// A cell with several characters, with a character wider than a cell, or with a glyph without an id. It is sent
+    /// whenever its row changes.
     const INTRICATE: Self = Self((Self::SHAPES + 1) << Self::KIND);
     /// A space in the terminal's default colours.
     pub(crate) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
-    /// The position of the form: the shape of blocks, zero for halves; after two others, the ids of glyphs.
+    /// The position of the form. Its values are the shapes of blocks (zero for halves), two special values, and then
+    /// the ids of glyphs.
     const KIND: u32 = 2 * Shade::BITS;
     const SHAPES: u64 = Shape::COUNT as u64;
     const FIRST_GLYPH: u64 = Self::SHAPES + 2;
@@ -94,7 +95,7 @@ impl PackedCell {
         Self::of_shape(shape, if is_inverse { [rest, dots] } else { [dots, rest] })
     }
 
-    /// The colours of a shape's dots and of the rest.
+    /// A cell of this shape, in the colours of its dots and of the rest.
     #[inline]
     fn of_shape(shape: Shape, colors: [Shade; 2]) -> Self {
         let [dots, rest] = colors;
@@ -104,7 +105,7 @@ impl PackedCell {
         Self(u64::from(shape.get()) << Self::KIND | Self::of_halves(colors).0)
     }
 
-    /// The mosaic with this character; `None` if another character would look different in this style.
+    /// The mosaic with this character. `None` if another character for it would look different in this style.
     fn mosaic(character: char, style: Style) -> Option<Mosaic> {
         let has_own = style.colors().contains(&Shade::DEFAULT);
         let is_plain = character >= FIRST_MOSAIC && style.has_no_modifiers() && !has_own;
@@ -128,7 +129,7 @@ impl PackedCell {
         {
             return Self::of_mosaic(mosaic, colors, glyph_table);
         }
-        // Finding the width of a character takes ten times as long.
+        // This check is first, because finding the width of a character takes ten times as long.
         if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
             return Self::of_text(id, colors.map(Shade::of));
         }
@@ -158,7 +159,7 @@ impl PackedCell {
         }
     }
 
-    /// A character that cannot be drawn as a block.
+    /// A cell with a character that cannot be drawn as a block.
     #[inline(never)]
     pub(crate) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
         let id = glyph_table.id(Glyph::new(character, style.modifier));
@@ -166,7 +167,7 @@ impl PackedCell {
         id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
     }
 
-    /// A shape as `element` draws it in this style.
+    /// A cell of this shape as `element` draws it in this style.
     #[inline]
     pub(crate) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
         Self::of_shape(shape, element.halves(style.foreground, style.background))
@@ -182,7 +183,7 @@ impl PackedCell {
         Self(kind << Self::KIND | Self::of_halves(colors).0)
     }
 
-    /// The character and its style; `None` for blocks and intricate cells.
+    /// The character and its style. `None` for blocks and intricate cells.
     pub(crate) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
         let id = (self.0 >> Self::KIND).checked_sub(Self::FIRST_GLYPH)?;
         let glyph = glyph_table.glyph(GlyphId::new(id as u16));
@@ -191,18 +192,17 @@ impl PackedCell {
         Some((glyph.character(), style))
     }
 
-    /// Whether the cell may be wider than one column.
+    /// Returns true if the cell may be wider than one column.
     pub(crate) fn is_intricate(self) -> bool {
         self == Self::INTRICATE
     }
 
-    /// Whether this shown cell need not be sent for the target `wanted`.
+    /// Returns true if this shown cell need not be sent for the target `wanted`.
     pub(crate) fn is(self, wanted: Self) -> bool {
         self == wanted && self != Self::INTRICATE
     }
 
-    /// A hash whose upper bits are the best. It has few bits, so that the compiler computes several
-    /// at once.
+    /// A hash whose upper bits are the best. It is short, so that the compiler computes several at once.
     #[inline]
     pub(crate) fn hash(self) -> u32 {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
@@ -214,7 +214,7 @@ impl PackedCell {
         [48, 32, 16].map(|from| (hash >> from) as u16)
     }
 
-    /// The form and the colours; `None` if the cell may only be shown exactly.
+    /// The form and the colours. `None` if the cell may only be shown exactly.
     #[inline]
     pub(crate) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
         let form = match self.0 >> Self::KIND {
@@ -246,7 +246,7 @@ impl PackedCell {
         (kind < Self::SHAPES).then(|| (Shape::new(kind as u8), self.colors()))
     }
 
-    /// The same for a block of pixels.
+    /// The same as [`PackedCell::block`], but only if both colours are pixels.
     #[inline]
     pub(crate) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
         const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
@@ -274,11 +274,11 @@ impl fmt::Debug for PackedCell {
     }
 }
 
-/// The first character that may be a mosaic and is no space.
+/// The first character other than a space that may be a mosaic.
 const FIRST_MOSAIC: char = '\u{2580}';
 
-/// The colours of the upper and the lower half; `None` if another block would look different: with
-/// the terminal's default colours, which differ as text and as background, and with modifiers.
+/// The colours of the upper and the lower half. `None` if another block element would look different. This is so with
+/// modifiers, and with the terminal's default colours, which differ as text and as background.
 #[inline]
 fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
     let halves = element.halves(style.foreground, style.background);
@@ -286,11 +286,11 @@ fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
     (style.has_no_modifiers() && !has_own).then_some(halves)
 }
 
-/// A character one cell wide, and its modifiers.
+/// A character that is one cell wide, and its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Glyph {
     character: char,
-    /// The modifiers as bits, which have an order.
+    /// The modifiers as bits, because bits have an order.
     modifiers: u16,
 }
 
@@ -303,7 +303,7 @@ pub(crate) struct GlyphId(u16);
 pub(crate) struct GlyphTable {
     glyphs: Vec<Glyph>,
     ids: BTreeMap<Glyph, GlyphId>,
-    /// The glyphs that were looked up last, with their ids, each in its place: nearly all that a frame has.
+    /// The glyphs that were looked up last, with their ids, each in its place. They are nearly all glyphs of a frame.
     recent: [(Glyph, GlyphId); RECENT],
 }
 
@@ -315,7 +315,7 @@ impl Glyph {
         Self { character, modifiers: modifier.bits() }
     }
 
-    /// Its place among the recent ones. ASCII characters with the same modifiers have different places.
+    /// The glyph's place among the recent glyphs. ASCII characters with the same modifiers have different places.
     #[inline]
     fn place(self) -> usize {
         (self.character as usize ^ usize::from(self.modifiers)) % RECENT
@@ -343,14 +343,14 @@ impl GlyphId {
         self.0
     }
 
-    /// The id with this number, which must be from [`GlyphId::get`].
+    /// The id with this number, which must come from [`GlyphId::get`].
     pub(crate) fn new(id: u16) -> Self {
         Self(id)
     }
 }
 
 impl GlyphTable {
-    /// The id of `glyph`, a new one if necessary; `None` if the table is full.
+    /// The id of `glyph`, which is a new id if necessary. `None` if the table is full.
     #[inline]
     pub(crate) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
         self.recent_id(glyph).or_else(|| self.find(glyph))
@@ -402,12 +402,13 @@ enum Symbol {
     Blank,
     /// A character one cell wide.
     Character(char),
-    /// Several characters, or one that is wider than a cell; none of them is a control character.
+    /// Several characters, or a character that is wider than a cell. None of them is a control character.
     Intricate,
 }
 
 impl Symbol {
-    /// Measures the `width` of `text` only if it has no control character, since ratatui cannot measure these.
+    /// Classifies `text`. Measures its `width` only if it contains no control character, because ratatui cannot
+    /// measure these.
     #[inline]
     fn of(text: &str, width: impl FnOnce(&str) -> u16) -> Self {
         let mut characters = text.chars();
@@ -424,9 +425,8 @@ impl Symbol {
     }
 }
 
-/// The substitute of `symbol`, the text of a cell: the symbol if it is a single ASCII character,
-/// otherwise a similar character or a question mark. The empty second cell of a wide character
-/// becomes a space.
+/// The ASCII substitute for `symbol`, the text of a cell. It is the symbol if that is a single ASCII character,
+/// otherwise a similar character or a question mark. The empty second cell of a wide character becomes a space.
 pub(crate) fn ascii_substitute(symbol: &str) -> char {
     let Some(character) = symbol.chars().next() else { return ' ' };
     match character {

@@ -1,30 +1,32 @@
 //! Frequent colours as entries of the terminal's palette.
 //!
-//! The parameters of a colour take up to sixteen bytes, the parameters of a palette entry at most eight. So
-//! frequent colours are defined as entries (OSC 4) before they are used. An entry is redefined only
-//! if no cell shows its colour and the terminal's style does not use it, so that a definition never
-//! changes the screen.
+//! The parameters of a colour take up to sixteen bytes, the parameters of a palette entry at most
+//! eight. Therefore frequent colours are defined as entries (OSC 4) before they are used. An entry
+//! is redefined only if no cell shows its colour and the terminal's style does not use it, so that
+//! a definition never changes the screen.
 //!
-//! The model does not record whether a cell was sent its colour as an entry. Every cell with the
-//! colour of an entry counts as showing the entry. This takes no memory for each cell and is always
+//! The model does not record whether the colour of a cell was sent as an entry. Every cell with the
+//! colour of an entry counts as showing the entry. This takes no memory per cell and is always
 //! safe.
 //!
-//! A palette without definitions, as of most terminals, has no memory; one with them has 75 KB.
+//! A palette without definitions takes no memory. Most terminals have such a palette. A palette
+//! with definitions takes 75 KB.
 //!
-//! A terminal without 24-bit colours shows all colours as entries, by a [`Quantizer`]. A terminal that shows 256 colours and lets a program define them (OSC 4) looks almost like one
-//! with 24-bit colours. Entries 24 to 255 hold colours of the frames, and each colour of a frame is
-//! replaced by the nearest entry in Oklab before the frame is encoded. The model of the screen
-//! therefore holds only colours of entries. No two entries have the same colour, so that a colour
-//! in the model tells which entry a cell shows.
+//! On a terminal without 24-bit colours, a [`Quantizer`] replaces all colours by entries. A
+//! terminal that shows 256 colours and lets a program define them (OSC 4) then looks almost like a
+//! terminal with 24-bit colours. Entries 24 to 255 hold colours of the frames, and each colour of a
+//! frame is replaced by the nearest entry in Oklab before the frame is encoded. The model of the
+//! screen therefore contains only colours of entries. No two entries have the same colour, so that
+//! a colour in the model tells which entry a cell shows.
 //!
-//! - The entries are chosen again if the frame's mean error has grown too much, and after a change of
-//!   scene. Most of them keep their colours.
+//! - The entries are chosen again if the frame's mean error has grown too much, and after a change
+//!   of scene. Most of them keep their colours.
 //! - A definition changes the cells that show the entry. The model then records their new colour,
-//!   and the encoder sends the cells again that have become too wrong.
-//! - The same frames give the same entries.
+//!   and the encoder sends a cell again if it has become too wrong.
+//! - The same frames always lead to the same entries.
 //!
 //! Rejected: defining only entries that no cell shows, as the palette for shorter frames does. Most
-//! entries are shown all the time, so that a level kept the colours of the one before it.
+//! entries are shown all the time, so a level kept the colours of the level before it.
 
 use crate::color::oklab::Oklab;
 use crate::color::{Rgb, palette};
@@ -40,12 +42,12 @@ use crate::terminal::sequence::PALETTE;
 pub(crate) struct Palette {
     /// Whether entries may be defined.
     is_on: bool,
-    /// The colour of each entry; [`Shade::DEFAULT`] for undefined ones.
+    /// The colour of each entry. [`Shade::DEFAULT`] for undefined entries.
     colors: Vec<Shade>,
-    /// Those colours in L\*a\*b\*, component by component.
+    /// The colours of the entries in L\*a\*b\*, component by component.
     labs: [Vec<f32>; 3],
-    /// The entry that may hold a colour, by the colour's hash. Of several colours with one hash,
-    /// one has an entry.
+    /// The entry that may hold a colour, by the colour's hash. Of several colours with the same
+    /// hash, only one has an entry.
     entries: Vec<u8>,
     /// The numbers of recent uses of colours without an entry, by hash.
     counts: Vec<Count>,
@@ -55,7 +57,7 @@ pub(crate) struct Palette {
     frame: u32,
     /// The number of the frame in which an entry's colour was last used.
     wanted_at: Vec<u32>,
-    /// Whether a cell shows an entry's colour.
+    /// For each entry, whether a cell shows its colour.
     is_shown: Vec<bool>,
     frequent: Vec<Count>,
     free: Vec<u8>,
@@ -64,7 +66,7 @@ pub(crate) struct Palette {
     quantizer: Option<Box<Quantizer>>,
 }
 
-/// The number of recent uses of a colour; older ones count less.
+/// The number of recent uses of a colour. Older uses count less.
 #[derive(Clone, Copy, Debug)]
 struct Count {
     shade: Shade,
@@ -81,11 +83,12 @@ struct Near {
 }
 
 const ENTRIES: usize = 256;
-/// The numbers of bits of the hashes that give the place of a colour's entry, and of its other data. Colours whose
-/// entries have the same place have the same place for their other data, too.
+/// The number of bits of the hash that selects the place of a colour's entry. The next constant is
+/// the same for its other data. Colours that share a place for their entries also share a place for
+/// their other data.
 const ENTRY_PLACE_BITS: u32 = 13;
 const PLACE_BITS: u32 = 11;
-/// The number of frames for which a nearest entry is not searched again.
+/// The number of frames for which a nearest entry is used without a new search.
 const KNOWN_FOR: u32 = 8;
 
 impl Palette {
@@ -94,26 +97,26 @@ impl Palette {
         *self = if is_on { Self::on() } else { Self::default() };
     }
 
-    /// Sets that all colours are told as entries, and forgets all definitions.
+    /// From now on, sends all colours as entries. Forgets all definitions.
     pub(crate) fn set_quantizing(&mut self) {
         let quantizer = Some(Box::new(Quantizer::new()));
         *self = Self { is_on: true, quantizer, ..Self::default() };
     }
 
-    /// Whether all colours are told as entries.
+    /// Returns true if all colours are sent as entries.
     pub(crate) fn is_quantizing(&self) -> bool {
         self.quantizer.is_some()
     }
 
-    /// Replaces the colours of all targets by entries, if all colours are told as entries.
-    /// Returns the definitions of entries that the terminal must receive before them.
+    /// Replaces the colours of all targets by entries, if all colours are sent as entries. Returns
+    /// the definitions of entries that the terminal must receive before the targets.
     pub(crate) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
         let mut definitions = Bytes::default();
         self.quantizer.as_mut()?.quantize(screen, &mut definitions);
         (!definitions.is_empty()).then_some(definitions)
     }
 
-    /// Whether entries may be defined.
+    /// Returns true if entries may be defined.
     pub(crate) fn is_on(&self) -> bool {
         self.is_on
     }
@@ -181,7 +184,8 @@ impl Palette {
         }
     }
 
-    /// The nearest entry to a colour, possibly from one of the last [`KNOWN_FOR`] frames.
+    /// The entry nearest to a colour. The search may have been in one of the last [`KNOWN_FOR`]
+    /// frames.
     fn nearest(&mut self, wanted: Ink) -> Option<u8> {
         let place = wanted.shade.hash(PLACE_BITS);
         let known = self.nearest[place];
@@ -232,11 +236,11 @@ fn entry_place(shade: Shade) -> usize {
     shade.hash(ENTRY_PLACE_BITS)
 }
 
-/// The approximate number of bytes that a use of an entry saves.
+/// The approximate number of bytes that the use of an entry saves.
 const SPARED: f32 = 8.0;
-/// The number of half cells in a frame that must use a colour for it to be defined: in an exact
-/// frame, and in an inexact one, where most of them are kept. In the latter, the savings must be as
-/// large as those of this number of full uses.
+/// The number of half cells in an exact frame that must use a colour before it is defined. The next
+/// constant is the same for inexact frames, in which most half cells are kept. There, the savings
+/// must also be as large as the savings of this number of full uses.
 const LEAST_USES: f32 = 2.0;
 const LEAST_USES_INEXACT: f32 = 4.0;
 
@@ -244,7 +248,7 @@ impl Palette {
     /// Begins a frame, on a terminal with this `style`: counts the shown colours and the targets'
     /// colours, row by row, and defines the frequent ones.
     ///
-    /// Returns whether there are [definitions](Palette::definitions).
+    /// Returns true if there are [definitions](Palette::definitions).
     pub(crate) fn begin_frame(
         &mut self,
         screen: &Screen,
@@ -312,8 +316,8 @@ impl Palette {
         }
     }
 
-    /// Whether the definition of a colour with this number of uses saves more bytes than it takes,
-    /// compared with the entry that is now nearest to the colour.
+    /// Returns true if the definition of a colour with this number of uses saves more bytes than it
+    /// takes, compared with the entry that is now nearest to the colour.
     fn is_worth_defining(&mut self, Count { shade, count }: Count, price: Option<Price>) -> bool {
         if !shade.is_rgb() {
             return false;
@@ -332,7 +336,7 @@ impl Palette {
         uses * spared >= LEAST_USES_INEXACT * SPARED
     }
 
-    /// Defines the most frequent colours, as far as that saves bytes and there are free entries.
+    /// Defines the most frequent colours, as far as that saves bytes and entries are free.
     fn define_frequent(&mut self, price: Option<Price>, bytes: &mut Bytes) {
         let mut frequent = std::mem::take(&mut self.frequent);
         frequent.clear();
@@ -354,7 +358,7 @@ impl Palette {
         self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
         let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
-        // Each place refers to one entry; while that is shown, it must not be replaced.
+        // Each place refers to one entry, which must not be replaced while it is shown.
         let is_told_of = |shade: Shade| {
             let entry = usize::from(entries[entry_place(shade)]);
             is_shown[entry] && colors[entry] != Shade::DEFAULT
@@ -389,20 +393,20 @@ impl Palette {
     }
 }
 
-/// The entries, and the colours that they stand for.
+/// Chooses the entries, and replaces colours by them.
 #[derive(Debug)]
 struct Quantizer {
     clusters: Clusters,
-    /// The colour of each entry; [`Shade::NONE`] for undefined ones.
+    /// The colour of each entry. [`Shade::NONE`] for undefined entries.
     shades: Vec<Shade>,
-    /// The entries by the bits of their colours.
+    /// The entries, sorted by the bits of their colours.
     by_shade: Vec<(u32, u8)>,
     /// Recent colours with their nearest entries, by hash.
     known: Vec<NearCluster>,
-    /// The number of the frame, and of that in which the entries were last chosen.
+    /// The number of the frame, and the number of the frame in which the entries were last chosen.
     frame: u32,
     chosen_at: u32,
-    /// The mean error just after that.
+    /// The mean error just after that choice.
     error_then: f32,
 }
 
@@ -414,7 +418,7 @@ struct NearCluster {
     distance: f32,
 }
 
-/// The mean error that is always small enough.
+/// A mean error up to this never leads to a new choice.
 const SMALL: f32 = 0.004;
 /// The growth of the mean error after which entries are chosen again.
 const GROWTH: f32 = 1.4;
@@ -422,7 +426,7 @@ const GROWTH: f32 = 1.4;
 const FRAMES_PER_CHOICE: u32 = 15;
 /// A mean error that only a change of scene causes.
 const SCENE: f32 = 0.03;
-/// The recent colours are in a cache of this many ways and of 2^[`PLACE_BITS`] places each.
+/// Recent colours are in a cache with this number of ways, of 2^[`PLACE_BITS`] places each.
 const WAYS: usize = 4;
 
 impl Quantizer {
@@ -439,8 +443,8 @@ impl Quantizer {
         }
     }
 
-    /// Replaces the colours of all targets by entries. Definitions of entries, which the
-    /// terminal must receive before the frame, are added to `bytes`.
+    /// Replaces the colours of all targets by entries. Adds definitions to `bytes`, which the
+    /// terminal must receive before the frame.
     pub(crate) fn quantize(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
         self.frame += 1;
         let error = self.mean_error(screen);
@@ -454,8 +458,8 @@ impl Quantizer {
         }
     }
 
-    /// The colour of the entry that is shown for `shade`, and the entry; `None` for named colours and
-    /// the terminal's own.
+    /// The colour of the entry that is shown for `shade`, and the entry. `None` for named colours
+    /// and the terminal's default colours.
     pub(crate) fn told(&self, shade: Shade) -> Option<(Shade, u8)> {
         let channels = channels(shade)?;
         let place = match self.place_of(Shade::rgb(channels)) {
@@ -465,7 +469,7 @@ impl Quantizer {
         self.at(place)
     }
 
-    /// The nearest entry in place of `wanted`, whose own parameters take this number of bytes.
+    /// Replaces the colour by its nearest entry.
     pub(crate) fn telling(&mut self, telling: &mut Telling, price: Price) {
         let wanted = telling.ink;
         let Some((shade, entry)) = self.nearest(wanted.shade) else { return };
@@ -476,7 +480,7 @@ impl Quantizer {
         }
     }
 
-    /// As [`Quantizer::told`], and remembers it.
+    /// Returns the same as [`Quantizer::told`], and caches it.
     fn nearest(&mut self, shade: Shade) -> Option<(Shade, u8)> {
         let near = self.near(shade)?;
         self.at(near.place)
@@ -503,8 +507,8 @@ impl Quantizer {
         found.ok().map(|index| self.by_shade[index].1)
     }
 
-    /// The mean error of the targets, in Oklab; `None` without colours. Records which entries are in
-    /// use.
+    /// The mean error of the targets, in Oklab. `None` if there are no colours. Also records which
+    /// entries are in use.
     fn mean_error(&mut self, screen: &Screen) -> Option<f32> {
         let (mut error, mut count) = (0.0_f32, 0_u32);
         let mut last = (PackedCell::UNKNOWN, 0.0, 0);
@@ -524,7 +528,7 @@ impl Quantizer {
         (count > 0).then(|| error / count as f32)
     }
 
-    /// Whether the entries must be chosen again for a frame of this mean error.
+    /// Returns true if the entries must be chosen again for a frame with this mean error.
     fn must_choose(&self, error: Option<f32>) -> bool {
         let Some(error) = error else { return false };
         let has_grown = error > SMALL.max(self.error_then * GROWTH);
@@ -532,7 +536,8 @@ impl Quantizer {
         self.by_shade.is_empty() || has_grown && is_time
     }
 
-    /// Chooses entries for the targets, defines them, and records what the cells then show.
+    /// Chooses entries for the targets, defines them, and records the colours that the cells then
+    /// show.
     fn choose(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
         let samples = samples(screen);
         let wanted = self.clusters.fit(&samples, &self.shades);
@@ -561,7 +566,7 @@ impl Quantizer {
     }
 }
 
-/// The largest number of colours that entries are chosen for. In a large window, similar colours
+/// The maximum number of colours for which entries are chosen. In a large window, similar colours
 /// count as one.
 const MOST_SAMPLES: usize = 4096;
 
@@ -591,8 +596,8 @@ fn samples(screen: &Screen) -> Vec<Sample> {
     samples
 }
 
-/// Red, green and blue of a colour; `None` for named colours, which users redefine, and for the
-/// terminal's own.
+/// Red, green and blue of a colour. `None` for named colours, which users can redefine, and for the
+/// terminal's default colours.
 fn channels(shade: Shade) -> Option<[u8; 3]> {
     match shade.kind() {
         Kind::Rgb(channels) => Some(channels),
@@ -610,24 +615,25 @@ fn lab([red, green, blue]: [u8; 3]) -> [f32; 3] {
 struct Sample {
     shade: Shade,
     lab: [f32; 3],
-    /// The number of half cells that have it.
+    /// The number of half cells with this colour.
     count: f32,
 }
 
 /// Clusters of colours, one for each entry, found by k-means in Oklab.
 ///
-/// The search begins with the present entries. In each round, colours go to their nearest entries and entries move to
-/// the means of their colours. Entries without colours go to where the error is largest, the longest unused ones
-/// first (Linde, Buzo and Gray, 1980). An entry takes the colour of the frame that is nearest to its mean, so that
-/// large areas of one colour, such as black, are exact.
+/// The search begins with the current entries. In each round, colours go to their nearest entries
+/// and entries move to the means of their colours. Entries without colours move to the places with
+/// the largest errors. The entries that have been unused for the longest time move first (Linde,
+/// Buzo and Gray, 1980). An entry takes the colour of the frame that is nearest to its mean, so
+/// that large areas of one colour, such as black, are exact.
 ///
-/// Rejected: a median cut, which begins from nothing. An entry that keeps its place needs no new definition, and cells
-/// that show it need not be sent again.
+/// Rejected: a median cut, which begins from nothing. An entry that keeps its place needs no new
+/// definition, and cells that show it need not be sent again.
 #[derive(Debug)]
 struct Clusters {
-    /// Their centres in Oklab, component by component.
+    /// The centres of the clusters in Oklab, component by component.
     centers: [Vec<f32>; 3],
-    /// The number of the frame in which each was last in use.
+    /// The number of the frame in which each cluster was last in use.
     used_at: Vec<u32>,
 }
 
@@ -636,7 +642,7 @@ struct Clusters {
 struct Sums {
     count: f32,
     lab: [f32; 3],
-    /// The squares of the distances.
+    /// The sum of the squared distances.
     error: f32,
     /// The sample with the largest error, and that error.
     worst: (usize, f32),
@@ -644,9 +650,9 @@ struct Sums {
 
 /// The centre of an entry that is undefined.
 const UNDEFINED: f32 = 1e9;
-/// The largest number of rounds. Eight are needed to find all entries from nothing.
+/// The maximum number of rounds. Eight are needed to find all entries from nothing.
 const ROUNDS: u32 = 12;
-/// The mean error that needs no further entries.
+/// The mean error at which no further entries are needed.
 const ENOUGH: f32 = 0.002;
 /// An entry within this distance of its mean keeps its colour.
 const NEAR: f32 = 0.004;
@@ -705,7 +711,8 @@ impl Clusters {
         (all, distances / count)
     }
 
-    /// Moves entries without colours to where the error is largest. Returns whether there are any.
+    /// Moves entries without colours to the places with the largest errors. Returns true if any
+    /// entry was moved.
     fn split(&mut self, sums: &[Sums], samples: &[Sample]) -> bool {
         let mut spare: Vec<usize> =
             (0..sums.len()).filter(|&place| sums[place].count == 0.0).collect();
@@ -718,8 +725,8 @@ impl Clusters {
         !spare.is_empty() && !worst.is_empty()
     }
 
-    /// Moves each centre to a colour of its own cluster, or back if it is near enough to where it was
-    /// `before`. Returns the colours.
+    /// Moves each centre to a colour of its own cluster, or back to its place `before` if that is
+    /// near enough. Returns the colours.
     fn settle(
         &mut self,
         samples: &[Sample],
@@ -741,7 +748,7 @@ impl Clusters {
             let is_kept = !has_colors || self.distance(place, old) <= NEAR.max(distance);
             let (lab, chosen) =
                 if is_kept { (old, shade) } else { (samples[index].lab, samples[index].shade) };
-            // Two entries of one colour could not be told apart.
+            // Two entries with the same colour could not be told apart.
             let is_new = chosen != Shade::NONE && !settled.contains(&chosen);
             self.move_to(place, if is_new { lab } else { [UNDEFINED; 3] });
             settled.push(if is_new { chosen } else { Shade::NONE });

@@ -1,8 +1,7 @@
 //! The pen: the bytes of a frame, with the shortest motions of the cursor, and the state of the terminal after them.
 //!
-//! A move to a lower row is a carriage return and line feeds. With the return, the result is the
-//! same whether or not the terminal's line discipline adds a return to each feed; with a line feed
-//! alone it is not.
+//! A move to a lower row is a carriage return and line feeds. With the return, the result is the same whether or not
+//! the terminal's line discipline adds a return to each feed. With a line feed alone, it would differ.
 
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
@@ -21,13 +20,13 @@ use crate::terminal::cell_writer::style::{Shade, Style};
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
 pub(crate) struct Pen {
-    /// Begins with the start of synchronized output.
+    /// The bytes of the frame. They begin with the start of synchronized output.
     frame: Bytes,
     /// The size of the terminal.
     size: Size,
     style: Option<Style>,
-    /// The position of the cursor; `None` if it is unknown. In the column after the last one, the
-    /// cursor waits to wrap.
+    /// The position of the cursor. `None` if it is unknown. In the column after the last one, the cursor waits to
+    /// wrap.
     cursor: Option<PackedPosition>,
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
@@ -41,11 +40,11 @@ pub(crate) struct Pen {
 /// The state of the terminal between cells of pixels.
 ///
 /// Most cells of most pictures are two pixels, drawn after another such cell. Between them, the colours and the column
-/// of the cursor are in registers, and nothing else of the terminal's state matters: a cell takes half of the
-/// instructions that it takes one by one.
+/// of the cursor are in registers, and nothing else of the terminal's state matters. A cell then takes half of the
+/// instructions that it takes when it is drawn alone.
 #[derive(Clone, Copy)]
 struct PixelState {
-    /// The text colour and the background, in true colour; there are no modifiers.
+    /// The text colour and the background, in true colour. There are no modifiers.
     colors: [Shade; 2],
     /// The column of the cursor in the row.
     column: usize,
@@ -82,7 +81,7 @@ impl Pen {
         &mut self.palette
     }
 
-    /// Defines entries of the palette for the targets of `screen`, where that saves bytes.
+    /// Defines entries of the palette for the targets of `screen`, if that saves bytes.
     pub(crate) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
         if self.palette.begin_frame(screen, self.style, price) {
             self.frame();
@@ -90,32 +89,32 @@ impl Pen {
         }
     }
 
-    /// If the terminal shows only the palette's entries, defines these and replaces the colours of all targets by
-    /// them.
+    /// If all colours are shown as entries of the palette, defines the entries and replaces the colours of all targets
+    /// by them.
     pub(crate) fn quantize(&mut self, screen: &mut Screen) {
         if let Some(definitions) = self.palette.quantize(screen) {
             self.frame().push_text(definitions.as_slice());
-            // Its colours may be entries that have changed.
+            // The colours of the style may be entries that have changed.
             self.style = None;
         }
     }
 
-    /// Whether the terminal repeats characters (REP).
+    /// Returns true if the terminal repeats characters (REP).
     pub(crate) fn repeats(&self) -> bool {
         self.repeats
     }
 
-    /// The terminal's style; `None` if it is unknown.
+    /// The terminal's style. `None` if it is unknown.
     pub(crate) fn style(&self) -> Option<Style> {
         self.style
     }
 
-    /// The position of the cursor; `None` if it is unknown.
+    /// The position of the cursor. `None` if it is unknown.
     pub(crate) fn position(&self) -> Option<Position> {
         self.cursor().filter(|cursor| cursor.x < self.size.width)
     }
 
-    /// The position of the cursor, which moves to the first cell if its position is unknown.
+    /// The position of the cursor. Moves the cursor to the first cell if its position is unknown.
     pub(crate) fn settle(&mut self) -> Position {
         self.position().unwrap_or_else(|| {
             self.move_to(Position::ORIGIN);
@@ -187,8 +186,8 @@ impl Pen {
         }
     }
 
-    /// Draws a block at a position on the screen: a shape as `element` draws it. A block of one colour has the shape
-    /// of halves.
+    /// Draws a block at a position on the screen: a shape in the way in which `element` draws it. A block of one
+    /// colour has the shape of halves.
     pub(crate) fn draw_block(
         &mut self,
         position: Position,
@@ -217,7 +216,7 @@ impl Pen {
         self.advance(position);
     }
 
-    /// Writes the repetitions that are drawn but not written.
+    /// Writes the repetitions that are drawn but not written yet.
     #[cold]
     fn write_repeated(&mut self) {
         let Some((shape, element)) = self.last else { return };
@@ -265,7 +264,7 @@ impl Pen {
         }
     }
 
-    /// The position of the cursor, as in the field.
+    /// The position of the cursor, which may be in the column after the last one.
     #[inline]
     fn cursor(&self) -> Option<Position> {
         self.cursor.map(PackedPosition::get)
@@ -278,7 +277,7 @@ impl Pen {
         self.cursor = Some(PackedPosition::of(next));
     }
 
-    /// Moves a stretch of row `y`. The cells to its right move away and back.
+    /// Moves a stretch of row `y`. The cells to the right of the stretch move away and back.
     pub(crate) fn shift_row(&mut self, shift: &Shift, y: u16) {
         let (start, end) = (shift.columns.start as u16, shift.columns.end as u16);
         let by = shift.by as u16;
@@ -300,7 +299,7 @@ impl Pen {
         }
     }
 
-    /// Deletes or inserts `count` characters at a position; the cursor stays there.
+    /// Deletes or inserts `count` characters at a position. The cursor stays there.
     fn edit_row(&mut self, at: Position, count: u16, operation: u8) {
         self.move_to(at);
         let mut piece = self.frame().piece();
@@ -310,7 +309,7 @@ impl Pen {
         piece.finish();
     }
 
-    /// Draws these columns of row `y`. Has `draw_other` draw the ones that cannot be drawn as pixels now.
+    /// Draws these columns of row `y`. Calls `draw_other` for the cells that cannot be drawn as pixels now.
     #[inline]
     pub(crate) fn draw_pixels(
         &mut self,
@@ -336,8 +335,8 @@ impl Pen {
         self.keep_pixel_state(y, state);
     }
 
-    /// The state in which pixels can be drawn: after a cell of pixels in row `y`, on a terminal that neither
-    /// repeats characters nor has a palette.
+    /// The state in which pixels can be drawn: after a cell of pixels in row `y`, on a terminal that neither repeats
+    /// characters nor uses a palette.
     #[inline]
     fn pixel_state(&self, y: u16) -> Option<PixelState> {
         let Position { x, y: row } = self.cursor()?;
@@ -360,7 +359,7 @@ impl Pen {
         }
     }
 
-    /// Adds a cell of pixels where the cursor is, and returns the colours after it.
+    /// Adds a cell of pixels at the cursor, and returns the colours after it.
     #[inline]
     fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
         let (element, colors) = BlockElement::cheapest_after(current, pixels);
@@ -378,9 +377,9 @@ impl Pen {
     }
 }
 
-/// Whether all terminals advance the cursor by one cell for `symbol`: a European letter, or a symbol of the
-/// blocks from punctuation to arrows and the block elements. For others they differ in width, and join
-/// letters of some scripts.
+/// Returns true if all terminals advance the cursor by one cell for `symbol`. These are European letters, and symbols
+/// of the Unicode blocks from punctuation to arrows and of the block elements. For other symbols, terminals differ in
+/// width, and join letters of some scripts.
 fn advances_by_one(symbol: &str) -> bool {
     let mut characters = symbol.chars();
     let is_sure = |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1cc00}'..'\u{1cec0}' | '\u{1fb00}'..'\u{1fc00}');
@@ -391,9 +390,9 @@ fn advances_by_one(symbol: &str) -> bool {
 
 /// A position in one word.
 ///
-/// The pen stores its position after each cell and loads it before the next. The two fields of a [`Position`] were
-/// stored one by one and loaded as one word. A processor cannot forward two pending stores to one load, and waited a
-/// third of the time that drawing a cell took.
+/// Rejected: a [`Position`]. The pen stores its position after each cell and loads it before the next. The two fields
+/// were stored one by one and loaded as one word. A processor cannot forward two pending stores to one load, and
+/// waited for a third of the time that drawing a cell took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct PackedPosition(u32);
 
@@ -433,7 +432,7 @@ fn push_right(by: u16, piece: &mut Piece) {
     }
 }
 
-/// More line feeds than this are longer than an absolute row.
+/// More line feeds than this take more bytes than an absolute row.
 const MOST_FEEDS: u16 = 5;
 
 fn push_far(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
@@ -473,7 +472,7 @@ fn push_absolute(target: Position, piece: &mut Piece) {
     motion.end(b'H');
 }
 
-/// The number of bytes of a motion to column `x` by way of the first column.
+/// The number of bytes of a motion to column `x` through the first column.
 fn bytes_of_return(x: u16) -> usize {
     match x {
         0 => 1,

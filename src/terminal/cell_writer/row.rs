@@ -7,8 +7,9 @@
 //! Rejected: another character in place of the wanted one, such as its neighbour on a ramp of brightness. In ascii mode
 //! the character also identifies the surface, and most of the bytes are colours.
 //!
-//! A picture that does not change becomes exact by refinement, in a few frames of similar size. Each row that has not changed for some frames is refined even while others change, since a
-//! blinking cell or a clock changes in every picture. The worst cells come first.
+//! A picture that does not change becomes exact by refinement, in a few frames of similar size. The worst cells come
+//! first. A row that has not changed for some frames is refined even while other rows change, because a blinking cell
+//! or a clock changes in every picture.
 //!
 //! Rejected: reducing the tolerance step by step. Cells were sent twice, and the last frame had most of the bytes.
 
@@ -95,7 +96,7 @@ fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
     pen.draw_text(position, text, style);
 }
 
-/// Moves the stretches of a row that have moved sideways.
+/// Shifts the stretches of a row that have moved sideways.
 fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
         let targets = row.shown[from..].iter().zip(&row.targets[to..]);
@@ -109,14 +110,14 @@ fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
     shifts.end(row.marks);
 }
 
-/// Draws rows inexactly; keeps its memory between rows, one for each thread.
+/// Draws rows inexactly. Each thread has one encoder, which keeps its memory between rows.
 #[derive(Debug, Default)]
 pub(crate) struct RowEncoder {
     inks: Inks,
     /// The colours of the row's targets, and of the cells on the screen.
     wanted: Colors,
     shown: Colors,
-    /// The cost of keeping the two colours of each cell.
+    /// The cost of keeping each cell, for its two colours.
     keep: Vec<[f32; 2]>,
     /// The cost if the cells had moved.
     moved: Vec<[f32; 2]>,
@@ -126,8 +127,8 @@ pub(crate) struct RowEncoder {
 /// The two colours of each cell in L\*a\*b\*, component by component, so that several distances are
 /// computed at once.
 ///
-/// Characters are far from blocks and from other characters. A cell that may only be shown exactly
-/// is far from every colour and from every cell that looks different.
+/// Characters are placed far from blocks and from other characters. A cell that may only be shown exactly is placed
+/// far from every colour and from every cell that looks different.
 #[derive(Debug, Default)]
 struct Colors {
     components: [Vec<[f32; 2]>; 3],
@@ -178,7 +179,7 @@ impl RowEncoder {
         row.state.exact = row.shown == row.targets;
     }
 
-    /// Moves the stretches of a row that have moved sideways, at least approximately.
+    /// Shifts the stretches of a row that have moved sideways, at least approximately.
     fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
         let (wanted, moved) = (&self.wanted, &mut self.moved);
         let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
@@ -198,7 +199,7 @@ impl RowEncoder {
     }
 }
 
-/// The notation of the longest colour in a row of cells, on a terminal with or without a palette that may be defined.
+/// The notation of the longest colour in a row of cells. `has_palette` tells whether palette entries may be defined.
 fn notation(targets: &[PackedCell], has_palette: bool) -> Notation {
     let all = targets.iter().fold([0; 2], |all, target| {
         let colors = target.colors().map(Shade::in_bits);
@@ -241,12 +242,12 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
             let (apart, components) = (apart(id), components(inks));
             [0, 1, 2].map(|at| components[at].map(|component| component + apart[at]))
         }
-        // Cells that look different are far from each other.
+        // Cells that look different are placed far from each other.
         _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
     }
 }
 
-/// The share of the text colour in a shade; `None` for any other character.
+/// The share of the text colour in a shade. `None` for any other character.
 fn share_of_text(character: char) -> Option<f32> {
     let quarters = 1 + SHADES.iter().position(|&shade| shade == character)?;
     Some(quarters as f32 / 4.0)
@@ -258,7 +259,7 @@ fn mixed([text, ground]: [Ink; 2], share: f32) -> Ink {
     Ink { lab, ..text }
 }
 
-/// The target of a cell for the search; `None` if it may only be drawn exactly.
+/// The target of a cell for the search. `None` if the cell may only be drawn exactly.
 #[inline]
 fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
     let (form, colors) = target.recolorable(glyph_table)?;
@@ -330,7 +331,7 @@ impl Colors {
         }
     }
 
-    /// Moves the cells as the terminal does. The uncovered ones are far from all others.
+    /// Moves the cells as the terminal does. The uncovered cells become far from all others.
     fn shift(&mut self, shift: &Shift) {
         for components in &mut self.components {
             shift.apply(components, [-FAR; 2]);
@@ -340,8 +341,8 @@ impl Colors {
         }
     }
 
-    /// The cost of showing the cells of this row from `from` on in place of those of `others` from
-    /// `to` on, cell by cell.
+    /// Computes, cell by cell, the cost of showing this row's cells from column `from` on in place of the cells of
+    /// `others` from column `to` on.
     fn costs(
         &self,
         others: &Self,
@@ -372,7 +373,7 @@ impl Colors {
         }
     }
 
-    /// The cost of showing one cell in place of another of any shape: of its dots, and of the rest.
+    /// The cost of showing one cell in place of another of any shape: the cost of its dots, and the cost of the rest.
     #[inline]
     fn cost_of_shapes(&self, others: &Self, [from, to]: [usize; 2], price: Price) -> [f32; 2] {
         let lab = |colors: &Self, place: usize, which: usize| {
@@ -409,7 +410,7 @@ pub(crate) struct Refinement {
 /// The inexact cells.
 #[derive(Debug, Default)]
 struct Inexact {
-    /// Their errors and positions, row by row.
+    /// The errors and positions of the cells, row by row.
     cells: Vec<InexactCell>,
     inks: Inks,
 }
@@ -425,8 +426,8 @@ struct InexactCell {
 /// The number of frames in which a still picture becomes exact.
 const FRAMES: usize = 10;
 
-/// The number of frames without a change after which a row is refined while others change. Cells
-/// that soon move on would be drawn in vain.
+/// The number of frames without a change after which a row is refined while others change. Before that, cells that
+/// soon move on would be drawn in vain.
 const RESTING_FRAMES: usize = 10;
 
 thread_local! {
@@ -501,7 +502,7 @@ impl Inexact {
         self.cells.extend(errors(row, &mut self.inks));
     }
 
-    /// Keeps the worst cells, a share for one of `frames` frames, in the order of the screen.
+    /// Keeps the worst cells, as many as one of `frames` frames must draw, in the order of the screen.
     fn choose_worst(&mut self, frames: usize) {
         let share = self.cells.len().div_ceil(frames);
         if share < self.cells.len() {
@@ -524,7 +525,7 @@ fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = InexactC
     )
 }
 
-/// The largest distance of two colours in the same place; infinite if the cells cannot be compared.
+/// The largest distance between two colours at the same place. Infinite if the cells cannot be compared.
 fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
     let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };

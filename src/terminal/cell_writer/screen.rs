@@ -16,8 +16,8 @@ use crate::tui::canvas::{Canvas, Mosaic, true_color};
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
-/// It is a canvas; [`CellWriter::draw_frame`](super::CellWriter::draw_frame) passes it to its
-/// closure blank.
+/// The screen is a canvas. [`CellWriter::draw_frame`](super::CellWriter::draw_frame) passes it to its closure, with
+/// blank targets.
 #[derive(Debug, Default)]
 pub struct Screen {
     width: usize,
@@ -27,9 +27,9 @@ pub struct Screen {
     shown: Vec<PackedCell>,
     /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
-    /// The landmarks of the targets at the time when each row was last drawn.
+    /// The landmarks of each row's targets when the row was last drawn.
     marks: Vec<Mark>,
-    /// The intricate targets, which packed cells do not describe in full; empty before the first.
+    /// The intricate targets, which packed cells do not describe in full. Empty until there is one.
     wanted: Vec<Cell>,
     rows: Vec<RowState>,
 }
@@ -37,13 +37,13 @@ pub struct Screen {
 /// The state of a row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct RowState {
-    /// Whether it has changed targets.
+    /// `true` if targets of the row have changed.
     changed: bool,
-    /// Whether it has intricate cells, shown or as targets.
+    /// `true` if the row has intricate cells, shown or as targets.
     pub(crate) intricate: bool,
-    /// Whether it shows exactly its targets.
+    /// `true` if the row shows its targets exactly.
     pub(crate) exact: bool,
-    /// The number of frames for which it has not changed.
+    /// The number of frames for which the row has not changed.
     pub(crate) rested: u8,
 }
 
@@ -59,8 +59,8 @@ pub(crate) struct Row<'a> {
     pub(crate) state: &'a mut RowState,
 }
 
-// A call leaves nothing in this memory that a later call needs. So each thread has it once, and not each of the some
-// hundred screens of a server.
+// No call needs the content that an earlier call has left in this memory. Therefore each thread has it once, instead
+// of each of the several hundred screens of a server.
 thread_local! {
     /// The buffer into which widgets are drawn first.
     static SCRATCH: cell::Cell<Buffer> = cell::Cell::default();
@@ -100,7 +100,7 @@ impl Screen {
         self.redraw();
     }
 
-    /// Forgets the shown cells and has all rows drawn again.
+    /// Forgets the shown cells, so that all rows are drawn again.
     pub(crate) fn redraw(&mut self) {
         self.forget();
         self.rows.iter_mut().for_each(|row| row.changed = true);
@@ -112,8 +112,8 @@ impl Screen {
         self.rows.iter_mut().for_each(|row| row.exact = false);
     }
 
-    /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. Its
-    /// targets become blank.
+    /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. The targets in the
+    /// region become blank.
     pub(crate) fn clear(&mut self, region: ClearType, cursor: Position) {
         let row = usize::from(cursor.y) * self.width;
         let at = row + usize::from(cursor.x);
@@ -132,8 +132,8 @@ impl Screen {
         self.forget_cut(cells.end);
     }
 
-    /// Forgets a row that an erased region begins or ends in, at `place`, if it may show a wide
-    /// character: half of it may have been erased.
+    /// Forgets the row at `place`, in which an erased region begins or ends, if it may show a wide character. Half
+    /// of that character may have been erased.
     fn forget_cut(&mut self, place: usize) {
         let width = self.width.max(1);
         let y = place / width;
@@ -143,7 +143,7 @@ impl Screen {
         }
     }
 
-    /// Sets the target of a cell; does nothing off the screen.
+    /// Sets the target of a cell. Does nothing if the cell is off the screen.
     #[inline]
     pub(crate) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
@@ -176,8 +176,8 @@ impl Screen {
         }
     }
 
-    /// Sets an intricate target, and blanks the targets that it covers: ratatui does not send a covered
-    /// cell, and need not send it when it is uncovered.
+    /// Sets an intricate target, and blanks the targets that it covers. Ratatui does not send a covered cell, and
+    /// may not send it when it is uncovered.
     #[cold]
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
         let y = place / self.width;
@@ -195,7 +195,7 @@ impl Screen {
         }
     }
 
-    /// Begins a whole frame, with blank targets. Returns the targets before it.
+    /// Begins a whole frame, with blank targets. Returns the previous targets.
     pub(crate) fn begin_frame(&mut self) -> Vec<PackedCell> {
         let mut before = BEFORE.take();
         let (count, capacity) = (self.targets.len(), self.targets.capacity());
@@ -208,7 +208,7 @@ impl Screen {
         before
     }
 
-    /// Ends a whole frame: rows whose targets differ from those `before` it have changed.
+    /// Ends a whole frame. Rows whose targets differ from `before` are marked as changed.
     pub(crate) fn end_frame(&mut self, before: Vec<PackedCell>) {
         let width = self.width.max(1);
         let rows = self.targets.chunks(width).zip(before.chunks(width));
@@ -218,17 +218,17 @@ impl Screen {
         BEFORE.set(before);
     }
 
-    /// Whether any target has changed since the rows were drawn.
+    /// Returns true if any target has changed since the rows were drawn.
     pub(crate) fn is_changed(&self) -> bool {
         self.rows.iter().any(|row| row.changed)
     }
 
-    /// Whether every row shows exactly its targets, as rows without columns do.
+    /// Returns true if every row shows its targets exactly. Rows without columns always do.
     pub(crate) fn is_exact(&self) -> bool {
         self.width == 0 || self.rows.iter().all(|row| row.exact)
     }
 
-    /// The two colours of a shown cell; `None` if they are unknown, and off the screen.
+    /// The two colours of a shown cell. `None` if they are unknown or the cell is off the screen.
     pub(crate) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
@@ -236,7 +236,7 @@ impl Screen {
         Some(colors)
     }
 
-    /// The mosaic that a shown cell is, if it is one.
+    /// The mosaic of a shown cell, if it is a block.
     pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;
@@ -259,8 +259,7 @@ impl Screen {
         recolor(&mut self.targets, color);
     }
 
-    /// Records that the terminal shows other colours in place of some, so that all rows must be
-    /// compared with their targets.
+    /// Records that the terminal shows other colours than before. All rows must then be compared with their targets.
     pub(crate) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.shown, color);
         self.rows.iter_mut().for_each(|row| row.changed = true);
@@ -284,7 +283,7 @@ impl Screen {
         }
     }
 
-    /// The rows that do not show exactly their targets.
+    /// The rows that do not show their targets exactly.
     pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|row| !row.exact)
     }
@@ -306,7 +305,7 @@ impl Screen {
     }
 }
 
-/// Replaces the colours of `cells`. A cell is then unknown if one of its colours becomes [`Shade::NONE`].
+/// Replaces the colours of `cells`. A cell becomes unknown if one of its colours becomes [`Shade::NONE`].
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {
@@ -320,12 +319,12 @@ fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
 }
 
 impl Row<'_> {
-    /// The number of its cells.
+    /// The number of cells in the row.
     pub(crate) fn width(&self) -> usize {
         self.targets.len()
     }
 
-    /// Whether every cell differs from its target in its colours at most.
+    /// Returns true if every cell differs from its target at most in its colours or, for blocks, in its shape.
     pub(crate) fn is_near(&self) -> bool {
         let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
         let mut targets = self.shown.iter().zip(self.targets);
@@ -407,7 +406,7 @@ impl Canvas for Screen {
 }
 
 impl Screen {
-    /// The targets from `(x, y)` to the right; empty off the screen.
+    /// The targets from `(x, y)` to the right. Empty off the screen.
     #[inline]
     fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
         let row = usize::from(y) * self.width;
@@ -424,7 +423,7 @@ impl Screen {
         }
     }
 
-    /// Draws cells of two colours without a block element, in their lower colours.
+    /// Draws cells of two colours as spaces in their lower colours.
     fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
         for (x, colors) in (x..).zip(row) {
             self.draw_ascii(x, y, ' ', colors);

@@ -1,14 +1,15 @@
 //! Row shifts: the terminal moves cells that moved sideways, so that they are not sent again.
 //!
-//! In a picture that turns, most cells move by a few columns. Deleting and inserting characters
-//! (DCH and ICH) moves a stretch of a row for about twenty bytes, which a single cell may take too.
+//! When a picture turns, most cells move by a few columns. Deleting and inserting characters (DCH and ICH) moves a
+//! stretch of a row for about twenty bytes. A single cell may take as many.
 //!
 //! A move is detected by landmarks: cells that differ from the one before them, identified by a mark of eight bits.
 //! Each mark of a row is compared with all previous marks around it, in a few instructions for sixteen of them, and
 //! votes for the moves that may have brought it there.
 //!
-//! Rejected: comparing the appearance of cells, which took longer than the rest of the encoder. A table of marks, which
-//! missed marks that occur several times. Scrolling whole regions sideways: few terminals have left and right margins.
+//! Rejected: comparing the appearance of cells. It took longer than the rest of the encoder. Rejected: a table of
+//! marks. It missed marks that occur several times. Rejected: scrolling whole regions sideways. Few terminals have left
+//! and right margins.
 
 use std::ops::Range;
 
@@ -59,19 +60,19 @@ pub(crate) const CELL: Loss = 12 * BYTE;
 /// The approximate cost of a shift: two motions, a deletion and an insertion.
 const SHIFT: i32 = 20 * BYTE as i32;
 
-/// Finds the shifts of a row, one after another; keeps its memory between rows.
+/// Finds the shifts of a row, one after another. Keeps its memory between rows.
 #[derive(Debug, Default)]
 pub(crate) struct Shifts {
     landmarks: Landmarks,
-    /// The present losses, the losses after a move, and the losses after the best move.
+    /// The current losses. The next two fields are the losses after a move and after the best move.
     losses: Vec<Loss>,
     moved: Vec<Loss>,
     moved_best: Vec<Loss>,
 }
 
 impl Shifts {
-    /// Begins a row with these targets and the marks of the previous ones. `lose` adds the losses of showing the
-    /// cells that are now at the first column and after it, at the second column and after it.
+    /// Begins a row with these targets and the marks of the previous targets. `lose(from, to, losses)` adds the losses
+    /// that the row would have if the cells from column `from` on moved to column `to`.
     pub(crate) fn begin(
         &mut self,
         targets: &[PackedCell],
@@ -83,7 +84,7 @@ impl Shifts {
         lose(0, 0, &mut self.losses);
     }
 
-    /// The shift with the smallest loss after it, if it saves more than its cost.
+    /// The shift that saves the most, if it saves more than it costs.
     pub(crate) fn next(
         &mut self,
         mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
@@ -120,15 +121,15 @@ impl Shifts {
         &self.losses
     }
 
-    /// Ends the row: the marks of its present targets are the previous ones of the next frame.
+    /// Ends the row. The marks of its current targets become the previous marks for the next frame.
     pub(crate) fn end(&self, marks: &mut [Mark]) {
         marks.copy_from_slice(&self.landmarks.now);
     }
 }
 
 impl Shift {
-    /// The best shift by a move, and its saving, from the losses `now` and the losses if all cells
-    /// had `moved`.
+    /// The best shift by a move, and its saving. `now` are the current losses, and `moved` are the losses if all cells
+    /// moved.
     fn best(by: Move, now: &[Loss], moved: &[Loss]) -> (Self, i32) {
         let (_, first) = by.places();
         let stretch = best_stretch(&now[first..], moved);
@@ -159,7 +160,7 @@ impl Shift {
         }
     }
 
-    /// Moves the values in `row` as the terminal moves its cells; uncovered ones become `unknown`.
+    /// Moves the values in `row` as the terminal moves its cells. Uncovered cells become `unknown`.
     pub(crate) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         match self.way {
@@ -170,7 +171,6 @@ impl Shift {
     }
 }
 
-/// The sum of these losses.
 fn sum(losses: &[Loss]) -> i32 {
     losses.iter().map(|&loss| i32::from(loss)).sum()
 }
@@ -184,13 +184,13 @@ struct Landmarks {
     before: Vec<Mark>,
 }
 
-/// The farthest detected move: content that moves faster has usually changed in other ways too.
+/// The farthest detected move. Content that moves faster has usually changed in other ways, too.
 const FARTHEST: usize = 16;
-/// The number of places around a cell, with its own, at which a mark is looked for.
+/// The number of places at which a mark is searched: a cell's own place and the places around it.
 const PLACES: usize = FARTHEST + 1 + FARTHEST;
-/// The number of moves that are tried for a row. Twice as many save half a byte in a hundred.
+/// The number of moves that are tried for a row. Twice as many would save half a byte in a hundred.
 const MOST_TRIED: usize = 2;
-/// This number of landmarks may agree by chance.
+/// The number of landmarks that may agree by chance.
 const CHANCE: u16 = 2;
 
 impl Landmarks {
@@ -224,7 +224,7 @@ impl Landmarks {
         likely.into_iter().flatten()
     }
 
-    /// Counts, for each distance, the landmarks that have an equal previous mark there.
+    /// Counts, for each distance, the landmarks that have an equal previous mark at that distance.
     fn votes(&self) -> Votes {
         let mut votes = Votes([0; PLACES]);
         let around = self.before.windows(PLACES);
@@ -242,8 +242,8 @@ impl Landmarks {
     }
 }
 
-/// The number of landmarks with an equal previous mark at each distance, from left to right. The one in the
-/// middle is their own place.
+/// The number of landmarks with an equal previous mark at each distance, from left to right. The middle entry is their
+/// own place.
 struct Votes([u16; PLACES]);
 
 /// The number of votes that can be counted in eight bits.
@@ -253,8 +253,8 @@ impl Votes {
     /// Adds the votes of at most [`MOST_AT_ONCE`] landmarks, each with the previous marks around
     /// it.
     fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
-        // One loop for both sides: the compiler would unroll a shorter one instead of counting sixteen
-        // places at once.
+        // One loop serves both sides. The compiler would unroll a shorter loop instead of counting sixteen places at
+        // once.
         let mut votes = [0_u8; PLACES];
         for (now, around) in places {
             let around = around.first_chunk::<PLACES>();
@@ -277,8 +277,7 @@ impl Votes {
     }
 }
 
-/// Adds votes to sums. When this was inlined, the compiler counted eight places at once instead of
-/// sixteen.
+/// Adds votes to sums. Not inlined: when it was, the compiler counted eight places at once instead of sixteen.
 #[inline(never)]
 fn widen(sums: &mut [u16; PLACES], votes: &[u8; PLACES]) {
     for (sum, &votes) in sums.iter_mut().zip(votes) {
@@ -295,7 +294,7 @@ impl Mark {
     /// The mark of a cell that is equal to the one before it.
     pub(crate) const NONE: Self = Self(0);
 
-    /// The same as a previous mark. `NONE` has another value there, so that no mark is equal to it.
+    /// This mark as a previous mark. There, `NONE` has another value, so that no mark is equal to it.
     fn before(self) -> Self {
         Self(self.0.max(1))
     }
@@ -307,16 +306,16 @@ impl Mark {
             let pair = last.rotate_left(5).wrapping_add(hash);
             if last == hash { Self::NONE } else { Self(((pair >> 24) as u8).max(2)) }
         });
-        // The cell before the first one is unknown, so that the first one is no landmark.
+        // The cell before the first one is unknown, so the first cell is no landmark.
         hashes.first().map(|_| Self::NONE).into_iter().chain(marks)
     }
 }
 
-/// The approximate stretch with the largest saving, from the losses `now` and the losses if all
-/// cells had `moved`.
+/// An approximation of the stretch with the largest saving. `now` are the current losses, and `moved` are the losses if
+/// all cells moved.
 ///
-/// The search finds blocks first, and then moves the ends by cells. An exact search takes more time
-/// than its better result saves.
+/// The search finds blocks first, and then moves the ends by cells. Rejected: an exact search. It takes more time than
+/// its better result saves.
 fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     let width = now.len().min(moved.len());
     let (now, moved) = (&now[..width], &moved[..width]);
@@ -332,7 +331,7 @@ fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     start..end.max(start)
 }
 
-/// The number of cells of a block.
+/// The number of cells in a block.
 const BLOCK: usize = 8;
 
 /// The blocks with the largest saving.
@@ -398,7 +397,7 @@ mod tests {
 
     fn row(text: &str) -> Vec<PackedCell> {
         let mut glyph_table = GlyphTable::default();
-        // Letters then have the same ids in all texts.
+        // This gives the letters the same ids in all texts.
         (' '..='~').for_each(|letter| _ = glyph_table.id(Glyph::new(letter, Modifier::empty())));
         let target = |letter| PackedCell::of_character(letter, [Color::Reset; 2], &mut glyph_table);
         text.chars().map(target).collect()

@@ -19,7 +19,7 @@ pub(crate) struct Style {
     pub(crate) modifier: Modifier,
 }
 
-/// A modifier, and the parameters to turn it on and off.
+/// A modifier, and the parameters that turn it on and off.
 struct Switch {
     modifier: Modifier,
     on: u8,
@@ -58,12 +58,12 @@ impl Style {
         }
     }
 
-    /// These two colours, without modifiers.
+    /// A style of these two colours, without modifiers.
     pub(crate) fn plain(foreground: Shade, background: Shade) -> Self {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
-    /// These two colours, as ratatui names them, without modifiers.
+    /// A style of these two colours in ratatui's type, without modifiers.
     pub(crate) fn in_colors(colors: [Color; 2]) -> Self {
         let [foreground, background] = colors.map(Shade::of);
         Self::plain(foreground, background)
@@ -78,7 +78,7 @@ impl Style {
         [self.foreground, self.background]
     }
 
-    /// The text colour and the background; `None` with modifiers.
+    /// The text colour and the background. `None` if there are modifiers.
     pub(crate) fn plain_colors(self) -> Option<[Shade; 2]> {
         self.has_no_modifiers().then_some(self.colors())
     }
@@ -91,8 +91,8 @@ impl Style {
         piece.finish();
     }
 
-    /// Adds the change from `current`, or from an unknown style, to this style; `told` maps colours
-    /// to the ones to send.
+    /// Adds the change from `current`, or from an unknown style, to this style. `told` maps each colour to the colour
+    /// to send.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(crate) fn push_from(
@@ -120,7 +120,7 @@ impl Style {
         rendition.end(b'm');
     }
 
-    /// The parameters that switch from the modifiers `known` to these, and their number.
+    /// The parameters that switch from the modifiers `known` to this style's modifiers, and their number.
     #[cold]
     fn switches_from(self, known: Modifier) -> ([u8; 2 * SWITCHES.len()], usize) {
         let removed = known.difference(self.modifier);
@@ -143,8 +143,8 @@ impl Style {
     }
 }
 
-/// A colour in the form that SGR writes, in few bits: most operations on colours are comparisons. Ratatui has several
-/// names for some colours.
+/// A colour in the form that SGR writes, in few bits, because most operations on colours are comparisons. Each colour
+/// has one value, while ratatui has several names for some colours.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shade(u32);
 
@@ -163,7 +163,7 @@ pub(crate) enum Notation {
     Named,
     /// As one of the 240 fixed colours, in up to eight bytes.
     Indexed,
-    /// As an entry of the palette if one holds it, in up to eight bytes.
+    /// As an entry of the palette if an entry holds the colour, in up to eight bytes.
     Entry,
     /// As red, green and blue, in up to sixteen bytes.
     Rgb,
@@ -196,7 +196,7 @@ impl Shade {
 
     #[inline]
     pub(crate) fn of(color: Color) -> Self {
-        // Most colours are RGB: this branch is more predictable than a jump table of all kinds.
+        // Most colours are RGB, so this branch is more predictable than a jump table of all kinds.
         if let Color::Rgb(red, green, blue) = color {
             Self::rgb([red, green, blue])
         } else {
@@ -240,13 +240,13 @@ impl Shade {
         self.0
     }
 
-    /// The colour of the number in the lower bits of `bits`; the upper bits are ignored.
+    /// The colour whose number is in the lower bits of `bits`. The upper bits are ignored.
     #[inline]
     pub(crate) const fn from_bits(bits: u32) -> Self {
         Self(bits & ((1 << Self::BITS) - 1))
     }
 
-    /// A hash of so many bits.
+    /// A hash with this number of bits.
     #[inline]
     pub(crate) const fn hash(self, bits: u32) -> usize {
         (self.0.wrapping_mul(0x9E37_79B1) >> (u32::BITS - bits)) as usize
@@ -266,7 +266,7 @@ impl Shade {
         self.0 & Self::RGB != 0
     }
 
-    /// The colour as ratatui names it.
+    /// The colour in ratatui's type.
     pub(crate) fn color(self) -> Color {
         match self.kind() {
             Kind::Default => Color::Reset,
@@ -300,8 +300,8 @@ impl Shade {
         }
     }
 
-    /// Adds the change of the text colour and the background from `current` to `new`; at least one of them must
-    /// differ; `told` maps colours to the ones to send.
+    /// Adds the change of the text colour and the background from `current` to `new`. At least one of them must
+    /// differ. `told` maps each colour to the colour to send.
     #[inline]
     pub(crate) fn push_change(
         new: [Self; 2],

@@ -187,7 +187,7 @@ fn the_cursor_is_shown_where_a_frame_puts_it_and_hidden_again() {
     assert!(hidden(&screen));
 }
 
-/// A glyph without an id is shown nevertheless, however it is drawn.
+/// A glyph without an id is still shown, however it is drawn.
 #[test]
 fn glyphs_without_ids_are_shown() {
     let intensities = [Modifier::empty(), Modifier::BOLD, Modifier::DIM];
@@ -478,7 +478,7 @@ fn draw_cells(writer: &mut CellWriter<Screen>, picture: &Buffer) {
     writer.flush().unwrap();
 }
 
-/// The cells of `region`, by their places in reading order.
+/// Erases `region` of a picture, whose cells are in reading order.
 fn erase(picture: &mut Buffer, region: ClearType, cursor: Position) {
     let width = usize::from(picture.area.width);
     let line = usize::from(cursor.y) * width;
@@ -497,7 +497,7 @@ proptest! {
     #[test]
     fn an_erased_region_is_known_to_be_blank(
         pictures in prop::collection::vec(any_pixels(24), 2),
-        // Some are off the screen, which a terminal takes for the nearest cell.
+        // Some places are off the screen. A terminal uses the nearest cell instead.
         place in (0..9_u16, 0..6_u16),
         moves: bool,
         region in prop::sample::select(vec![

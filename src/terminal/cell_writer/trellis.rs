@@ -1,21 +1,18 @@
 //! The search for the cheapest way to show a row inexactly.
 //!
-//! Each cell is kept, or drawn with one of several glyphs in the terminal's present colours or in
-//! new ones. The best choice for a cell depends on the colours that the cells before it have set.
-//! So a row is searched as video encoders do it: through a trellis, cell by cell, keeping the few
-//! cheapest paths (Viterbi's algorithm, IEEE Transactions on Information Theory 13, 1967, over a
-//! beam). The cost of a path is its bytes plus the price of its errors in bytes; no colour is
-//! farther off than the fidelity allows. A character is searched as a half block with only one
-//! glyph, its own.
+//! Each cell is kept, or drawn with one of several glyphs in the terminal's current colours or in new colours. The
+//! best choice for a cell depends on the colours that the cells before it have set. Therefore a row is searched as in
+//! a video encoder: through a trellis, cell by cell, keeping the few cheapest paths (Viterbi's algorithm, IEEE
+//! Transactions on Information Theory 13, 1967, over a beam). The cost of a path is its bytes plus the price of its
+//! errors in bytes. No colour is farther off than the fidelity allows. A character is searched as a half block with
+//! only one glyph, its own.
 //!
-//! Each field of the paths is an array, so that all paths are computed at once. Costs are relative:
-//! they omit costs that all paths share. A cell without a cursor is skipped if keeping it costs
-//! less than a motion of the cursor; to search these cells, too, took a fifth more instructions for
-//! the same bytes and error.
+//! Each field of the paths is an array, so that all paths are computed at once. Costs are relative: they omit costs
+//! that all paths share. A cell at which no path has its cursor is skipped if keeping it costs less than a motion of
+//! the cursor. Rejected: searching these cells, too. It took a fifth more instructions for the same bytes and error.
 //!
-//! Rejected: a greedy pass, which keeps each cell within a threshold and draws the others in the
-//! present colours if these are within it. It took 1.7 times the bytes at the same mean error at
-//! high fidelity, and 2.3 times at low.
+//! Rejected: a greedy pass, which keeps each cell within a threshold and draws the others in the current colours if
+//! these are within it. It took 1.7 times the bytes at the same mean error at high fidelity, and 2.3 times at low.
 
 use super::block::{BlockElement, Shape};
 use super::ink::{Ink, Inks, Price, Telling};
@@ -28,7 +25,7 @@ pub(crate) struct Wanted {
     pub(crate) inks: [Ink; 2],
     /// The shape of a block; [`Shape::HALF`] for a character.
     pub(crate) shape: Shape,
-    /// The bytes of its only glyph; `None` if any block element will do.
+    /// The number of bytes of its only glyph. `None` if any block element will do.
     pub(crate) character: Option<u8>,
 }
 
@@ -37,7 +34,7 @@ pub(crate) struct Wanted {
 pub(crate) enum Action {
     /// Draw it exactly.
     DrawExactly,
-    /// Draw it as this block element, or a character by its own glyph, in this style.
+    /// Draw it as this block element or, if it is a character, as its own glyph, in this style.
     Draw(BlockElement, Style),
 }
 
@@ -74,7 +71,7 @@ pub(crate) struct Trellis {
 struct Step {
     column: u16,
     turns: [Turn; KEPT],
-    /// The state of the terminal after each.
+    /// The state of the terminal after each turn.
     keys: [u64; KEPT],
 }
 
@@ -85,7 +82,7 @@ enum StepKind {
     Draw(BlockElement),
 }
 
-/// The cheapest paths past a cell, in no order; absent paths have infinite cost.
+/// The cheapest paths past a cell, in no order. Absent paths have infinite cost.
 #[derive(Clone, Copy, Debug)]
 struct Paths {
     /// In bytes, without the costs that all paths share.
@@ -108,7 +105,7 @@ const NOWHERE: f32 = -1e6;
 /// An unknown colour, which is far from all others.
 const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: Shade::DEFAULT };
 
-/// A cell that costs less than this to keep, in bytes, is drawn only if a cursor is at it.
+/// A cell that costs less than this to keep, in bytes, is drawn only if a path has its cursor there.
 const NEGLIGIBLE: f32 = 4.0;
 
 impl Trellis {
@@ -125,7 +122,7 @@ impl Trellis {
         self.steps.clear();
         let mut paths = Paths::from_start(terms.style, store.inks);
         let mut survivors = Survivors::of(&paths);
-        // Whether a path has drawn the cell before, so that its cursor is at this cell.
+        // True if a path has drawn the cell before, so that its cursor is at this cell.
         let mut is_drawn = false;
         for (x, [one, other]) in keep.iter().enumerate() {
             let keep = one + other;
@@ -230,8 +227,8 @@ impl Paths {
     }
 }
 
-/// The number of places for new colours of a cell: of its upper half, of its lower half, and one
-/// for both. It is the number of paths, so that the index of a path or a colour needs no check.
+/// The number of places for a cell's new colours: one for its upper half, one for its lower half, and one for both.
+/// It equals the number of paths, so that the index of a path or a colour needs no bounds check.
 const FRESH: usize = KEPT;
 
 /// A cell to draw.
@@ -240,12 +237,12 @@ struct Branches<'a> {
     price: Price,
     /// The prices of errors in the upper half and in the lower, or in the dots and the rest.
     prices: [Price; 2],
-    /// The bytes of the glyph that shows both colours.
+    /// The number of bytes of the glyph that shows both colours.
     bytes: f32,
     paths: &'a Paths,
     x: u16,
     repeats: bool,
-    /// The cost of each path to this cell, and the least of these.
+    /// The cost of each path to this cell. The next field is the least of these costs.
     start: Lanes,
     least: f32,
 }
@@ -255,14 +252,14 @@ const UPPER: u8 = 0;
 const LOWER: u8 = 1;
 const BOTH: u8 = 2;
 
-/// The bytes of the sequences that set one colour and both, without the parameters.
+/// The numbers of bytes of the sequences that set one colour and both, without the parameters.
 const ONE_COLOR: f32 = 3.0;
 const TWO_COLORS: f32 = 4.0;
-/// The fewest bytes of a colour's parameters.
+/// The smallest number of bytes of a colour's parameters.
 const SHORTEST_COLOR: f32 = 2.0;
-/// The fewest bytes of a palette entry's parameters.
+/// The smallest number of bytes of a palette entry's parameters.
 const SHORTEST_ENTRY: f32 = 7.0;
-/// The approximate bytes of one repetition of the last block.
+/// The approximate number of bytes of one repetition of the last block.
 const REPETITION: f32 = 0.5;
 
 impl<'a> Branches<'a> {
@@ -280,8 +277,8 @@ impl<'a> Branches<'a> {
         Self { wanted, price, prices, bytes, paths, x, repeats, start, least }
     }
 
-    /// Draws in the terminal's present colours, in one new colour and in two. A cell that is
-    /// already right is drawn again only if that is a shorter way to the next cell.
+    /// Draws in the terminal's current colours, in one new colour and in two. A cell that is already right is drawn
+    /// again only if that is a shorter way to the next cell.
     #[inline]
     fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
         let is_right = survivors.is_right();
@@ -446,8 +443,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// Draws in two new colours. All paths then lead to the same state, so that only the cheapest
-    /// is added.
+    /// Draws in two new colours. All paths then lead to the same state, so only the cheapest is added.
     #[inline]
     fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
         let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes;
@@ -472,7 +468,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// Adds them if at least one would survive. Not inlined, so that the check before it is.
+    /// Adds the paths if at least one would survive. Not inlined, so that the check before the call can be.
     #[inline(never)]
     fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
         for (path, &cost) in costs.iter().enumerate() {
@@ -500,13 +496,13 @@ impl<'a> Branches<'a> {
     }
 }
 
-/// The fewest parameter bytes of a colour that takes `bytes` itself, or of an entry in place of it.
+/// The smallest number of parameter bytes of a colour that takes `bytes` itself, or of an entry in its place.
 #[inline]
 fn shortest(bytes: f32, palette: &Palette) -> f32 {
     if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }
 }
 
-// The longer of the following functions are not inlined: on their own they compile to vector instructions, four paths
+// The longer of the following functions are not inlined. On their own they compile to vector instructions, four paths
 // at a time. When they were inlined, the compiler split the paths, and a cell took three times the instructions.
 
 /// A number for each path.
@@ -515,7 +511,7 @@ type Lanes = [f32; KEPT];
 /// L*, a* and b* of a colour for each path.
 type Labs = [Lanes; 3];
 
-/// The bytes of a glyph of one colour, and of two.
+/// The numbers of bytes of a glyph of one colour, and of two.
 const SPACE: f32 = 1.0;
 const HALF_BLOCK: f32 = 3.0;
 
@@ -537,7 +533,7 @@ struct Blocks {
     lower: Lanes,
 }
 
-/// The costs of the paths, plus the approximate bytes to move their cursors to column `x`.
+/// The costs of the paths, plus the approximate number of bytes that move their cursors to column `x`.
 #[inline(never)]
 fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     let x = f32::from(x);
@@ -549,8 +545,8 @@ fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     }
 }
 
-/// Measures the errors of the paths' colours against the wanted ones, and the costs of the blocks
-/// in them. One function does both, so that no number is stored and loaded again.
+/// Measures the errors of the paths' colours against the wanted colours, and the costs of the blocks in them. One
+/// function does both, so that no number is stored and loaded again.
 #[inline(never)]
 fn measure(
     labs: &[Labs; 2],
@@ -607,17 +603,17 @@ fn least(costs: &Lanes) -> f32 {
     min(min(costs[0], costs[1]), min(costs[2], costs[3]))
 }
 
-/// The lesser of two numbers, in one instruction; `f32::min` also tests for NaN.
+/// The lesser of two numbers, in one instruction. `f32::min` also tests for NaN.
 #[inline]
 fn min(one: f32, other: f32) -> f32 {
     if one < other { one } else { other }
 }
 
-/// The cheapest paths past a cell so far. No two lead to the same colours and cursor column.
+/// The cheapest known paths past a cell. No two lead to the same colours and cursor column.
 struct Survivors {
     cost: Lanes,
     turns: [Turn; KEPT],
-    /// The states that they lead to.
+    /// The states to which the paths lead.
     keys: [u64; KEPT],
     /// L*, a* and b* of the new colours.
     fresh: [[f32; 3]; FRESH],
@@ -625,7 +621,7 @@ struct Survivors {
     keep: f32,
     /// A path survives only if it costs less than this.
     highest: f32,
-    /// The index of the most expensive one.
+    /// The index of the most expensive survivor.
     worst: usize,
     is_changed: bool,
 }
@@ -635,8 +631,8 @@ struct Survivors {
 struct Turn {
     kind: StepKind,
     before: u8,
-    /// The sources of the text and background colours: below [`KEPT`] the paths before, from there
-    /// on the fresh colours.
+    /// The sources of the text and background colours. Values below [`KEPT`] are the paths before, and higher values
+    /// are the fresh colours.
     sources: [u8; 2],
 }
 
@@ -680,25 +676,26 @@ impl Survivors {
         self.find_worst();
     }
 
-    /// Whether the cell shows its target exactly.
+    /// Returns true if the cell shows its target exactly.
     #[inline]
     fn is_right(&self) -> bool {
         self.keep == 0.0
     }
 
-    /// Whether a path of this cost would survive.
+    /// Returns true if a path of this cost would survive.
     #[inline]
     fn would_keep(&self, cost: f32) -> bool {
         cost < self.highest
     }
 
-    /// Whether any path was added.
+    /// Returns true if any path was added.
     #[inline]
     fn is_changed(&self) -> bool {
         self.is_changed
     }
 
-    /// Adds a path that is cheaper than the most expensive survivor.
+    /// Adds a path that is cheaper than the most expensive survivor. It replaces the path to the same state or, if
+    /// there is none, that survivor.
     #[inline]
     fn add(&mut self, cost: f32, key: u64, turn: Turn) {
         let mut place = self.worst;
@@ -752,7 +749,7 @@ const CURSOR: u64 = (1 << GROUND) - 1;
 struct Told {
     kept: u64,
     set: u64,
-    /// For text and background, the bits of a path's index to keep, and the bits to set.
+    /// For the text and the background: the bits of a path's index to keep, and the bits to set.
     kept_sources: [u8; 2],
     set_sources: [u8; 2],
 }
@@ -761,13 +758,13 @@ impl Told {
     const NOTHING: Self =
         Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
 
-    /// Adds this colour of the text.
+    /// Adds this text colour.
     #[inline]
     fn text(self, shade: Shade, source: u8) -> Self {
         self.with(shade, TEXT, 0, source)
     }
 
-    /// Adds this colour of the background.
+    /// Adds this background colour.
     #[inline]
     fn ground(self, shade: Shade, source: u8) -> Self {
         self.with(shade, GROUND, 1, source)

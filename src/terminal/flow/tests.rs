@@ -1,5 +1,5 @@
-//! Tests of flow control: of the decisions after sequences of events, of whole simulated links, and together with the
-//! encoder.
+//! Tests of flow control: decisions after sequences of events, whole simulated links, and flow control together with
+//! the encoder.
 
 mod scenarios;
 mod simulation;
@@ -19,7 +19,7 @@ use crate::tui::GlyphSet;
 
 const MILLISECOND: Duration = Duration::from_millis(1);
 const SECOND: Duration = Duration::from_secs(1);
-/// Bytes a second.
+/// Bytes per second.
 const MEGABIT: f64 = 125_000.0;
 
 /// A flow whose terminal has answered once, after 100 ms.
@@ -102,7 +102,7 @@ fn an_answer_that_is_lost_shifts_the_others_until_the_next_fence() {
     let mut now = SECOND;
     flow.sent(now, 1000, Request::Status);
     let mut requests = VecDeque::new();
-    // The first answer is lost; after it, one frame is always in flight.
+    // The first answer is lost. After it, one frame is always in flight.
     for _ in 0..100 {
         now += 60 * MILLISECOND;
         let request = flow.request(now);
@@ -250,7 +250,7 @@ fn on_a_fast_link_every_frame_is_exact_and_in_time() {
     }
 }
 
-/// The quotient of bytes and busy time mistakes jitter for slowness: 0 to 100 ms each way made most
+/// Rejected: the quotient of bytes and busy time. It mistakes jitter for slowness: 0 to 100 ms each way made most
 /// frames as coarse as possible.
 #[test]
 fn jitter_is_not_taken_for_slowness() {
@@ -278,8 +278,8 @@ fn frames_are_exact_again_when_the_link_has_become_fast() {
     assert_eq!(line.players[0].flow.fidelity(), Fidelity::EXACT);
 }
 
-/// When frames were removed after a timeout, their late answers made a link of 100 ms seem one of 0
-/// to 17 ms, for as long as anything moved.
+/// Rejected: removing frames after a timeout. Their late answers made a link of 100 ms look like a link of 0 to 17
+/// ms, as long as anything moved.
 #[test]
 fn after_a_stall_answers_belong_to_their_frames() {
     let mut line = Simulation::of_one(50 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
@@ -297,7 +297,7 @@ fn after_a_stall_answers_belong_to_their_frames() {
     assert_eq!(line.players[0].latencies.iter().find(slow).map(|one| one.taken), None);
 }
 
-/// When frames were sent to a link that did not answer, 30 s of them waited for it.
+/// Rejected: sending frames to a link that does not answer. 30 s of frames waited for it.
 #[test]
 fn no_frames_queue_before_a_link_that_has_become_slow() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
@@ -324,16 +324,15 @@ fn two_sessions_share_a_link_in_time() {
     }
 }
 
-/// The frames in flight when a link becomes slow arrive before any new one. Without waiting for
-/// late answers, and with all frames that the link has room for, they had 78 kB in the median and
-/// 103 kB at most.
+/// The frames in flight when a link becomes slow arrive before any new frame. Without waiting for late answers, and
+/// with all frames for which the link has room, they took 78 kB in the median and 103 kB at most.
 #[test]
 fn little_is_in_flight_when_a_link_becomes_slow() {
     let [median, most] = scenarios::queued_after_drop(20, 20, Frames::CITADEL);
     assert!(median <= 50_000.0 && most <= 70_000.0, "{median} bytes, {most} at most");
 }
 
-/// The tables in the documentation are the present results of the simulation.
+/// The tables in the documentation equal the current results of the simulation.
 #[test]
 fn the_documented_tables_are_those_of_this_policy() {
     let documented = include_str!("../../../docs/links.md").replace("\r\n", "\n");
@@ -344,8 +343,7 @@ fn the_documented_tables_are_those_of_this_policy() {
 }
 
 proptest! {
-    /// On any link, after some seconds, frames on the screen are not much older than the link makes
-    /// them.
+    /// On any link, after some seconds, frames on the screen are not much older than is unavoidable on that link.
     #[test]
     fn frames_become_fresh_on_any_link(
         delay in 0..200_u64,
@@ -410,8 +408,8 @@ impl FrameSource for Game {
     }
 }
 
-/// When fidelity had no effect on palettes and characters, 256 colours gave 12 frames a second and
-/// characters 8.
+/// Before fidelity applied to palettes and characters, 256 colours reached 12 frames per second, and characters
+/// reached 8.
 #[test]
 fn in_every_depth_and_glyph_mode_a_megabit_carries_twenty_frames_a_second() {
     let link = Conditions { delay: 50 * MILLISECOND, jitter: Duration::ZERO, rate: MEGABIT };

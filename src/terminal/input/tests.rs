@@ -30,7 +30,7 @@ fn mouse(kind: MouseEventKind, place: [u32; 2]) -> Input {
     Input::Mouse(MouseReport { kind, place })
 }
 
-/// All units that a terminal sends at once, with their meanings.
+/// Complete units that terminals send, with their meanings.
 fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
     let answer = Input::Answer;
     let meaningful = [

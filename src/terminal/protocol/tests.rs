@@ -84,7 +84,8 @@ fn keyboard_flags_are_popped_after_a_loss_only_if_they_were_received() {
     protocol.receive(b"\x1b[0n", at(30));
     let text = protocol.changes().end_after_loss();
     assert!(text.contains(sequence::POP_KEY_FLAGS) && !text.contains(sequence::CLEAR_KEY_FLAGS));
-    // A part of the sequences that end the session may have arrived, the pop among them.
+    // The terminal may have received a part of the sequences that end the session, including the
+    // pop.
     let mut changes = protocol.changes();
     changes.doubt_key_flags();
     assert!(!changes.end_after_loss().contains(sequence::POP_KEY_FLAGS));

@@ -1,16 +1,19 @@
-//! The two colours of a cell and the dots that have the first of them.
+//! Chooses the two colours of a cell, and the dots that have the first of them.
 //!
 //! The best two colours for a set of points in a Euclidean space are the means of its two parts, and the best
-//! parts lie on either side of a plane. So the threshold with the least squared error is taken along one
-//! direction, from the mean of the darker to the mean of the lighter pixels.
+//! parts lie on either side of a plane. Therefore the pixels are compared along one direction, from the mean of
+//! the darker pixels to the mean of the lighter pixels, and divided at the threshold with the least squared
+//! error.
 //!
-//! The space is the square of each channel, weighted: linear light almost, since dots that blend in the eye
-//! blend in light. [`CELLS`] cells are split at once, without branches, as vectors of 16 bits.
+//! The coordinates are the weighted squares of the channels. They approximate linear light, because dots that
+//! blend in the eye blend in light. [`CELLS`] cells are split at once, without branches, as vectors of 16 bits.
 //!
-//! Rejected: one cell at a time, with up to three directions and tables of linear light, which took 153 million
-//! instructions for frames from intents to bytes that take 105 now. Its squared error was at most 0.8 hundredths
-//! less in pictures and 2 to 4 hundredths less in random cells. One colour for cells of nearly one: at 4 levels a
-//! channel these are 2 in 100. The exact search over all masks, 127 of them for octants.
+//! Rejected: splitting one cell at a time, with up to three directions and tables of linear light. From intents
+//! to bytes, frames then took 153 million instructions, and now take 105 million. Its squared error was at most
+//! 0.8 % less in pictures and 2 to 4 % less in random cells. Rejected: one colour for cells of nearly one colour.
+//! Within 4 levels per channel, these are only 2 cells in 100. Rejected: the exact search over all masks. Octants
+//! have 127 of them.
+//! Octants have 127 of them.
 
 #![expect(
     clippy::needless_range_loop,
@@ -22,14 +25,14 @@ use std::array;
 
 use crate::color::Rgb;
 
-/// The number of cells that are split at once: few enough for the first cache, and too many for the compiler to
-/// unroll its loops instead of using vectors. Windows are often a multiple of it wide.
+/// The number of cells that are split at once. They are few enough for the first-level cache, and too many for
+/// the compiler to unroll its loops instead of using vectors. Windows are often a multiple of it wide.
 const CELLS: usize = 40;
 
-/// A number for each of several cells.
+/// A value for each of several cells.
 type Lanes<T> = [T; CELLS];
 
-/// The dots of several cells in two colours each.
+/// The splits of several cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Splits {
     /// The dots with the first colour: the lowest bit is the first pixel. The last pixel is never among them.
@@ -37,7 +40,7 @@ pub(crate) struct Splits {
     colors: [Lanes<Rgb>; 2],
 }
 
-/// One of them.
+/// The split of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Split {
     pub(crate) mask: u8,
@@ -45,7 +48,7 @@ pub(crate) struct Split {
 }
 
 impl Splits {
-    /// The splits of so many cells in a row. `pixel(x, place)` is the pixel at a place of the cell `x`.
+    /// The splits of the `width` cells of a row. `pixel(x, place)` returns the pixel at a place of cell `x`.
     pub(crate) fn of_row<const N: usize>(
         width: u16,
         pixel: impl Fn(u32, usize) -> Rgb,
@@ -54,7 +57,7 @@ impl Splits {
         let splits = (0..u32::from(width)).step_by(CELLS).flat_map(move |first| {
             let mut pixels = [[Rgb::BLACK; CELLS]; N];
             for cell in 0..CELLS {
-                // The last cell is repeated if there are no more.
+                // The last cell is repeated if there are no more cells.
                 let x = (first + cell as u32).min(last);
                 for (place, pixels) in pixels.iter_mut().enumerate() {
                     pixels[cell] = pixel(x, place);
@@ -68,12 +71,12 @@ impl Splits {
     }
 }
 
-/// The share of red, green and blue light in what is seen, as two powers of two each: 0.56, 1 and 0.38 of the
-/// squares, which are light almost. The largest has 13 bits.
+/// The weights of red, green and blue, as two powers of two each: 0.56, 1 and 0.38 of the squares, which are
+/// almost light. The largest weighted square has 13 bits.
 const SHIFTS: [[u32; 2]; 3] = [[4, 7], [4, 4], [5, 6]];
 
 impl Splits {
-    /// The splits of cells by their pixels: two to eight in each cell.
+    /// The splits of cells, given their pixels: two to eight in each cell.
     #[inline(never)]
     fn of<const N: usize>(pixels: &[Lanes<Rgb>; N]) -> Self {
         if let [first, last] = pixels.as_slice() {
@@ -106,7 +109,7 @@ impl Splits {
     }
 }
 
-/// Does something with each number of several places and cells.
+/// Calls `act` with each value, its place and its cell.
 #[inline(always)]
 fn for_each<T, const N: usize>(
     values: &mut [Lanes<T>; N],
@@ -119,7 +122,7 @@ fn for_each<T, const N: usize>(
     }
 }
 
-/// All bits, or none.
+/// All bits if `is_set`, or none.
 #[inline(always)]
 fn to_mask(is_set: bool) -> i16 {
     -i16::from(is_set)
@@ -146,8 +149,9 @@ fn points<const N: usize>(channels: &[[Lanes<u16>; N]; 3]) -> [[Lanes<i16>; N]; 
     points
 }
 
-/// The distance of each point along the line on which the points are spread most, approximately: first along the
-/// channel that varies most, and then along the line between the means of its lower and its upper half.
+/// The distance of each point along the line of the largest spread, approximately. The first approximation is the
+/// channel that varies most. The second is the line between the means of that channel's lower half and upper
+/// half.
 #[inline(always)]
 fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
     let mut spread = [[0_i16; CELLS]; 3];
@@ -175,7 +179,7 @@ fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
     along(points, &axis(points, &distances))
 }
 
-/// The sum of the points whose distance is positive. The largest component is about 32767.
+/// The sum of the points whose distance is positive. It is scaled so that the largest component is about 32,000.
 #[inline(always)]
 fn axis<const N: usize>(
     points: &[[Lanes<i16>; N]; 3],
@@ -247,7 +251,7 @@ fn threshold<const N: usize>(mut distances: [Lanes<i16>; N]) -> Lanes<i16> {
     best
 }
 
-/// The mean light of the pixels that are in a part, and of the others.
+/// The mean light of the pixels that are in a part, and of the other pixels.
 #[inline(always)]
 fn means<const N: usize>(
     channels: &[[Lanes<u16>; N]; 3],
@@ -290,7 +294,7 @@ fn means<const N: usize>(
     })
 }
 
-/// Puts pairs of places in order, one after another.
+/// Sorts the values at pairs of places, one pair after another.
 macro_rules! exchange {
     ($values:ident: $($one:literal $other:literal),*) => {{$(
         for cell in 0..CELLS {
@@ -301,7 +305,7 @@ macro_rules! exchange {
     )*}};
 }
 
-/// Sorts four, six or eight numbers of each cell, by Batcher's networks (1968).
+/// Sorts four, six or eight numbers of each cell, with Batcher's networks (1968).
 #[inline(always)]
 fn sort<const N: usize>(values: &mut [Lanes<i16>; N]) {
     match N {

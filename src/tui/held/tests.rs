@@ -214,7 +214,7 @@ fn a_jump_holds_no_other_key_than_the_one_that_gives_its_direction() {
     assert_eq!(typed(&[('a', 150), ('w', 200)]), [false, true, false]);
     assert_eq!(typed(&[('a', 30), ('w', 200)]), [true, true, false]);
     assert_eq!(typed(&[('w', 100), ('e', 100)]), [false, true, false]);
-    // It runs already.
+    // The first key repeats already.
     assert_eq!(typed(&[('w', 900), ('a', 200)]), [false, true, false]);
 }
 
@@ -355,8 +355,8 @@ proptest! {
     }
 }
 
-/// A simulated keyboard at a terminal that reports no releases: the bytes that it sends. One key repeats at a time:
-/// the one pressed last, until it is released.
+/// A simulated keyboard at a terminal that does not report releases: the bytes that it sends. One key repeats at a
+/// time: the key that was pressed last, until it is released.
 #[derive(Clone, Debug)]
 pub(crate) struct Keyboard<K> {
     delay: Duration,
@@ -365,7 +365,7 @@ pub(crate) struct Keyboard<K> {
 }
 
 impl<K: Copy + Eq> Keyboard<K> {
-    /// A keyboard that repeats after `delay`, `per_second` times a second.
+    /// A keyboard that repeats after `delay`, `per_second` times per second.
     pub(crate) fn new(delay: Duration, per_second: u32) -> Self {
         Self { delay, interval: Duration::from_secs(1) / per_second, repeats: None }
     }
@@ -417,7 +417,7 @@ impl Typist {
         self.keyboard.release(key);
     }
 
-    /// Lets time pass, and returns for how many milliseconds each of `keys` was `Held`.
+    /// Lets time pass, and returns the number of milliseconds for which each of `keys` was `Held`.
     fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
         let mut held_for = [0; N];
         for _ in 0..milliseconds {

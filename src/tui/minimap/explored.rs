@@ -1,18 +1,18 @@
 //! The cells of a map that the player has seen.
 //!
 //! For each column of pixels, one ray is followed cell by cell, in the exact order in which it enters them, with the
-//! range of slopes at which it still sees. Floors and things raise the lower end of the range, ceilings lower the upper
-//! end. A cell is seen if its floor, or a face of something in it, is within the range. The vertical field of view does
-//! not count: the player knows the floor at their feet without looking down.
+//! range of slopes that is still visible. Floors and things raise the lower end of the range, and ceilings lower the
+//! upper end. A cell is seen if its floor, or a face of something in it, is within the range. The vertical field of
+//! view does not count, because the player knows the floor at their feet without looking down.
 //!
 //! Most cells have the observer's own gap: floor and ceiling at the heights of the observer's cell. A ray sees all of
-//! them, so that it only crosses lines until it enters another tile, and knows nothing of mirrors until then.
+//! these cells. Until it enters another tile, it only crosses lines, and there are no mirrors to consider.
 //!
-//! A mirror ends a line of sight: a map cannot show which of its cells is the one in the mirror, and reflections would
-//! reveal what is behind corners.
+//! A mirror ends a line of sight. A map cannot show which of its cells the mirror shows, and reflections would reveal
+//! cells behind corners.
 //!
-//! Rejected: the cells of the renderer's own rays. On flat maps it casts only few of them, and it would have to store
-//! cells that only the minimap needs.
+//! Rejected: the cells of the renderer's own rays. On flat maps the renderer casts only few rays, and it would have to
+//! store cells that only the minimap needs.
 
 use std::collections::BTreeMap;
 
@@ -20,9 +20,9 @@ use crate::cast::{Crossed, Crossing, Ray, RayWalk, Side, WalkFromInside, distanc
 use crate::generate::Site;
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
-/// The cells of a map that a player has seen so far, for a [`Minimap`](super::Minimap).
+/// The cells of a map that a player has seen, for a [`Minimap`](super::Minimap).
 ///
-/// A value belongs to one level. A world of another size counts as another level, where nothing has been seen.
+/// A value belongs to one level. A world of another size counts as another level, of which nothing has been seen.
 ///
 /// ```
 /// use cellcaster::tui::{Explored, Minimap};
@@ -41,19 +41,19 @@ use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 pub struct Explored {
     /// The numbers of columns and rows of the world.
     size: (u32, u32),
-    /// A bit for each cell, row by row; each row begins with a new word.
+    /// A bit for each cell, row by row. Each row begins with a new word.
     words: Vec<u32>,
-    /// The number of cells that are not walls, and how many of them have been seen.
+    /// The number of cells that are not walls. The next field is the number of them that have been seen.
     open: u32,
     open_seen: u32,
     /// The cell of a generated level at which the world begins.
     corner: Site,
-    /// The seen cells of a generated level, stored whenever the window moves: 32 cells of a row, by
-    /// the row and the first column.
+    /// The seen cells of a generated level, stored whenever the window moves. A word contains 32 cells of a row. Its
+    /// key is the row, and the column divided by 32.
     elsewhere: BTreeMap<(i64, i64), u32>,
 }
 
-/// The cells of a row that have been seen: a bit for each. Beyond the last cell there are none.
+/// The cells of a row that have been seen, with a bit for each. Cells beyond the last one have not been seen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenRow<'a>(&'a [u32]);
 
@@ -61,8 +61,8 @@ pub(crate) struct SeenRow<'a>(&'a [u32]);
 const WORD: u32 = u32::BITS;
 
 impl Explored {
-    /// Adds the cells of `world` that `camera` sees. `rays` is the width of the picture: its
-    /// columns have the same rays.
+    /// Adds the cells of `world` that `camera` sees. `rays` is the width of the picture, whose columns have the same
+    /// rays.
     pub fn look(&mut self, world: &World, camera: &Camera, rays: u32) {
         self.look_by(&Observer::new(world, camera), world, camera, rays);
     }
@@ -110,7 +110,7 @@ impl Explored {
         self.elsewhere = elsewhere;
     }
 
-    /// Whether `cell` has been seen.
+    /// Returns true if `cell` has been seen.
     pub fn contains(&self, cell: Cell) -> bool {
         self.row(cell.row).contains(cell.column)
     }
@@ -148,7 +148,7 @@ impl Explored {
         }
     }
 
-    /// Marks `cell`, which must be on the map, as seen. Returns `false` if it was before.
+    /// Marks `cell`, which must be on the map, as seen. Returns `false` if it was marked before.
     fn set(&mut self, cell: Cell) -> bool {
         let (word, bit) = (self.word(cell), 1 << (cell.column % WORD));
         let is_new = self.words[word] & bit == 0;
@@ -162,7 +162,7 @@ impl Explored {
         all.filter(|&cell| self.contains(cell)).collect()
     }
 
-    /// The row and the column, in the level, of a cell of the world.
+    /// The row and the column in the generated level of a cell of the world.
     fn site(&self, cell: Cell) -> (i64, i64) {
         let along = |first: i64, offset: u32| first.wrapping_add(offset.into());
         (along(self.corner.row, cell.row), along(self.corner.column, cell.column))
@@ -192,7 +192,7 @@ fn is_wall(kind: TileKind) -> bool {
 /// Cells in which fog leaves less than this share of light are not seen.
 const LEAST_CLEARNESS: f64 = 1.0 / 32.0;
 
-/// An eye in a world, which all rays of one position share.
+/// An eye at a position in a world. All rays from that position share it.
 struct Observer<'a> {
     world: &'a World,
     /// The height of the eye, in cells.
@@ -203,11 +203,11 @@ struct Observer<'a> {
     clear_to: f64,
     /// The gap around the eye in the observer's cell.
     own_gap: Gap,
-    /// For each tile, how it continues a ray that has only been in cells with that gap.
+    /// For each tile, its effect on a ray that has only been in cells with that gap.
     passages: [Passage; TileId::MAX],
 }
 
-/// The range of slopes at which a ray still sees, in height per distance.
+/// The range of slopes that is still visible along a ray, in height per distance.
 #[derive(Clone, Copy)]
 struct SlopeRange {
     low: f64,
@@ -293,7 +293,7 @@ impl Observer<'_> {
             let mut gaps = gaps.map(|gap| (gap, self.slopes(gap, t)));
             let next = gaps.find(|(_, slopes)| !slopes.intersection(visible).is_empty());
             let Some((next, slopes)) = next else { return see(cell, self.is_open(tile)) };
-            // Whether it also shows the face below or above the gap.
+            // True if the face below or above the gap is visible, too.
             if slopes.low > visible.low || slopes.high < visible.high {
                 see(cell, self.is_open(tile));
             }
@@ -304,7 +304,7 @@ impl Observer<'_> {
         }
     }
 
-    /// Crosses the next line, after what stands in the cell before it.
+    /// Passes the thing that stands in the current cell, if any, and crosses the next line.
     fn cross(
         &self,
         line: &mut Line,
@@ -320,7 +320,7 @@ impl Observer<'_> {
         line.walk.cross(self.world.grid())
     }
 
-    /// Whether cells with `tile` are not walls.
+    /// Returns true if cells with `tile` are not walls.
     fn is_open(&self, TileId(tile): TileId) -> bool {
         !is_wall(self.world.tiles()[usize::from(tile)].kind)
     }
@@ -365,13 +365,13 @@ impl Observer<'_> {
     }
 }
 
-/// The gap of a tile that contains the eye; inside of solid rock, everything.
+/// The gap of a tile that contains the eye. Inside of solid rock, the gap has no bounds.
 fn gap_around(eye: f64, tile: Tile) -> Gap {
     let around = tile.gaps().find(|gap| gap.holds(eye));
     around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
 }
 
-/// Whether something opaque stands in a gap of the tile.
+/// Returns true if something opaque stands in a gap of the tile.
 fn is_opaque_inside(tile: &Tile) -> bool {
     matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_))
 }
@@ -379,31 +379,32 @@ fn is_opaque_inside(tile: &Tile) -> bool {
 /// A line of sight as far as it has been followed.
 struct Line {
     walk: RayWalk,
-    /// The cell that it is in; `None` off the map.
+    /// The cell in which the line is. `None` off the map.
     position: Option<(Cell, TileId)>,
-    /// The distance at which it has entered that cell.
+    /// The distance at which the line has entered that cell.
     from: f64,
 }
 
-/// How a tile continues a ray that has only been in cells with the observer's own gap.
+/// The effect of a tile on a ray that has only been in cells with the observer's own gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Passage {
-    /// The same gap, in which nothing opaque stands: the ray sees the cell.
+    /// The tile has the same gap, and nothing opaque stands in it. The ray sees the cell.
     Same,
-    /// A block that ends the ray, which sees its face.
+    /// The tile is a block that ends the ray. The ray sees its face.
     Block,
     Other,
 }
 
-/// Beyond this distance, in cells, and so much farther, a slope is another one however it is rounded.
+/// Two slopes differ, however they are rounded, if the nearer distance exceeds this number of cells, and the farther
+/// distance exceeds [`FARTHER`] times the nearer one.
 const NEAR: f64 = 1e-9;
 const FARTHER: f64 = 1.0 + 1e-9;
 
 /// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
 struct Certain {
-    /// A distance up to which fog hides nothing, or less.
+    /// A lower bound of the distance up to which fog hides nothing.
     clear_to: f64,
-    /// A distance beyond [`NEAR`], or more.
+    /// An upper bound of [`NEAR`].
     near: f64,
 }
 
@@ -411,7 +412,7 @@ impl Certain {
     fn new(unit: f64, clear_to: f64) -> Self {
         // More than enough for the errors of both distances.
         const MARGIN: f64 = 1.0 + 1e-9;
-        /// Units in this range are products that have neither underflowed nor overflowed.
+        /// A unit in this range is a product that has neither underflowed nor overflowed.
         const SOUND: std::ops::Range<f64> = 1e-150..1e150;
         if SOUND.contains(&unit) {
             Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }
@@ -420,7 +421,7 @@ impl Certain {
         }
     }
 
-    /// Whether [`Observer::rises`] is true for these distances.
+    /// Returns true only if [`Observer::rises`] returns true for these distances.
     #[inline]
     fn rises(&self, from: f64, to: f64) -> bool {
         from > self.near && to > from * (FARTHER * FARTHER)
@@ -428,7 +429,7 @@ impl Certain {
 }
 
 impl Observer<'_> {
-    /// Has rays do the same in all cells.
+    /// Makes rays take the general path in all cells.
     #[cfg(test)]
     fn forget_passages(&mut self) {
         self.passages.fill(Passage::Other);
@@ -452,8 +453,8 @@ impl Observer<'_> {
         }
     }
 
-    /// Follows the walk of `ray` from `position`, where it begins, through cells with the observer's own
-    /// gap. Returns the line in the last of them, or `None` if it ends there.
+    /// Follows the walk of `ray` from `position`, the cell in which it begins, through cells with the observer's own
+    /// gap. Returns the line in the last of these cells, or `None` if the ray ends there.
     #[inline]
     fn follow_through_own_gap(
         &self,
@@ -504,8 +505,8 @@ impl Observer<'_> {
         Line { walk, position: Some(position), from }
     }
 
-    /// Whether the floor of the observer's own gap has a lower slope at `from` than at `t`. They are equal in
-    /// a cell if the ray meets only a corner of it.
+    /// Returns true if the floor of the observer's own gap has a lower slope at `from` than at `t`. The slopes are
+    /// equal in a cell if the ray meets only a corner of it.
     #[inline]
     fn rises(&self, from: f64, t: f64) -> bool {
         let bottom = self.own_gap.bottom;

@@ -3,8 +3,8 @@
 //! The appearance of tiles is computed once per picture, and the things in a row once per row of pixels, so that most
 //! pixels need only a table lookup.
 //!
-//! The brightness of walls is between two limits, floors are darker, and the player's arrow is brighter than both.
-//! With 16 colours, which users redefine, and without colour, each kind of point has its own colour or pattern.
+//! The brightness of walls is between two limits, floors are darker, and the player's arrow is brighter than both. With
+//! 16 colours, which users can redefine, and without colour, each kind of point has its own colour or pattern.
 //! Rejected: the nearest of 16 colours, which would make walls and floors equal.
 
 use glam::DVec2;
@@ -74,12 +74,12 @@ impl<'a> TopView<'a> {
         }
     }
 
-    /// Whether the floor at `point` is in view.
+    /// Returns true if the floor at `point` is in view.
     pub(crate) fn is_visible(&self, point: DVec2) -> bool {
         self.visible_floor.contains(point)
     }
 
-    /// Whether a pixel around `point` shows the shape of `tile`, which is in `cell`.
+    /// Returns true if a pixel around `point` shows the shape of `tile`, which is in `cell`.
     fn is_covered(&self, tile: TileId, cell: Cell, point: DVec2) -> bool {
         let TileKind::Shape(Shape { outline, .. }) = self.world.tile(tile).kind else {
             return true;
@@ -92,7 +92,7 @@ impl<'a> TopView<'a> {
 pub(crate) struct Row<'a> {
     view: &'a TopView<'a>,
     tiles: &'a [TileId],
-    /// Which cells are not hidden, if any are.
+    /// The cells that are not hidden. `None` if no cell is hidden.
     seen: Option<SeenRow<'a>>,
     things: &'a [Thing],
     y: f64,
@@ -133,8 +133,8 @@ impl Row<'_> {
         }
     }
 
-    /// Whether `point` is on the dot for a thing in `cell`. If pixels are as large as cells, the
-    /// whole cell is.
+    /// Returns true if `point` is on the dot for a thing in `cell`. If pixels are as large as cells, the dot fills the
+    /// whole cell.
     fn is_on_dot(&self, point: DVec2, cell: Cell) -> bool {
         const RADIUS: f64 = 0.3;
         self.view.pixel >= 1.0 || (point - cell.center()).abs().max_element() <= RADIUS
@@ -168,7 +168,7 @@ fn dot(kind: ThingKind) -> MapPoint {
     }
 }
 
-/// The appearance of `tile` from an eye at that height. The top of a wall below the eye is floor.
+/// The appearance of `tile` for an eye at height `eye`. The top of a wall below the eye is floor.
 fn appearance_of(tile: &Tile, world: &World, eye: f64) -> TileAppearance {
     let wall = |paint| of_wall(world.mean_color(paint));
     let height = tile.heights.floor();
@@ -210,7 +210,7 @@ impl<'a> VisibleFloor<'a> {
         }
     }
 
-    /// Whether the ray of the picture's column at `point` reaches it.
+    /// Returns true if the ray of the picture's column at `point` reaches `point`.
     #[inline]
     fn contains(&self, point: DVec2) -> bool {
         let to_point = point - self.position;
@@ -249,12 +249,12 @@ pub(crate) enum MapPoint {
     Ornament,
 }
 
-/// Floor, with a colour by its height.
+/// Floor, with a colour that depends on its height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Floor {
     kind: FloorKind,
     color: Rgb,
-    /// Its colour if it is visible.
+    /// The floor's colour if it is visible.
     lit: Rgb,
 }
 
@@ -272,7 +272,7 @@ enum FloorKind {
 
 /// Floor at the height of the map's own floor.
 const BASE: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// The colours that raised floor, lowered floor and water approach.
+/// The colours that raised floor, lowered floor and water approach with their height or depth.
 const LEDGE: Rgb = Rgb::new(0x66, 0x66, 0x70);
 const PIT: Rgb = Rgb::new(0x54, 0x18, 0x1c);
 const WATER: Rgb = Rgb::new(0x10, 0x48, 0x80);
@@ -292,7 +292,7 @@ const ORNAMENT: Rgb = Rgb::new(0x9c, 0x8c, 0x74);
 /// The least and the greatest brightness of walls.
 const WALLS: (u8, u8) = (0x60, 0xb0);
 
-/// Floor whose height differs by less from the map's own floor, in cells, counts as equal.
+/// A floor counts as level with the map's own floor if their heights differ by less than this, in cells.
 const SAME_HEIGHT: f64 = 0.05;
 
 impl Floor {
@@ -322,21 +322,21 @@ impl Floor {
     }
 }
 
-/// Whether a lowered floor with that colour looks like water: if it is much more blue than red. A
-/// map may draw water that does nothing.
+/// Returns true if a lowered floor with this colour looks like water, because it is much more blue than red. A map may
+/// draw water that has no effect.
 fn is_watery(color: Rgb) -> bool {
     u16::from(color.blue()) >= 2 * u16::from(color.red())
 }
 
-/// The mean of two colours, where the second has the weight `share`.
+/// The mean of two colours, in which the second has the weight `share`.
 fn mix(one: Rgb, other: Rgb, share: f64) -> Rgb {
     let [one, other] = [one, other].map(|color| color.channels().map(f64::from));
     let channel = |index: usize| (one[index] + (other[index] - one[index]) * share).round() as u8;
     Rgb::new(channel(0), channel(1), channel(2))
 }
 
-/// The colour of a wall with the mean colour `color`: the same, but neither as dark as floor nor as
-/// bright as the arrow.
+/// The colour of a wall with the mean colour `color`. It is the same, but neither as dark as floor nor as bright as the
+/// arrow.
 fn of_wall(color: Rgb) -> Rgb {
     let (least, most) = WALLS;
     let luma = color.luma();
@@ -364,7 +364,7 @@ impl MapPoint {
         }
     }
 
-    /// Whether the point's pixel at that position of the screen is lit if there are no colours.
+    /// Returns true if the point's pixel at this position of the screen is lit when there are no colours.
     pub(crate) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
             Self::Wall(_) | Self::Door(_) => true,
@@ -380,12 +380,12 @@ impl MapPoint {
         }
     }
 
-    /// Whether the point is a letter among the patterns of a map without colour.
+    /// Returns true if the point is a letter among the patterns of a map without colour.
     pub(crate) fn is_thing(self) -> bool {
         matches!(self, Self::Exit | Self::Key | Self::Item | Self::Ornament)
     }
 
-    /// The appearance where colours are few or missing, and the importance.
+    /// The appearance if colours are few or missing, and the importance.
     pub(crate) fn look(self) -> PointLook {
         let floor = |floor: Floor, base: (char, u8)| match floor.kind {
             FloorKind::Base => base,
@@ -408,7 +408,7 @@ impl MapPoint {
     }
 }
 
-/// The appearance of a point where colours are few or missing.
+/// The appearance of a point if colours are few or missing.
 pub(crate) struct PointLook {
     pub(crate) character: char,
     /// The index of its colour among the 16.

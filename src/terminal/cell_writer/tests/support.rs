@@ -80,7 +80,7 @@ pub(crate) fn bytes_of(cells: &[Cell]) -> String {
     screen.take_text()
 }
 
-/// The bytes that draw `cells`, one sequence a line.
+/// The bytes that draw `cells`, one sequence per line.
 pub(crate) fn readable(cells: &[Cell]) -> String {
     bytes_of(cells).replace('\x1b', "\nESC").trim_start().to_owned()
 }
@@ -123,7 +123,8 @@ pub(crate) fn assert_shown(screen: &Screen, content: &Buffer) {
     }
 }
 
-/// The appearance of a cell; of mosaics, the one without the last dot, and the colours of its dots and of the rest.
+/// The appearance of a cell. Of a mosaic and its inverse, this is the one without the last dot, with the
+/// colours of its dots and of the rest.
 #[derive(Debug, PartialEq)]
 enum Looks {
     Mosaic(Mosaic, vt100::Color, vt100::Color),
@@ -236,7 +237,7 @@ pub(crate) fn any_size() -> impl Strategy<Value = Size> {
     (1..12_u16, 1..6_u16).prop_map(Size::from)
 }
 
-/// Pixels of few colours, so that glyphs often have a choice.
+/// Pixels of few colours, so that there is often a choice of glyphs.
 pub(crate) fn any_pixels(count: usize) -> impl Strategy<Value = Vec<Cell>> {
     let shade = || (0..3_u8).prop_map(|red| Color::Rgb(red, 7, 200));
     let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "▞", "▚", "🬂", "\u{1CD09}"]);

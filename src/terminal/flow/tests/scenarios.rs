@@ -1,4 +1,4 @@
-//! Simulates the tables of `docs/links.md`.
+//! Computes the tables of `docs/links.md` by simulation.
 
 use std::fmt::Write;
 
@@ -74,7 +74,7 @@ impl Scenario {
     }
 }
 
-/// The least of the values that at least this share of them does not exceed.
+/// The least value that at least this share of the values does not exceed.
 fn percentile<T: Copy + Ord + Default>(values: impl Iterator<Item = T>, share: f64) -> T {
     let mut values: Vec<_> = values.collect();
     values.sort_unstable();
@@ -117,11 +117,11 @@ pub(crate) fn table() -> String {
     table
 }
 
-/// The delay of a link of 10 Mbit/s in milliseconds, and the rate that it drops to, in kbit/s.
+/// The delay of a link of 10 Mbit/s, in milliseconds, and the rate to which it drops, in kbit/s.
 const DROPS: [(u64, u32); 3] = [(20, 20), (50, 20), (50, 8)];
 
-/// The maximum of bytes that wait for a link after its rate has dropped: the median and the maximum
-/// of drops at different times.
+/// The largest number of bytes that wait for a link after its rate has dropped: the median and the
+/// maximum over drops at different times.
 pub(crate) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f64; 2] {
     let mut queued: Vec<f64> = (0..21)
         .map(|phase| {

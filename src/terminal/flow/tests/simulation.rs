@@ -1,8 +1,8 @@
 //! A simulated link, the players who share it and their terminals. It has no clock, and its random
-//! numbers are seeded, so that every run gives the same result on every machine.
+//! numbers are seeded, so every run has the same result on every machine.
 //!
 //! The link carries packets one after another, at a rate that a scenario may change. Each direction
-//! has a delay and jitter, drawn for each packet; as in TCP, no packet overtakes another.
+//! has a delay, and jitter that is drawn for each packet. As in TCP, no packet overtakes another.
 
 use std::collections::VecDeque;
 
@@ -13,7 +13,7 @@ const TICK: Duration = Duration::from_millis(1);
 const FRAME_TIME: Duration = Duration::from_millis(33);
 /// The maximum size of a packet, in bytes.
 const PACKET: f64 = 1400.0;
-/// A rate that no player exhausts, in bytes a second.
+/// A rate that no player exhausts, in bytes per second.
 pub(crate) const UNLIMITED: f64 = 1e9;
 
 /// The properties of a link.
@@ -23,7 +23,7 @@ pub(crate) struct Conditions {
     pub(crate) delay: Duration,
     /// The maximum additional delay of a packet.
     pub(crate) jitter: Duration,
-    /// The rate towards the players, in bytes a second.
+    /// The rate towards the players, in bytes per second.
     pub(crate) rate: f64,
 }
 
@@ -35,13 +35,13 @@ pub(crate) struct Simulation {
     /// Packets that wait for the link: the player's number, the bytes, and the frame that ends with
     /// the packet.
     queue: VecDeque<(usize, f64, Option<usize>)>,
-    /// The number of bytes of the first packet in the queue that the link has carried.
+    /// The number of bytes of the queue's first packet that the link has already carried.
     carried: f64,
     random: SplitMix64,
 }
 
 impl Simulation {
-    /// Players with these `frames`, who begin one after another.
+    /// One player for each of `frames`.
     pub(crate) fn new(conditions: Conditions, frames: &[Frames]) -> Self {
         let players = frames.iter().map(|frames| Player::new(Box::new(*frames))).collect();
         Self::of_players(conditions, players)
@@ -71,7 +71,7 @@ impl Simulation {
         Self::new(Conditions { delay, jitter: Duration::ZERO, rate }, &[frames])
     }
 
-    /// Simulates this time, in which all players move.
+    /// Simulates this duration. All players move.
     pub(crate) fn walk(&mut self, time: Duration) {
         let until = self.now + time;
         while self.now < until {
@@ -173,8 +173,8 @@ impl Simulation {
         self.players[number].upward.push_back((arrives_at, upward));
     }
 
-    /// The arrival time of a packet that is sent now: after all earlier packets in the same
-    /// direction.
+    /// The arrival time of a packet that is sent at `at`. It is never before the arrival of an
+    /// earlier packet in the same direction.
     fn arrival(&mut self, number: usize, direction: usize, at: Duration) -> Duration {
         let Conditions { delay, jitter, .. } = self.conditions;
         let last = &mut self.players[number].last[direction];
@@ -217,7 +217,7 @@ pub(crate) struct Latency {
 #[derive(Clone, Debug)]
 pub(crate) struct Shown {
     pub(crate) sent_at: Duration,
-    /// The time at which it is on the screen; `None` if it has not arrived.
+    /// The time at which it is on the screen. `None` if it has not arrived.
     pub(crate) at: Option<Duration>,
     pub(crate) fidelity: Fidelity,
     pub(crate) bytes: usize,
@@ -226,7 +226,7 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    /// The age of the frame when it is shown; the maximum if it never is.
+    /// The age of the frame when it is shown, or the maximum if it never is.
     pub(crate) fn age(&self) -> Duration {
         self.at.map_or(Duration::MAX, |at| at.saturating_sub(self.sent_at))
     }
@@ -259,7 +259,7 @@ impl Player {
         }
     }
 
-    /// The frames sent after `time`.
+    /// The frames sent at `time` or later.
     pub(crate) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
         self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
     }
@@ -273,7 +273,8 @@ impl Player {
         times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
     }
 
-    /// The maximum in flight at any time, in bytes before compression.
+    /// The largest number of bytes in flight when a frame is sent, from `begin` on. Counts bytes
+    /// before compression.
     pub(crate) fn most_in_flight(&self, begin: Duration) -> usize {
         let in_flight = |time| {
             let is_there =
@@ -289,7 +290,7 @@ pub(crate) trait FrameSource {
     /// The size of a frame that is drawn at `now`, in bytes. `draw` is a random number below 1.
     fn bytes(&mut self, now: Duration, fidelity: Fidelity, draw: f64) -> f64;
 
-    /// The share of a frame's bytes that is left after compression.
+    /// The share of a frame's bytes that remains after compression.
     fn carried(&self, fidelity: Fidelity) -> f64;
 }
 
@@ -300,7 +301,7 @@ pub(crate) struct Frames {
     pub(crate) exact: f64,
     /// The maximum deviation from the mean, as a share of it.
     pub(crate) spread: f64,
-    /// The share of the bytes that is left after compression: of an exact frame, and of a coarse
+    /// The shares of the bytes that remain after compression: of an exact frame, and of a coarse
     /// one.
     pub(crate) compressed: [f64; 2],
 }

@@ -9,12 +9,12 @@ use crate::world::{FieldOfView, Heading};
 
 const SIDE: usize = 12;
 
-/// A map of those rows under the sky, with tiles of several heights.
+/// A map of these rows under the sky, with tiles of several heights.
 fn world(rows: &[String]) -> World {
     world_under("'sky'", "", rows)
 }
 
-/// A map of those rows and with that ceiling; `more` is text of its header.
+/// A map of these rows with this ceiling. `more` is text of its header.
 fn world_under(ceiling: &str, more: &str, rows: &[String]) -> World {
     let text = format!(
         "ceiling = {ceiling}\n{more}grid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = 'brick' }}\n\
@@ -134,7 +134,8 @@ fn crossed(world: &World, origin: DVec2, direction: DVec2) -> Option<Vec<(u32, u
 }
 
 proptest! {
-    /// Rays through cells with the observer's own gap see the same as others.
+    /// Rays that take the shortcut through cells with the observer's own gap see the same as rays
+    /// that do not.
     #[test]
     fn the_shortcut_through_equal_cells_sees_the_same(
         tiles in prop::collection::vec(0..40_usize, SIDE * SIDE),
