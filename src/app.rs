@@ -1,7 +1,7 @@
-//! The game as a program: screens, settings, keys to intents, and the loop.
+//! The game as a program: pages, settings, the mapping from keys to intents, and the main loop.
 //!
-//! The state has neither a terminal nor a clock. Keys and times are arguments, so that a [`Replay`]
-//! can play it off screen. [`play`] is the main loop, which has both.
+//! The state contains neither a terminal nor a clock. Keys and times are arguments, so a [`Replay`]
+//! can run the game off screen. [`play`] is the main loop, and owns both.
 
 mod controls;
 mod detection;
@@ -21,7 +21,7 @@ pub(crate) mod status;
 pub mod store;
 mod title;
 
-/// The parts of the program that the sessions of a server use, too.
+/// The parts of the program that a server's sessions also use.
 pub mod parts {
     pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
@@ -74,32 +74,32 @@ struct Shown {
 
 #[derive(Default)]
 struct App {
-    /// The level that is played, and those after it.
+    /// The current level and the levels after it.
     levels: Levels,
     game: Played,
-    /// How far a descent came.
+    /// How far the descent has come.
     reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
-    /// The effect of the last key, if nothing else shows it.
+    /// The effect of the last key, unless something else on the screen shows it.
     notice: Option<Goal>,
-    /// The run since the level began.
+    /// The run since the start of the level.
     log: RunLog,
-    /// The best run of the level.
+    /// A replay of the best run of the level.
     ghost: Option<Ghost>,
-    /// The improvement by the level that was won last, once it is recorded.
+    /// The improvement from the last level won, once that result is recorded.
     improved: Option<Improved>,
-    /// A line about the game that was left.
+    /// A line about the game that the player left.
     left: Option<String>,
     store: Store,
     watch: Watch,
-    /// The seconds that the earlier levels took.
+    /// The time that the earlier levels took, in seconds.
     earlier: f64,
     pages: Pages<Screen, Choice>,
-    /// The offers of the title; `None` if there is no title to return to.
+    /// The entries that the title offers; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
-    /// The rest of the script that plays the level behind the title, while there is no game.
+    /// The rest of the script that plays the level behind the title; `None` during a game.
     demo: Option<Steps>,
     settings: Settings,
     terminal: TerminalLook,
@@ -108,15 +108,15 @@ struct App {
     map: MapPanel,
     /// The time of the last event.
     now: Duration,
-    /// The machine's clock, by which steps that take long are noticed; `None` to take as long as they
-    /// need.
+    /// The machine's clock, used to notice steps that take too long; `None` to let steps take as
+    /// long as they need.
     machine_time: Option<fn() -> Duration>,
     has_left: bool,
     clock: Clock,
     views: Views,
     /// The state that the screen shows; `None` if it must be redrawn.
     shown: Option<Shown>,
-    /// Whether the last picture was abandoned for a key, whose effect is shown first.
+    /// `true` after a key interrupted the last picture. The effect of the key is shown first.
     is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
@@ -130,7 +130,7 @@ struct App {
 }
 
 impl App {
-    /// The first of `levels` at its start.
+    /// A game at the start of the first of `levels`.
     fn new(levels: Levels, settings: Settings) -> Self {
         let game = levels.stage.begin(Difficulty::default()).unwrap_or_default();
         Self {
@@ -145,7 +145,7 @@ impl App {
         }
     }
 
-    /// The first of `levels`, or else the title, with what `store` keeps.
+    /// A game that opens with the levels or the title in `opening`, and with the state in `store`.
     fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
         let mut app = Self { store, ..Self::new(Levels::default(), settings) };
         match opening {
@@ -172,7 +172,7 @@ impl App {
         self.show_title();
     }
 
-    /// The difficulty of levels that are played without a choice of one.
+    /// The difficulty of levels that start without a question about it.
     fn usual_difficulty(&self) -> Difficulty {
         self.settings.difficulty.unwrap_or(self.store.preferences().difficulty)
     }
@@ -188,12 +188,12 @@ impl App {
         self.redraw_whole();
     }
 
-    /// The colour depth of pictures.
+    /// The colour depth of the picture.
     fn depth(&self) -> ColorDepth {
         self.settings.depth.unwrap_or(self.terminal.depth)
     }
 
-    /// Continues after a suspension, whose time does not count.
+    /// Continues after a suspension. The time of the suspension does not count.
     fn resumed(&mut self, now: Duration) {
         self.clock.skip_to(now);
         self.release_keys();
@@ -201,7 +201,7 @@ impl App {
         self.redraw_whole();
     }
 
-    /// Has the next frame show a complete picture.
+    /// Makes the next frame a complete redraw.
     fn redraw_whole(&mut self) {
         self.shown = None;
         self.is_interrupted = false;

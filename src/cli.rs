@@ -1,7 +1,7 @@
 //! The command line: one thin file for each subcommand.
 //!
-//! A user error is reported in one sentence on standard error, with exit status 2. An error of the
-//! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
+//! A user error prints one sentence to standard error, with exit status 2. A system error prints
+//! one sentence, with exit status 1. If the reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
 mod cast;
@@ -65,7 +65,8 @@ enum Command {
     Man(help::Manual),
 }
 
-/// Runs the command that `words` request, and returns the exit status. The first word is the program's own name.
+/// Runs the command in `words`, and returns the exit status. The first word is the name of this
+/// program.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<OsString> = words.into_iter().collect();
     exit_code(match External::of(&words) {
@@ -86,8 +87,8 @@ fn run_here(mut words: Vec<OsString>) -> Result<(), Error> {
     External::laboratory(words).run()
 }
 
-/// As [`run`], but walls are found by the caster that `named` returns for the option `--caster`, and commands of other
-/// programs are unknown.
+/// As [`run`], but uses the caster that `named` returns for the option `--caster`, and does not run
+/// commands of other programs.
 pub fn run_with_casters(
     words: impl IntoIterator<Item = OsString>,
     named: impl Fn(&str) -> Result<DynCaster, Error>,
@@ -101,7 +102,8 @@ pub fn run_with_casters(
     }))
 }
 
-/// Reports the error of a command, if there is one, and returns the exit status. Writes what is left of the output.
+/// Reports the error of a command or, if there is none, writes the rest of the output. Returns the
+/// exit status.
 pub fn exit_code(result: Result<(), Error>) -> ExitCode {
     match result.and_then(|()| finish()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -110,7 +112,7 @@ pub fn exit_code(result: Result<(), Error>) -> ExitCode {
 }
 
 impl Arguments {
-    /// The method of casting.
+    /// The name of the caster.
     fn caster(&self) -> &str {
         match &self.command {
             None => &self.play.look.caster,
@@ -136,12 +138,12 @@ impl Arguments {
     }
 }
 
-/// The commands of the program, for its help.
+/// The commands of the program, for its help text.
 fn commands() -> clap::Command {
     Command::augment_subcommands(clap::Command::new("cellcaster"))
 }
 
-/// Writes what is left of the last line of output, which may have no end.
+/// Writes the rest of the output. The last line may lack a line end.
 fn finish() -> Result<(), Error> {
     io::stdout().flush().map_err(|error| Error::of_output(&error))
 }

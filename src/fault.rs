@@ -1,12 +1,13 @@
 //! Faults in a text, each with its place and a remedy.
 //!
-//! A reader collects every fault that it finds and continues, so that one run reports all of them;
-//! [`Faults`] is its error. One cause makes one fault: consequences of an earlier fault are not
-//! reported. Rejected: stopping at the first fault, since correcting a file would take one run for
-//! each.
+//! A reader collects every fault that it finds and continues, so one run reports all of them.
+//! [`Faults`] is its error type. One cause produces one fault, because consequences of an earlier
+//! fault are not reported. Rejected: stopping at the first fault. Correcting a file would then take
+//! one run for each fault.
 //!
-//! Names of files and values of options may hold any character. All text on standard error goes
-//! through [`printable`] and its like, which show what a terminal would obey as an escape.
+//! Names of files and values of options may contain any character. All text on standard error goes
+//! through [`printable`] or a similar function. These functions replace control characters by
+//! visible escapes, because a terminal would obey them.
 
 pub mod document;
 
@@ -19,31 +20,31 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 
 use crate::sort;
 
-/// The largest number of faults in a report: more than anybody corrects in one go.
+/// The maximum number of faults in a report. Nobody corrects more than this at once.
 const MAX_REPORTED: usize = 100;
-/// The longest line that a report shows, in bytes: four times the widest row of a map in the longest
-/// characters.
+/// The longest line that a report shows, in bytes: four times the widest row of a map, at four
+/// bytes for each character.
 const MAX_LINE: usize = 1 << 16;
-/// Longer than any misspelt name.
+/// The length limit for similar names and quotes, longer than any misspelt name.
 const MAX_NAME: usize = 40;
 
-/// All faults of a file; there is at least one.
+/// All faults in a file. There is at least one.
 ///
-/// It displays as a report: each fault with its file, line and column, the line underlined, and
-/// what to write instead, in the order of their places. A report stops after 100 faults and says
-/// how many more there are.
+/// The `Display` output is a report. Each fault has its file, line and column, the underlined line,
+/// and a remedy. The faults are in the order of their places. A report stops after 100 faults and
+/// says how many more there are.
 pub struct Faults {
     name: String,
     text: String,
-    /// In the order of their places, those without a place first.
+    /// The faults in the order of their places. Faults without a place come first.
     list: Vec<Fault>,
 }
 
 /// A fault in a text.
 pub struct Fault {
-    /// Bytes of the text; `None` if the whole file is at fault.
+    /// The range of bytes in the text; `None` if the whole file is at fault.
     place: Option<Range<usize>>,
-    /// A sentence.
+    /// A sentence that describes the fault.
     message: String,
     /// A few words under the underlined place; may be empty.
     label: String,
@@ -52,7 +53,7 @@ pub struct Fault {
 }
 
 impl Faults {
-    /// The faults of the file `name` with the contents `text`. `faults` is not empty.
+    /// The faults in the file `name` with the content `text`. `faults` must not be empty.
     pub fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
         sort::by_key(&mut faults, |fault| {
@@ -61,17 +62,19 @@ impl Faults {
         Self { name: printable(name), text: text.to_owned(), list: faults }
     }
 
-    /// A fault of the whole file `name`, such as that it does not exist. `message` names the file.
+    /// A fault of the whole file `name`, for example because it does not exist. `message` should
+    /// mention the file.
     pub(crate) fn of_whole_file(name: &str, message: &str, help: &str) -> Self {
         let message = printable(message);
         let fault = Fault { place: None, message, label: String::new(), help: help.to_owned() };
         Self::new(name, "", vec![fault])
     }
 
-    /// The text `bytes` of the file `name`, which is `what`, such as a map.
+    /// Decodes `bytes`, the content of the file `name`. `what` says what the file is, for example a
+    /// map.
     ///
     /// # Errors
-    /// A fault that names the first line that is not UTF-8.
+    /// A fault that mentions the first line that is not UTF-8.
     pub fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
             let line = 1 + line_breaks(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
@@ -82,13 +85,13 @@ impl Faults {
         })
     }
 
-    /// The number of faults, 1 or more.
+    /// The number of faults, at least 1.
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// The first fault in one line, with its place, and the number of further faults.
+    /// The first fault in one line, with its place and the number of further faults.
     pub fn summary(&self) -> String {
         let Some(fault) = self.list.first() else { return String::new() };
         let more = match self.list.len() - 1 {
@@ -105,7 +108,8 @@ impl Faults {
 }
 
 impl fmt::Display for Faults {
-    /// Shows only the first line of a place that spans several: a map's grid may have thousands.
+    /// Shows only the first line of a place that spans several lines, because a map's grid may have
+    /// thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, text, list } = self;
         let (shown, left_out) = list.split_at(list.len().min(MAX_REPORTED));
@@ -148,7 +152,7 @@ impl fmt::Display for Faults {
 }
 
 impl fmt::Debug for Faults {
-    /// The report: the text of a whole map in a failed `unwrap` would not help.
+    /// Writes the report. The text of a whole map would not help in a failed `unwrap`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
@@ -157,18 +161,18 @@ impl fmt::Debug for Faults {
 impl std::error::Error for Faults {}
 
 impl Fault {
-    /// A fault at `place`, a range of bytes of the text.
+    /// A fault at `place`, a range of bytes in the text.
     pub fn new(place: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { place: Some(place), message, label: String::new(), help: String::new() }
     }
 
-    /// The fault with a label under the underlined place.
+    /// Sets the label under the underlined place.
     pub(crate) fn label(self, label: impl Into<String>) -> Self {
         Self { label: label.into(), ..self }
     }
 
-    /// The fault with a remedy.
+    /// Sets the remedy.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
@@ -185,7 +189,7 @@ fn line_breaks(text: &[u8]) -> usize {
     text.iter().filter(|&&byte| byte == b'\n').count()
 }
 
-/// `text` on one line, with escapes such as `\u{1b}` for characters that do not print.
+/// `text` on one line, with escapes such as `\u{1b}` for non-printing characters.
 pub(crate) fn printable(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
         if does_print(c) {
@@ -197,26 +201,26 @@ pub(crate) fn printable(text: &str) -> String {
     })
 }
 
-/// A path in a sentence, on one line and with escapes as in [`printable`].
+/// A path for use in a sentence: on one line, with escapes as in [`printable`].
 #[cfg(feature = "terminal")]
 pub fn printable_path(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 
-/// As [`printable`], with the line breaks of `text` as they are.
+/// As [`printable`], but keeps the line breaks of `text`.
 #[cfg(feature = "cli")]
 pub(crate) fn printable_lines(text: &str) -> String {
     text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns whether `c` is neither a control character nor changes the direction of the characters
-/// after it ("Trojan Source: Invisible Vulnerabilities", Boucher and Anderson, 2021).
+/// Returns true if `c` is not a control character and does not change the direction of the
+/// characters after it (Boucher and Anderson, "Trojan Source: Invisible Vulnerabilities", 2021).
 fn does_print(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The most similar of `known` to `word`, if any is similar: with at most one edit for every three
-/// letters.
+/// The name in `known` that is most similar to `word`, with at most one edit for every three
+/// letters; `None` if none is similar.
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > MAX_NAME {
         return None;
@@ -227,7 +231,8 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     (slips(&name) <= slips_allowed && name.len() > slips_allowed).then_some(name)
 }
 
-/// A help: `meant` and the most similar of `known` to `word`, or else `otherwise` and all of them.
+/// A help text: `meant` and the name in `known` that is most similar to `word`; or, if none is
+/// similar, `otherwise` and all of `known`.
 pub(crate) fn nearest_or_all(word: &str, known: &[&str], meant: &str, otherwise: &str) -> String {
     match nearest(word, known) {
         Some(name) => format!("{meant} {}", quoted(name)),
@@ -235,7 +240,7 @@ pub(crate) fn nearest_or_all(word: &str, known: &[&str], meant: &str, otherwise:
     }
 }
 
-/// `word` in double quotes, with non-printing characters escaped, shortened if it is long.
+/// `word` in double quotes, with non-printing characters escaped. A long word is shortened.
 pub fn quoted(word: &str) -> String {
     match word.char_indices().nth(MAX_NAME) {
         Some((end, _)) => format!("{:?}…", &word[..end]),

@@ -1,18 +1,18 @@
-//! Generated levels: mazes, caves and offices, made while the player walks, without an end or of
-//! any size.
+//! Generated levels: mazes, caves and offices, either endless or of any size. They are created
+//! while the player walks.
 //!
-//! A [`Terrain`] is a function from the position of a [`Chunk`] to its cells; it knows the
-//! neighbours of the chunk by their positions only. A [`Level`] is a terrain with an extent. A
+//! A [`Terrain`] is a function from the position of a [`Chunk`] to its cells. It depends on
+//! neighbouring chunks only through their positions. A [`Level`] is a terrain with an extent. A
 //! [`Window`] keeps the chunks around the player as an ordinary [`World`](crate::world::World), so
-//! that casting, drawing and collision work as on any map, at the same cost.
+//! casting, drawing and collision work as on any map, and at the same cost.
 //!
-//! Positions are never large: the player has a position in the window, and the window one among the
-//! chunks. At a million cells the picture is as stable as at the start. Rejected: a
-//! world with 64-bit columns, since every ray on every map would pay for it.
+//! Coordinates are never large: the player has a position in the window, and the window has a
+//! position among the chunks. The picture is as stable at a distance of a million cells as at the
+//! start. Rejected: a world with 64-bit columns. Every ray on every map would pay for it.
 //!
-//! A [descent] makes whole worlds of levels with an end, one for each floor, with guards and treasure.
+//! A [descent] creates a complete world for each floor, with an edge, guards and treasure.
 //!
-//! Random numbers are hashes of the seed, a purpose and a position, in integers. The same seed is
+//! Random numbers are integer hashes of the seed, a purpose and a position. The same seed produces
 //! the same level on every machine.
 
 mod cave;

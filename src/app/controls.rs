@@ -1,13 +1,14 @@
-//! Keys and the mouse as intents: the actions with the keys bound to them, the division of time into steps, and the
-//! pointer.
+//! The mapping from keys and the mouse to intents: actions and the keys bound to them, the division
+//! of time into steps, and the pointer.
 //!
-//! The mouse turns and tilts the view, and its buttons open and jump. Terminals report the position of the pointer, not the motion of the mouse, so the player turns
-//! by the difference of two positions. At the left and the right edge of the window the pointer can
-//! go no further, and the player keeps turning while it rests there. That ends after one full turn,
-//! since terminals do not report that the pointer has left the window.
+//! The mouse turns and tilts the view, and its buttons open and jump. Terminals report the
+//! pointer's position and not the motion of the mouse, so the player turns by the difference of two
+//! positions. The pointer cannot go beyond the left and the right edge of the window. While it
+//! rests at an edge, the player keeps turning. The turn ends after one full circle, because
+//! terminals do not report that the pointer has left the window.
 //!
-//! Positions are converted to angles first, and then subtracted: rounding errors do not add up, and
-//! a pointer that returns to its position has turned the player by nothing.
+//! Positions are converted to angles first, and then subtracted. Rounding errors therefore do not
+//! add up: a pointer that returns to its old position has not turned the player at all.
 
 use std::time::Duration;
 
@@ -19,41 +20,41 @@ use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 /// An action that a key can be bound to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// Want something for as long as the key is held.
+    /// Carry out an intent for as long as the key is held.
     Want(Intent),
     /// Run until the key is pressed again.
     ToggleRun,
     /// Duck until the key is pressed again.
     ToggleDuck,
-    /// Turn and tilt by the mouse, or stop that.
+    /// Start or stop turning and tilting by the mouse.
     ToggleMouse,
-    /// Walk until this key or a key to walk is pressed.
+    /// Walk until this key or another walking key is pressed.
     ToggleWalkOn,
     /// Show or hide the minimap.
     ToggleMinimap,
-    /// Show the minimap larger or smaller, or another part of it.
+    /// Change the size of the minimap, or the part that it shows.
     ChangeMap(MapChange),
-    /// Show or hide the keys.
+    /// Show or hide the help.
     ToggleHelp,
-    /// Pause, or continue.
+    /// Pause or continue.
     TogglePause,
     /// Widen the field of view.
     WidenView,
     /// Narrow the field of view.
     NarrowView,
-    /// Show or hide the figures of frames and the link.
+    /// Show or hide the statistics about frames and the link.
     ToggleStats,
     /// Show or hide a dot in the middle of the picture.
     ToggleCrosshair,
     /// Show or hide the compass.
     ToggleCompass,
-    /// Show or hide the best run.
+    /// Show or hide the ghost of the best run.
     ToggleGhost,
     /// Leave the game.
     Leave,
 }
 
-/// A change of the minimap.
+/// A change of the minimap's size or of the part that it shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapChange {
     Larger,
@@ -62,12 +63,13 @@ pub enum MapChange {
     South,
     West,
     East,
-    /// Show the player in the middle, at the usual size.
+    /// Return to the usual size, with the player in the middle.
     Center,
 }
 
 impl Action {
-    /// Every action with its name in a file, a short description, and its keys on a QWERTY keyboard.
+    /// Every action with its name in a configuration file, a short description, and its keys on a
+    /// QWERTY keyboard.
     pub(crate) const ALL: [(&'static str, &'static str, Self, &'static [Key]); 42] = [
         ("forward", "walk", Self::Want(Intent::Forward), &[Key::Char('w'), Key::Up]),
         ("back", "walk back", Self::Want(Intent::Back), &[Key::Char('s'), Key::Down]),
@@ -97,7 +99,7 @@ impl Action {
         ("toggle-duck", "duck, on and off", Self::ToggleDuck, &[Key::Char('x')]),
         ("mouse", "turn by mouse", Self::ToggleMouse, &[Key::Char('v')]),
         ("minimap", "map", Self::ToggleMinimap, &[Key::Char('m'), Key::Tab]),
-        // As on a number pad.
+        // The digits follow the layout of a number pad.
         ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger), &[Key::Char('9')]),
         ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller), &[Key::Char('3')]),
         ("map-north", "move it north", Self::ChangeMap(MapChange::North), &[Key::Char('8')]),
@@ -116,18 +118,18 @@ impl Action {
         ("leave", "leave", Self::Leave, &[Key::Char('q'), Key::Escape]),
     ];
 
-    /// The action with that name.
+    /// The action called `name`.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(_, _, action, _)| action)
     }
 
-    /// Whether the actions exclude each other.
+    /// Returns true if the two actions cancel each other.
     pub(crate) fn opposes(self, other: Self) -> bool {
         matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
     }
 }
 
-/// The actions of all keys.
+/// The key bindings: the action of each key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bindings {
     /// Each key occurs once.
@@ -135,14 +137,14 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// The keys of every action with a short description, in the order of [`Action::ALL`].
+    /// The keys and a short description of every action, in the order of [`Action::ALL`].
     #[cfg(feature = "cli")]
     pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
         Action::ALL.into_iter().map(|(_, does, action, _)| (self.key_names(action), does))
     }
 
-    /// Replaces the keys of the actions in `rebound` by `bound`. Keys in `bound` are removed from
-    /// other actions.
+    /// Replaces the keys of the actions in `rebound` by `bound`. A key in `bound` is removed from
+    /// any other action.
     pub(crate) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
         let is_bound = |key| bound.iter().any(|&(bound, _)| bound == key);
         self.keys.retain(|&(key, action)| !rebound.contains(&action) && !is_bound(key));
@@ -157,7 +159,7 @@ impl Bindings {
         self
     }
 
-    /// Sorts the keys by their actions.
+    /// Sorts the keys by action.
     fn in_order(mut self) -> Self {
         let index = |action| Action::ALL.iter().position(|&(_, _, known, _)| known == action);
         sort::by_key(&mut self.keys, |&(_, action)| index(action));
@@ -169,14 +171,14 @@ impl Bindings {
         self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
     }
 
-    /// The event with the key whose action counts: the pressed one, or if that has no action, the
-    /// key at its position on a US keyboard.
+    /// The event with the key that has an action. That is the pressed key or, if the pressed key
+    /// has no action, the key at its position on a US keyboard.
     pub fn resolve(&self, event: KeyEvent) -> KeyEvent {
         let base = event.base.filter(|_| self.action(event.key).is_none());
         KeyEvent { key: base.unwrap_or(event.key), ..event }
     }
 
-    /// The names of the keys of `action`, between blanks.
+    /// The names of the keys of `action`, separated by spaces.
     pub(crate) fn key_names(&self, action: Action) -> String {
         let names: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
         names.join(" ")
@@ -188,21 +190,21 @@ impl Bindings {
     }
 }
 
-/// A keyboard that keys are for.
+/// A keyboard layout with its own set of bindings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Preset {
     #[default]
     Qwerty,
-    /// Z, Q, S and D are where W, A, S and D are on QWERTY keyboards; A leaves.
+    /// The letters Z, Q, S and D take the places of W, A, S and D on a QWERTY keyboard; A leaves.
     Azerty,
-    /// For users of vi: H and L turn, J and K walk, A and D strafe, Z lights the lamp.
+    /// Keys for vi users: H and L turn, J and K walk, A and D strafe, Z lights the lamp.
     Hjkl,
 }
 
 impl Preset {
-    /// The bindings for that keyboard.
+    /// The bindings of this layout.
     pub(crate) fn bindings(self) -> Bindings {
-        // The letters that replace others, and further keys.
+        // The letters that replace other letters, and the extra keys.
         let letters: &[(char, char)] = match self {
             Self::Qwerty => &[],
             Self::Azerty => &[('w', 'z'), ('a', 'q'), ('q', 'a')],
@@ -230,19 +232,19 @@ impl Default for Bindings {
     }
 }
 
-/// Divides time into steps of the game. A remainder counts for the next step.
+/// Divides time into steps of the game. The remainder counts towards the next step.
 #[derive(Clone, Debug, Default)]
 pub struct Clock {
-    /// The time up to which steps have been counted.
+    /// The time up to which steps are already counted.
     counted: Duration,
 }
 
 impl Clock {
-    /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
-    /// more slowly and does not fall behind further and further.
+    /// The largest number of steps computed at once, a quarter of a second. A machine that is too
+    /// slow plays more slowly, and does not fall further and further behind.
     pub const MOST_STEPS: u64 = 15;
 
-    /// The number of steps since the last call.
+    /// The number of whole steps since the last call.
     pub fn steps_until(&mut self, now: Duration) -> u64 {
         let steps = steps_in(now.saturating_sub(self.counted));
         self.counted = after(self.counted, steps);
@@ -254,20 +256,20 @@ impl Clock {
         self.counted = now;
     }
 
-    /// The time at which the step after `steps` further steps ends.
+    /// The time at which the step after the next `steps` steps ends.
     pub fn step_after(&self, steps: u64) -> Duration {
         after(self.counted, steps.saturating_add(1))
     }
 }
 
-/// The time `steps` steps after `time`.
+/// The time that is `steps` steps after `time`.
 pub(crate) fn after(time: Duration, steps: u64) -> Duration {
     time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
 }
 
 /// The number of whole steps in `time`.
 fn steps_in(time: Duration) -> u64 {
-    // More nanoseconds are more than five centuries.
+    // Times beyond `u64::MAX` nanoseconds are longer than five centuries.
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX) / STEP_NANOSECONDS
 }
 
@@ -280,7 +282,7 @@ pub(crate) fn step() -> Duration {
 /// The duration of a step in nanoseconds, rounded.
 const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
 
-/// The modes of motion that are switched on.
+/// The movement modes that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Toggles {
     /// Running.
@@ -298,23 +300,23 @@ pub struct Controls {
     pub held: HeldKeys<Key>,
     /// The modes.
     pub toggles: Toggles,
-    /// The key that was pressed with Shift, for terminals that do not report Shift itself.
+    /// The last key pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
-/// The state of the game that keys depend on.
+/// The part of the game's state that decides the effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeyContext {
-    /// Whether the game runs and is not paused.
+    /// `true` while the game runs and is not paused.
     pub plays: bool,
-    /// Whether the player is in the air.
+    /// `true` while the player is in the air.
     pub is_airborne: bool,
-    /// Whether the player flies, so that ducking moves them.
+    /// `true` if the player flies, in which case ducking moves them.
     pub flies: bool,
 }
 
 impl Controls {
-    /// Handles an event. Returns its meaning, or `None` for a release.
+    /// Handles a key event. Returns the kind of press, or `None` for a release.
     pub fn handle(
         &mut self,
         event: KeyEvent,
@@ -368,7 +370,7 @@ impl Controls {
         Some(press)
     }
 
-    /// Releases the keys that are no longer held at time `now`.
+    /// Releases the keys that are no longer held at `now`.
     pub fn advance(&mut self, now: Duration, context: KeyContext) {
         if context.is_airborne {
             self.held.keep(now);
@@ -376,7 +378,8 @@ impl Controls {
         self.held.advance(now);
     }
 
-    /// The number of steps from `now`, from one to `most`, in which the intents do not change.
+    /// The number of steps from `now`, between one and `most`, during which the intents do not
+    /// change.
     pub(crate) fn steady_steps(&self, now: Duration, context: KeyContext, most: u64) -> u64 {
         if self.held.has_taps() || context.is_airborne {
             return 1;
@@ -403,19 +406,19 @@ impl Controls {
     }
 }
 
-/// Whether `intent` is to look up or down.
+/// Returns true if `intent` looks up or down.
 fn tilts(intent: Intent) -> bool {
     matches!(intent, Intent::LookUp | Intent::LookDown)
 }
 
-/// The angle by which a motion across a cell turns or tilts, in degrees.
+/// The angle of turn or tilt for a motion across one cell, in degrees.
 const DEGREES_PER_CELL: i32 = 2;
-/// The speed of turning while the pointer is at an edge, in degrees per second.
+/// The turning speed while the pointer rests at an edge, in degrees per second.
 const DEGREES_PER_SECOND: i32 = 90;
-/// The number of steps of turning at an edge: one full turn.
+/// The number of steps that the player turns at an edge: one full circle.
 const EDGE_STEPS: u32 = 360 * STEPS_PER_SECOND / DEGREES_PER_SECOND as u32;
-/// The width of an edge is one column, plus one for each 80 columns: the last reported position of
-/// a pointer that leaves the window quickly is a little inside of it.
+/// An edge is one column wide, plus one for each 80 columns. A pointer that leaves the window
+/// quickly is last reported slightly inside it.
 const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
 
 /// The position of the pointer, and its motion and clicks since the last step.
@@ -423,45 +426,45 @@ const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
 pub struct Pointer {
     is_on: bool,
     columns: u16,
-    /// Measured from the upper left corner, in units of [`Look`]; `None` if unknown.
+    /// The position from the upper left corner, in units of [`Look`]; `None` if unknown.
     position: Option<[i32; 2]>,
     /// The motion since the last step, in the same units.
     moved: [i32; 2],
-    /// The intents of the buttons for the next step.
+    /// The intents from the buttons for the next step.
     clicked: Intents,
-    /// The edge at which the pointer rests, −1 for the left and 1 for the right one, and the
-    /// remaining number of steps for which it turns the player.
+    /// The edge at which the pointer rests (−1 for left, 1 for right), and the number of steps for
+    /// which it still turns the player.
     edge: Option<(i16, u32)>,
 }
 
 impl Pointer {
-    /// A pointer that is on or off at first.
+    /// A pointer with the mouse switched on or off.
     pub fn new(is_on: bool) -> Self {
         Self { is_on, ..Self::default() }
     }
 
-    /// Whether the mouse turns the player.
+    /// Returns true if the mouse turns the player.
     pub fn is_on(&self) -> bool {
         self.is_on
     }
 
-    /// Switches between on and off.
+    /// Switches the mouse on or off.
     pub fn toggle(&mut self) {
         *self = Self { is_on: !self.is_on, columns: self.columns, ..Self::default() };
     }
 
-    /// Forgets the position.
+    /// Forgets the pointer's position.
     pub fn forget(&mut self) {
         *self = Self { is_on: self.is_on, columns: self.columns, ..Self::default() };
     }
 
-    /// Sets the width of the window.
+    /// Sets the width of the window, in columns.
     pub fn set_columns(&mut self, columns: u16) {
         self.columns = columns;
         self.forget();
     }
 
-    /// Handles an event. Motion and clicks count only if the player `plays`.
+    /// Handles a mouse event. Motion and clicks count only while the player `plays`.
     pub fn handle(&mut self, event: MouseEvent, plays: bool) {
         if !self.is_on {
             return;
@@ -478,12 +481,12 @@ impl Pointer {
         }
     }
 
-    /// The intents of the buttons for the next step.
+    /// The intents from the buttons for the next step.
     pub fn clicked(&self) -> Intents {
         self.clicked
     }
 
-    /// Whether the next step turns the player or uses a click.
+    /// Returns true if the next step turns the player or uses a click.
     pub fn is_busy(&self) -> bool {
         self.has_input() || self.edge.is_some()
     }
@@ -498,14 +501,14 @@ impl Pointer {
         let [right, down] = [position[0] - before[0], position[1] - before[1]];
         let half_a_window =
             i32::from(self.columns) * DEGREES_PER_CELL * i32::from(Look::PER_DEGREE) / 2;
-        // For a longer motion, the pointer was outside of the window.
+        // A longer motion means that the pointer left the window in between.
         if right.abs() <= half_a_window {
             self.moved = [self.moved[0] + right, self.moved[1] + down];
         }
         self.edge = self.edge_at(x as i32 / units_per_cell).map(|edge| (edge, EDGE_STEPS));
     }
 
-    /// The edge at `column`.
+    /// The edge at `column`, if any.
     fn edge_at(&self, column: i32) -> Option<i16> {
         let columns = i32::from(self.columns);
         let at_edge = 1 + columns / COLUMNS_PER_EDGE_COLUMN;
@@ -527,12 +530,12 @@ impl Pointer {
         Look { turn: within(self.moved[0] + at_edge), tilt: within(-self.moved[1]) }
     }
 
-    /// Whether there was motion or a click since the last step.
+    /// Returns true if the mouse moved or a button was pressed since the last step.
     pub(crate) fn has_input(&self) -> bool {
         self.moved != [0, 0] || !self.clicked.is_empty()
     }
 
-    /// Records that `steps` steps have used [`Pointer::look`].
+    /// Records that `steps` steps have used the result of [`Pointer::look`].
     pub fn passed(&mut self, steps: u64) {
         if steps == 0 {
             return;
@@ -620,7 +623,7 @@ mod tests {
             turned += i32::from(pointer.look().turn);
             pointer.passed(1);
         }
-        // The first step is the one that used the motion.
+        // The first of these steps already happened above, when the motion was used.
         assert_eq!(turned, 360 * 100 - 150);
         pointer.move_to(0, 10 * CELL);
         assert_eq!(pointer.look().turn, -150, "it came from the other side of the window");

@@ -1,5 +1,5 @@
-//! Limits of the terminal that make the game look or feel worse, with their reasons and remedies.
-//! The help shows these lines, where users look for them.
+//! Limits of the terminal that degrade the picture or the controls, each with its reason and
+//! remedy. The help page shows these lines, because users look for them there.
 
 use crate::color::palette::ColorDepth;
 use crate::terminal::{ColorSource, Protocol, TmuxClient};
@@ -9,22 +9,23 @@ use crate::terminal::{ColorSource, Protocol, TmuxClient};
 pub struct Detection {
     /// The colour depth.
     pub depth: ColorDepth,
-    /// The source of the colour depth; `None` if it is the command line or the configuration.
+    /// The source of the colour depth; `None` if the command line or the configuration sets it.
     pub source: Option<ColorSource>,
-    /// Whether the terminal is tmux.
+    /// `true` if the terminal is tmux.
     pub is_tmux: bool,
-    /// The client of tmux, if it has said which.
+    /// The outer terminal of tmux, if tmux has named it.
     pub tmux: Option<TmuxClient>,
-    /// Whether key releases are reported; `None` if that is not known yet.
+    /// `true` if the terminal reports key releases; `None` while that is unknown.
     pub reports_releases: Option<bool>,
     /// The locale setting that restricts output to ASCII.
     pub ascii_locale: Option<String>,
-    /// Whether the player has no command line: what they have chosen is among their settings.
+    /// `true` for a visitor without a command line, who makes these choices in the settings.
     pub is_visitor: bool,
 }
 
 impl Detection {
-    /// Records what `protocol` knows of the terminal. The colour depth in force may be chosen.
+    /// Records what `protocol` has learned about the terminal. `is_chosen` means that the player
+    /// chose `depth`.
     pub fn follow(&mut self, protocol: &Protocol, depth: ColorDepth, is_chosen: bool) {
         self.depth = depth;
         self.source = (!is_chosen).then(|| protocol.color_source());
@@ -32,12 +33,12 @@ impl Detection {
         self.tmux = protocol.tmux_client().cloned();
     }
 
-    /// A line for each limit.
+    /// One line for each limit.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         [self.colors(), self.releases(), self.characters()].into_iter().flatten()
     }
 
-    /// The reason why there are not all colours.
+    /// The reason for a reduced colour depth.
     fn colors(&self) -> Option<String> {
         let count = match self.depth {
             ColorDepth::True if self.source == Some(ColorSource::Palette) => {
@@ -71,7 +72,7 @@ impl Detection {
         Some(format!("{count}: {reason}"))
     }
 
-    /// The reason why tmux sends no 24-bit colours, and the remedy.
+    /// The reason why tmux does not send 24-bit colours, and the remedy.
     fn tmux(&self) -> String {
         match self.tmux.as_ref().and_then(TmuxClient::remedy) {
             Some(remedy) => format!(
@@ -82,7 +83,7 @@ impl Detection {
         }
     }
 
-    /// The line about missing key releases.
+    /// The line about key releases that the terminal does not report.
     fn releases(&self) -> Option<String> {
         (self.reports_releases == Some(false)).then(|| {
             "no key releases: keys are held while they repeat; see docs/keys.md".to_owned()

@@ -1,12 +1,13 @@
-//! Drawing: the picture and the panels over it, and when they are out of date.
+//! Drawing: the picture, the panels over it, and the check for whether they are out of date.
 //!
-//! - Guards who move where no ray of the last picture ends behind them are not in view, and need no new
-//!   picture. Rejected: comparing the pixels of two pictures. It saves the bytes, but not the drawing.
-//! - A picture of many bodies in a large window takes seconds. It is abandoned for an event that ends or
-//!   stops the program or changes the window, for the key that leaves, and for any key while a panel is
-//!   shown. After a key, the next frame shows the panel over the unfinished picture, and the frame
-//!   after that renders the picture again. Other keys wait: if each of them abandoned a picture, none
-//!   would ever be complete while a key repeats.
+//! - A guard who moves behind the ends of all rays in the last picture is out of view, and needs no
+//!   new picture. Rejected: comparing the pixels of two pictures. It saves the bytes, but not the
+//!   drawing.
+//! - A picture of many bodies in a large window takes seconds. It is interrupted by an event that
+//!   quits or suspends the program or resizes the window, by the key that leaves, and by any key
+//!   while a panel is shown. After a key, the next frame shows the panel over the unfinished
+//!   picture, and the frame after that renders the picture again. Other keys wait. If they also
+//!   interrupted the picture, it would never be complete while a key repeats.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -27,14 +28,15 @@ use crate::tui::canvas::Canvas;
 use crate::world::Figure;
 
 impl App {
-    /// Draws the screen.
+    /// Renders and paints the whole screen.
     pub(crate) fn draw(&mut self, canvas: &mut impl Canvas) {
         self.render(canvas.bounds().as_size(), &mut |_, _| true);
         self.paint(canvas);
     }
 
-    /// Renders the picture for a window of this size; may stop once `go_on` returns `false`, which it
-    /// may decide by the screen and the keys. Returns whether the picture is complete.
+    /// Renders the picture for a window of this size. Rendering may stop once `go_on` returns
+    /// `false`; `go_on` receives the current screen and the bindings. Returns whether the picture
+    /// is complete.
     pub(crate) fn render(
         &mut self,
         window: Size,
@@ -52,7 +54,7 @@ impl App {
         self.game.render(&options, picture.as_size(), &mut self.views, go_on)
     }
 
-    /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
+    /// Paints the rendered picture and everything over it on a canvas of the same size.
     pub(crate) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
         if page::is_too_small(area) {
@@ -165,7 +167,7 @@ impl App {
         }
     }
 
-    /// Shows the ghost in the world of the game, or no longer.
+    /// Adds the ghost to the game's world, or removes it if it is switched off.
     fn show_ghost(&mut self) {
         let is_on = self.store.preferences().ghost;
         let Some(ghost) = self.ghost.as_ref() else { return };
@@ -176,7 +178,7 @@ impl App {
 }
 
 impl App {
-    /// Whether the screen is out of date.
+    /// Returns true if the screen is out of date.
     pub(crate) fn is_stale(&self) -> bool {
         let Some(Shown { viewpoint, revision, figures }) = &self.shown else { return true };
         (*viewpoint, *revision) != self.surroundings()
@@ -184,14 +186,14 @@ impl App {
             || self.steps_to_animation() == Some(0)
     }
 
-    /// The viewpoint, and a number that grows with every visible change except of figures.
+    /// The viewpoint, and a number that grows with every visible change apart from the figures.
     fn surroundings(&self) -> (Viewpoint, u64) {
         let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
         (self.game.viewpoint(self.settings.field_of_view), self.game.revision() + ghost)
     }
 
-    /// The figures that the last picture and its map would show if they were drawn now, in the same
-    /// surroundings; and perhaps others.
+    /// The figures that the last picture and its map would show if they were drawn now with the
+    /// same surroundings. The result may contain figures that are hidden.
     fn figures_in_view(&self) -> impl Iterator<Item = &Figure> {
         let figures = self.game.grid().into_iter().flat_map(|game| {
             let camera = game.camera(self.settings.field_of_view);
@@ -202,7 +204,7 @@ impl App {
         in_view.map(|(.., figure)| figure)
     }
 
-    /// The number of steps until that change; `None` for never.
+    /// The number of steps until the next animation; `None` for never.
     fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
         Some(steps.round().max(0.0) as u64)
@@ -235,7 +237,7 @@ impl App {
         Some(self.clock.step_after(steps.saturating_sub(1)))
     }
 
-    /// Whether the player wants nothing, and the next step changes only what others do.
+    /// Returns true if the player wants nothing and the next step changes only what others do.
     pub(crate) fn waits_for_others(&self) -> bool {
         let wanted = self.wanted();
         self.screen() == Screen::Playing
@@ -246,22 +248,22 @@ impl App {
     }
 }
 
-/// Returns whether an event has arrived for which a function returns `true`.
+/// A function that returns true if an event that matches its argument has arrived.
 type HasArrived<'a> = dyn FnMut(&dyn Fn(&Event) -> bool) -> bool + 'a;
 
 /// The result of rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rendered {
     Complete,
-    /// Parts of the picture are older. It is painted all the same, since the panel over it is new.
+    /// Parts of the picture are old. It is painted anyway, because the panel over it is new.
     Partial,
-    /// An event comes first, and nothing is painted.
+    /// An event must be handled first, and nothing is painted.
     Interrupted,
 }
 
 impl App {
-    /// Renders the picture for a window of this size, unless an event comes first. `has_arrived` returns
-    /// whether such an event has arrived.
+    /// Renders the picture for a window of this size, unless an event must be handled first.
+    /// `has_arrived` returns whether such an event has arrived.
     pub(crate) fn render_unless(
         &mut self,
         window: Size,
@@ -269,7 +271,7 @@ impl App {
     ) -> Rendered {
         if self.is_interrupted {
             let (screen, bindings) = (self.screen(), &self.settings.bindings);
-            // Other events may have arrived before it.
+            // Such an event may have arrived before the key that interrupted the last picture.
             if has_arrived(&|event| comes_first(event, screen, bindings)) {
                 return Rendered::Interrupted;
             }
@@ -285,7 +287,7 @@ impl App {
     }
 }
 
-/// Whether `event` comes before a picture.
+/// Returns true if `event` must be handled before the picture is finished.
 fn comes_first(event: &Event, screen: Screen, bindings: &Bindings) -> bool {
     match event {
         Event::Quit(_) | Event::Suspend | Event::Resized => true,

@@ -1,14 +1,15 @@
-//! The levels of a game, in order, and the way from one to the next: beginning, going on, beginning
-//! again, dying, and returning to the title.
+//! The levels of a game in order, and the transitions between them: begin, continue with the next
+//! one, begin again, die, and return to the title.
 //!
-//! A level may change while it is played, because its author edits the map. The game checks for changes
-//! a few times a second. Rejected: file events of the system. A library for them needs a thread, wakes
-//! the loop, and has to follow files that editors replace.
+//! A level may change during play, because its author edits the map. The game checks for changes a
+//! few times a second. Rejected: file events from the operating system. A library for them needs a
+//! thread, wakes the loop, and has to follow files that editors replace.
 //!
-//! A descent is endless, or the one of the day. It ends when the player dies: there is no way back to a floor, so that how far somebody
-//! came means the same for all. The first try of a daily run counts, and is asked about before it begins;
-//! tries after its end are practice. A descent that is left is saved, and goes on from there as the same
-//! try: its saved game is removed then, so that a death cannot be undone.
+//! A descent is either endless or the daily run. It ends when the player dies. There is no way back
+//! to an earlier floor, so the number of floors reached can be compared between players. The first
+//! try of a daily run counts, and the game asks before it begins; later tries are practice. When a
+//! player leaves a descent, it is saved, and continuing it resumes the same try. The saved game is
+//! removed at that moment, so a death cannot be undone.
 
 use std::time::Duration;
 use std::{fmt, iter};
@@ -32,15 +33,17 @@ use crate::space::Scene;
 use crate::tui::canvas::Canvas;
 use crate::world::Difficulty;
 
-/// The level that is played, and those after it, in order. Each is created when it is reached.
+/// The current level and the levels after it, in order. Each one is created when the player reaches
+/// it.
 pub struct Levels {
-    /// The level that is played, to begin it again.
+    /// The current level before its start, kept to begin it again.
     pub(crate) stage: Stage,
     rest: Box<dyn Iterator<Item = Stage>>,
-    /// The source of changes of the level.
+    /// The source of changes to the level.
     pub(crate) reload: Option<Reload>,
     pub(crate) number: LevelNumber,
-    /// The kind of the descent, which ends with the player; `None` for levels, which are tried again until they are won.
+    /// The kind of descent, which ends with the player's death; `None` for levels, which can be
+    /// retried until they are won.
     pub(crate) descent: Option<Descent>,
 }
 
@@ -53,11 +56,11 @@ pub(crate) enum Stage {
     Floor { seed: u64, number: u32 },
 }
 
-/// The number of a level, counted from 1, and the number of levels.
+/// The number of a level, counted from 1, and the total number of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LevelNumber {
     number: usize,
-    /// `None` if the number is unlimited or unknown.
+    /// The total; `None` if it is unlimited or unknown.
     of: Option<usize>,
 }
 
@@ -74,26 +77,26 @@ impl Levels {
         Self::staged(stage(first), rest.map(stage))
     }
 
-    /// A map of the player's own.
+    /// A map that belongs to the player.
     pub fn own(level: OwnLevel) -> Self {
         Self::staged(Stage::Own(level), iter::empty())
     }
 
-    /// The built-in levels from the one with that index on; `None` if there is none.
+    /// The built-in levels from index `index` on; `None` if there is no such level.
     pub fn builtin(index: usize) -> Option<Self> {
         let mut stages = builtin::LEVELS.get(index..)?.iter().map(Stage::Builtin);
         let first = stages.next()?;
         Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
-    /// The floors of the descent with that seed, without an end. The seed of a daily run is its date.
+    /// The endless floors of the descent with this seed. The seed of a daily run is its date.
     pub(crate) fn descent(seed: u64, kind: Descent) -> Self {
         let stage = move |number| Stage::Floor { seed, number };
         Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
-    /// One level that may change during the game. `changes` is called a few times a second. If the
-    /// level has changed since the last call, it returns the new level or its faults.
+    /// One level that may change during the game. The game calls `changes` a few times a second. If
+    /// the level has changed since the last call, `changes` returns the new level or its faults.
     pub fn changing(
         level: Level,
         changes: impl FnMut() -> Option<Result<Level, Faults>> + 'static,
@@ -102,7 +105,7 @@ impl Levels {
         Self { reload: Some(reload), ..Self::new(level, iter::empty()) }
     }
 
-    /// Sets the number of the first level, counted from 1, and the number of levels.
+    /// Sets the number of the first level, counted from 1, and the total number of levels.
     #[must_use]
     pub fn numbered(self, number: usize, of: usize) -> Self {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
@@ -115,14 +118,14 @@ impl Levels {
 }
 
 impl Default for Levels {
-    /// A level in which there is nothing.
+    /// A single empty level.
     fn default() -> Self {
         Self::staged(Stage::Level(Level::Space(Scene::default())), iter::empty())
     }
 }
 
 impl Stage {
-    /// The name under which results of the level are kept, if they are.
+    /// The name under which the store keeps results of the level; `None` if it keeps none.
     pub(crate) fn name(&self) -> Option<&str> {
         match self {
             Self::Builtin(level) => Some(level.name),
@@ -131,7 +134,7 @@ impl Stage {
         }
     }
 
-    /// The path of the level's map file, if it is known.
+    /// The path of the level's map file, if known.
     pub(crate) fn file(&self) -> Option<&str> {
         match self {
             Self::Own(own) => own.file.as_deref(),
@@ -139,7 +142,7 @@ impl Stage {
         }
     }
 
-    /// The level at its start; `None` if a built-in level has faults, which tests exclude.
+    /// The level at its start; `None` if a built-in level has faults. Tests exclude that case.
     pub(crate) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
         let rules = Rules { difficulty, seed: 0 };
         Some(match self {
@@ -157,7 +160,7 @@ impl Stage {
 }
 
 impl LevelNumber {
-    /// Whether there are several levels, as far as known.
+    /// Returns true if there are several levels, as far as is known.
     pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
     }
@@ -185,22 +188,22 @@ impl fmt::Debug for Levels {
 }
 
 impl App {
-    /// Begins the first of `levels`; asks first if a game in it is saved.
+    /// Begins the first of `levels`. If a saved game of it exists, asks first.
     pub(crate) fn begin(&mut self, levels: Levels) {
-        // A recorded script is about what the program began with.
+        // A recorded script covers only the level with which the program began.
         self.script = None;
         self.set_up(levels);
         self.ask_about_saved();
     }
 
-    /// Begins the built-in level with that index.
+    /// Begins the built-in level with index `index`.
     pub(crate) fn begin_builtin(&mut self, index: usize) {
         if let Some(levels) = Levels::builtin(index) {
             self.begin(levels);
         }
     }
 
-    /// Begins the map with that index in the list of own maps.
+    /// Begins the map with index `index` in the list of own maps.
     pub(crate) fn begin_own_map(&mut self, index: usize) {
         let Some(map) = self.own_maps.get(index) else { return };
         match (map.load)() {
@@ -214,7 +217,7 @@ impl App {
         }
     }
 
-    /// Begins the first of `levels`.
+    /// Begins the first of `levels` without asking about a saved game.
     pub(crate) fn set_up(&mut self, levels: Levels) {
         let Some(game) = levels.stage.begin(self.difficulty) else { return };
         self.levels = levels;
@@ -226,7 +229,7 @@ impl App {
         self.tell_whether_it_counts();
     }
 
-    /// Begins the next level. After the last one comes the end.
+    /// Begins the next level, or shows the end after the last one.
     pub(crate) fn next_level(&mut self) {
         let stage = self.levels.rest.next();
         let begun = stage.and_then(|stage| Some((stage.begin(self.difficulty)?, stage)));
@@ -241,8 +244,8 @@ impl App {
         self.ask_about_saved();
     }
 
-    /// Begins the level again. A script that is recorded ends here: in a script, a level begins
-    /// once.
+    /// Begins the level again. This ends the recording of a script, because a level begins only
+    /// once in a script.
     pub(crate) fn restart_level(&mut self) {
         self.script = None;
         self.begin_again();
@@ -255,7 +258,7 @@ impl App {
         self.begin_level(game);
     }
 
-    /// Goes on from the last checkpoint after a death.
+    /// Continues from the last checkpoint after a death.
     pub(crate) fn retry(&mut self) {
         let retry: Intents = [Intent::Retry].into_iter().collect();
         self.game.step(retry);
@@ -265,7 +268,7 @@ impl App {
         self.show(Screen::Playing);
     }
 
-    /// Leaves the game for the title.
+    /// Leaves the game and returns to the title.
     pub(crate) fn return_to_title(&mut self) {
         let not_saved = self.leave_game();
         self.show_title();
@@ -274,7 +277,7 @@ impl App {
         }
     }
 
-    /// Shows the title, over a level that plays itself.
+    /// Shows the title over a level that plays itself.
     pub(crate) fn show_title(&mut self) {
         self.script = None;
         self.levels.reload = None;
@@ -298,19 +301,19 @@ impl App {
     }
 }
 
-/// The time between two checks.
+/// The time between two checks for changes.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// The source of changes, and the faults of the last one.
+/// The source of changes to a level, and the faults that the last change introduced.
 pub(crate) struct Reload {
-    /// Returns the level or its faults, if it has changed.
+    /// Returns the new level or its faults, if the level has changed.
     changes: Box<dyn FnMut() -> Option<Result<Level, Faults>>>,
     next_check: Duration,
     fault: Option<String>,
 }
 
 impl App {
-    /// Checks for a change when it is time, and continues in the changed level.
+    /// Checks for a change if it is time, and continues in the changed level.
     pub(crate) fn reload(&mut self, now: Duration) {
         let due = self.levels.reload.as_mut().filter(|reload| now >= reload.next_check);
         let Some(reload) = due else { return };
@@ -340,7 +343,7 @@ impl App {
         self.levels.reload.as_ref().map(|reload| reload.next_check)
     }
 
-    /// Draws the faults of the level, if any, over the bottom of the picture.
+    /// Draws the level's faults, if any, over the bottom of the picture.
     pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
         let fault = self.levels.reload.as_ref().and_then(|reload| reload.fault.as_ref());
         let Some(fault) = fault else { return };
@@ -351,11 +354,12 @@ impl App {
     }
 }
 
-/// The sentence about a daily run that does not count.
+/// The message for a daily run that does not count.
 const PRACTICE: &str = "Practice: the first try of the day counts";
 
 impl App {
-    /// The question before the daily run: the try that counts begins or goes on, or is over.
+    /// The menu before the daily run. It offers to begin or continue the try that counts, or to
+    /// practise once that try is over.
     pub(crate) fn daily_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("daily run");
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
@@ -378,7 +382,7 @@ impl App {
         menu.entry("Return to the title", Choice::Back)
     }
 
-    /// Begins the descent of the day, at the same difficulty for everybody.
+    /// Begins the daily descent, at the same difficulty for everybody.
     pub(crate) fn begin_daily(&mut self) {
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
         let counts = self.store.begin_daily(date);
@@ -388,7 +392,7 @@ impl App {
         self.ask_about_saved();
     }
 
-    /// Begins a descent that nobody has seen.
+    /// Begins an endless descent with a new seed.
     pub(crate) fn begin_endless(&mut self) {
         let Some(offers) = self.offers.as_mut() else { return };
         let seed = offers.seed;
@@ -397,7 +401,7 @@ impl App {
         self.begin(Levels::descent(seed, Descent::Endless));
     }
 
-    /// Says at the start of a daily run whether the try counts.
+    /// Sets a goal that says whether this daily run counts.
     fn tell_whether_it_counts(&mut self) {
         let (text, short) = match self.levels.descent {
             Some(Descent::Daily) => ("Daily run: this try counts", "This try counts"),
@@ -407,19 +411,19 @@ impl App {
         self.goal = Goal::new(text, short);
     }
 
-    /// Counts the floor whose exit the player has just reached.
+    /// Adds the floor whose exit the player has just reached.
     pub(crate) fn count_floor(&mut self) {
         if let Some(game) = self.game.grid() {
             self.reached = self.reached.and(&game.tally());
         }
     }
 
-    /// Whether the level belongs to a descent.
+    /// Returns true if the level belongs to a descent.
     pub(crate) fn is_descent(&self) -> bool {
         self.levels.descent.is_some()
     }
 
-    /// Records a floor that was won.
+    /// Records a floor that the player has won.
     pub(crate) fn record_floor(&mut self) {
         let Some(game) = self.game.grid() else { return };
         let (date, script) = (u32::try_from(game.rules().seed), self.run_script(game));
@@ -437,7 +441,7 @@ impl App {
         [described(self.reached)].into_iter().chain(is_practice.then(|| PRACTICE.to_owned()))
     }
 
-    /// Adds the descents to the title's menu.
+    /// Adds the two kinds of descent to the title's menu.
     pub(crate) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let Some(offers) = &self.offers else { return menu };
         let reached = |reached: Option<Reached>| reached.map_or_else(String::new, short);
@@ -452,7 +456,7 @@ impl App {
     }
 }
 
-/// The descent of that kind with these rules, as it is saved, without steps and checksum.
+/// The entry for a saved descent of this kind with these rules, without steps and checksum.
 pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
     Save {
         level: LevelName::of_floor(1).as_str().to_owned(),
@@ -464,12 +468,12 @@ pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
     }
 }
 
-/// The seed of a daily run as a date: 20261122 is 2026-11-22.
+/// Formats the seed of a daily run as a date: 20261122 becomes 2026-11-22.
 pub(crate) fn date_of(seed: u64) -> String {
     format!("{}-{:02}-{:02}", seed / 10_000, seed / 100 % 100, seed % 100)
 }
 
-/// The floors that were reached, for the title.
+/// The number of floors reached, for the title.
 fn short(reached: Reached) -> String {
     match reached.floors {
         1 => "1 floor".to_owned(),

@@ -1,22 +1,26 @@
-//! Pages over the picture: the page shown, the way back from it, the effect of keys on it, and how it is drawn.
+//! Pages over the picture: the current page, the way back from it, the effect of keys on it, and
+//! its drawing.
 //!
-//! The same keys work on all pages of a kind, at home and on a server. [`Pages`] handles them, and
-//! returns the [`Effect`] that its owner carries out. A page that is opened from another one returns to
-//! it: the settings to the title or to the pause, wherever they were opened. The way back is a stack of
-//! pages with their menus, so that the selection is the same on return.
+//! The same keys work on all pages of a kind, at home and on a server. [`Pages`] handles the keys
+//! and returns an [`Effect`], which its owner carries out. A page returns to the page from which it
+//! was opened. For example, the settings return to the title or to the pause page. The way back is
+//! a stack of pages with their menus, so the selection is still there on return.
 //!
-//! - Irreversible actions require a certain press, and a repetition never answers. A byte that may be the
-//!   first repetition of a key counts if no other byte follows within the interval of repetitions.
-//! - A page that shows a result appears while the player presses keys of the game: only Enter and the
-//!   arrows act there, once the keys that were held have been released.
+//! - An irreversible action requires an unambiguous key press, and a key repeat never counts as an
+//!   answer. A byte that may be the first repeat of a key counts only if no other byte follows
+//!   within the repeat interval.
+//! - A result page appears while the player presses game keys. Only Enter and the arrows act on it,
+//!   and only after the keys that were held have been released.
 //!
-//! A menu is a panel with text and a list of entries, with one selected. Every panel that asks for a choice is a menu,
-//! and the same keys work in all of them: the arrows or the keys to walk select, Enter or Space chooses, a digit
-//! chooses the entry with that number, Escape or Backspace goes back. On a result, only Enter and the arrows act, and
-//! the selection stops at both ends. A list that is higher than the window scrolls, and the text above it is cut first.
+//! A menu is a panel with text and a list of entries, one of which is selected. Every panel that
+//! asks for a choice is a menu, and the same keys work in all of them: the arrows or the walking
+//! keys select, Enter or Space chooses, a digit chooses the entry with that number, Escape or
+//! Backspace goes back. On a result page, only Enter and the arrows act, and the selection stops at
+//! both ends. A list that is higher than the window scrolls, and the text above it is cut first.
 //!
-//! The help is a panel with the keys of all actions. Its first line says how to close it. If it is higher than the
-//! window, keys that every terminal has scroll it: the arrows, the page keys, and the space bar.
+//! The help is a panel with the keys of all actions. Its first line says how to close it. If the
+//! help is higher than the window, it scrolls with keys that every terminal has: the arrows, the
+//! page keys, and the space bar.
 
 use std::time::Duration;
 
@@ -31,27 +35,27 @@ use crate::terminal::Key;
 use crate::tui::canvas::Canvas;
 use crate::tui::{HeldKeys, Minimap, Press};
 
-/// A page, which has the keys of its kind.
+/// A page. Its kind decides which keys work on it.
 pub trait Page: Copy + PartialEq {
     /// The kind of the page.
     fn kind(self) -> Kind;
 }
 
-/// A kind of pages.
+/// A kind of page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The picture, or a page whose owner handles its keys.
+    /// The picture, or a page whose owner handles the keys.
     Bare,
-    /// A menu. If it has values, keys to the left and the right change them.
+    /// A menu. If its entries have values, the left and right keys change them.
     Menu {
-        /// Whether the entries have values.
+        /// `true` if the entries have values.
         has_values: bool,
     },
     /// A menu that shows a result.
     Result,
     /// The help, which scrolls.
     Help,
-    /// The question whether to leave.
+    /// The question whether to leave the game.
     Leaving,
 }
 
@@ -62,32 +66,32 @@ pub enum Effect {
     None,
     /// The page has changed.
     Redraw,
-    /// Takes the next value of the selected entry, or the one before.
+    /// Take the next or the previous value of the selected entry.
     Change {
-        /// Whether to take the next one.
+        /// `true` for the next value.
         forward: bool,
     },
-    /// Chooses the selected entry.
+    /// Choose the selected entry.
     Choose,
-    /// Answers the question whether to leave.
+    /// Answer the question whether to leave.
     Leave(bool),
-    /// Answers a question of the owner.
+    /// Answer a question that the owner asked.
     Answer(Key),
     /// The owner decides.
     Other,
 }
 
-/// The page that is shown, its menu, and the pages to return to.
+/// The current page, its menu, and the pages to return to.
 #[derive(Clone, Debug)]
 pub struct Pages<P, C> {
     page: P,
-    /// The menu of the page; empty if it has none.
+    /// The menu of the page; empty if the page has none.
     pub menu: Menu<C>,
-    /// The pages to return to, the next one last.
+    /// The pages to return to; the last one is the next to return to.
     behind: Vec<(P, Menu<C>)>,
-    /// The help, if it is shown.
+    /// The scroll position of the help, if it is shown.
     pub help: HelpScroll,
-    /// A key that answers the question on the page if it does not repeat until a certain time.
+    /// A key that answers the question on the page unless it repeats before this time.
     pending: Option<(Key, Duration)>,
     shown_since: Duration,
 }
@@ -111,24 +115,24 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         }
     }
 
-    /// The page that is shown.
+    /// The current page.
     pub fn page(&self) -> P {
         self.page
     }
 
-    /// Shows `page`, from which there is no way back.
+    /// Shows `page`, with no way back.
     pub fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.clear();
         self.enter(page, menu, now);
     }
 
-    /// Opens `page` over the present one.
+    /// Opens `page` over the current one.
     pub fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter(page, menu, now);
     }
 
-    /// Returns to the page from which this one was opened, or to `home`.
+    /// Returns to the page from which the current one was opened, or to `home` if there is none.
     pub fn close(&mut self, home: P, now: Duration) {
         let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::default()));
         self.enter(page, menu, now);
@@ -140,15 +144,16 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         self.pending = None;
     }
 
-    /// Replaces the menu, after something that it shows has changed. The selected choice stays selected if it
-    /// still exists. The first entry stays selected whatever it offers now.
+    /// Replaces the menu after a change to something that it shows. The selected choice stays
+    /// selected if it still exists. If the first entry is selected, the first entry stays selected,
+    /// whatever its choice is now.
     pub fn renew(&mut self, menu: Menu<C>) {
         let (selected, choice) = (self.menu.selected, self.menu.choice());
         let index = menu.entries.iter().position(|entry| Some(entry.choice) == choice);
         self.menu = menu.selecting(index.filter(|_| selected > 0).unwrap_or(selected));
     }
 
-    /// Handles a press of `key` while the keys in `held` are down.
+    /// Handles a press of `key` while the keys in `held` are down. Returns the effect.
     pub fn press(
         &mut self,
         (key, press): (Key, Press),
@@ -189,7 +194,8 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         }
     }
 
-    /// Answers the question on the page by `key`, now or once it is certain that it does not repeat.
+    /// Uses `key` to answer the question on the page. If the press may be a repeat, the answer
+    /// waits until that is ruled out.
     pub fn press_to_answer(
         &mut self,
         key: Key,
@@ -205,7 +211,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         Effect::None
     }
 
-    /// The effect of a pending key that did not repeat until `now`.
+    /// The effect of the pending key, if it has not repeated by `now`.
     pub fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
         let settled = self.pending.take_if(|(_, until)| *until <= now);
         settled.map_or(Effect::None, |(key, _)| self.answer(key, bindings))
@@ -228,35 +234,37 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         }
     }
 
-    /// The time until which a key is pending.
+    /// The time until which a key is pending, if one is.
     pub fn pending_until(&self) -> Option<Duration> {
         self.pending.map(|(_, until)| until)
     }
 }
 
-/// The least time for which a result is shown, and the time after which held keys no longer matter.
+/// The shortest time for which a result is shown, and the time after which held keys no longer
+/// matter.
 const LEAST_SHOWN: Duration = Duration::from_millis(500);
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
-/// Whether a result that is shown since `shown_since` can be answered at `now`: half a second later, once the
-/// keys that were held for the game have been released, or a second later.
+/// Returns true if a result that has been on screen since `shown_since` can be answered at `now`:
+/// after half a second if the keys held for the game have been released, and after one second in
+/// any case.
 pub fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
     let shown_for = now.saturating_sub(shown_since);
     let is_released = shown_for >= LEAST_SHOWN && !held.is_any_down_since(shown_since);
     is_released || shown_for >= LONGEST_WAIT
 }
 
-/// The longest interval between repetitions.
+/// The longest interval between two repeats of a key.
 const REPETITION: Duration = Duration::from_millis(150);
 
-/// A list of entries with choices of the type `C`.
+/// A list of entries with choices of type `C`.
 #[derive(Clone, Debug)]
 pub struct Menu<C> {
     title: String,
     text: Vec<String>,
     entries: Vec<Entry<C>>,
     selected: usize,
-    /// The first entry shown, and the number of entries shown last.
+    /// The first visible entry, and the number of entries visible in the last drawing.
     first: usize,
     page: usize,
 }
@@ -264,12 +272,13 @@ pub struct Menu<C> {
 #[derive(Clone, Debug)]
 struct Entry<C> {
     label: String,
-    /// Shown at the right.
+    /// The text at the right.
     value: String,
     choice: C,
 }
 
-/// Whether `key` changes a value to the next one, or to the one before; `None` if it does neither.
+/// Whether `key` changes a value to the next one (`true`) or the previous one (`false`); `None` if
+/// it does neither.
 fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
     match key {
         Key::Right => Some(true),
@@ -282,9 +291,9 @@ fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
     }
 }
 
-/// The columns before a label, with a mark if the entry is selected.
+/// The columns before a label. They contain a mark if the entry is selected.
 const MARK: &str = "> ";
-/// The least number of columns between a label and its value.
+/// The minimum number of columns between a label and its value.
 const GAP: usize = 2;
 
 impl<C> Default for Menu<C> {
@@ -316,7 +325,7 @@ impl<C: Copy> Menu<C> {
         self.entry_with(label, "", choice)
     }
 
-    /// Adds an entry with a value at its right.
+    /// Adds an entry with a value at the right.
     pub fn entry_with(
         mut self,
         label: impl Into<String>,
@@ -327,7 +336,7 @@ impl<C: Copy> Menu<C> {
         self
     }
 
-    /// Adds entries with their labels, values and choices.
+    /// Adds entries from tuples of label, value and choice.
     pub fn entries<L: Into<String>, V: Into<String>>(
         self,
         entries: impl IntoIterator<Item = (L, V, C)>,
@@ -337,7 +346,7 @@ impl<C: Copy> Menu<C> {
             .fold(self, |menu, (label, value, choice)| menu.entry_with(label, value, choice))
     }
 
-    /// Selects the entry with that index, or the last one.
+    /// Selects the entry with index `index`, or the last one if there are fewer.
     pub fn selecting(mut self, index: usize) -> Self {
         self.selected = index.min(self.entries.len().saturating_sub(1));
         self
@@ -359,14 +368,15 @@ impl<C: Copy> Menu<C> {
         self.entries.get(self.selected).map(|entry| entry.label.clone())
     }
 
-    /// Selects the next entry, or the one before, if there is one.
+    /// Selects the next or the previous entry, if there is one.
     fn select_neighbour(&mut self, forward: bool) {
         let last = self.entries.len().saturating_sub(1);
         let selected = self.selected;
         self.selected = if forward { (selected + 1).min(last) } else { selected.saturating_sub(1) };
     }
 
-    /// The index of the entry that `key` chooses: the selected one, or the one with that number, counted from 1.
+    /// The index of the entry that `key` chooses: the selected one, or the one whose number
+    /// (counted from 1) is the digit.
     fn chosen_by(&self, key: Key) -> Option<usize> {
         match key {
             Key::Enter | Key::Char(' ') => Some(self.selected),
@@ -378,8 +388,8 @@ impl<C: Copy> Menu<C> {
         }
     }
 
-    /// The index of the entry that `key` selects, if it is a key to walk, or a key for lists that every terminal has.
-    /// After the last entry comes the first.
+    /// The index of the entry that `key` selects, if `key` is a walking key or a list key that
+    /// every terminal has. The first entry follows the last one.
     fn selected_by(&self, key: Key, bindings: &Bindings) -> Option<usize> {
         let (count, page) = (self.entries.len().max(1), self.page.max(1));
         let (previous, next) = ((self.selected + count - 1) % count, (self.selected + 1) % count);
@@ -424,7 +434,7 @@ impl<C: Copy> Menu<C> {
         message(canvas, room, &title, Text::from(lines));
     }
 
-    /// The title, and where the list is scrolled, the number of the selected entry.
+    /// The title, with the number of the selected entry if the list is scrolled.
     fn shown_title(&self) -> String {
         if self.page < self.entries.len() {
             let place = format!("{} {}/{}", self.title, self.selected + 1, self.entries.len());
@@ -434,7 +444,7 @@ impl<C: Copy> Menu<C> {
         }
     }
 
-    /// Scrolls until the selected entry is shown.
+    /// Scrolls until the selected entry is visible.
     fn scroll(&mut self) {
         let last = self.entries.len() - self.page;
         let least = (self.selected + 1).saturating_sub(self.page);
@@ -451,7 +461,7 @@ impl<C> Entry<C> {
         MARK.len() + Span::raw(&self.label).width() + if value > 0 { GAP + value } else { 0 }
     }
 
-    /// The entry in `width` columns. The label is cut where the value needs its room.
+    /// The text of the entry in `width` columns. The label is cut if the value needs the space.
     fn line(&self, is_selected: bool, width: usize) -> String {
         let mark = if is_selected { MARK } else { "  " };
         let value_width = self.value.chars().count();
@@ -464,18 +474,18 @@ impl<C> Entry<C> {
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HelpScroll {
-    /// The first line shown, below the lines that are always shown.
+    /// The index of the first visible line below the fixed first line.
     first: usize,
-    /// The number of lines shown last, and the number of all lines.
+    /// The number of lines visible in the last drawing, and the total number of lines.
     page: usize,
     lines: usize,
 }
 
-/// The number of blank columns between two columns of text.
+/// The number of blank columns between two text columns.
 const COLUMN_GAP: usize = 3;
 
 impl HelpScroll {
-    /// Scrolls if `key` does that. Returns whether it does.
+    /// Scrolls if `key` is a scrolling key. Returns whether it is.
     pub fn scroll(&mut self, key: Key) -> bool {
         let page = self.page.max(1);
         let wanted = match key {
@@ -490,13 +500,13 @@ impl HelpScroll {
         true
     }
 
-    /// The last scroll position.
+    /// The largest scroll position.
     fn last(&self) -> usize {
         self.lines.saturating_sub(self.page)
     }
 
-    /// Draws the help: further keys, in sentences, before the keys of the bindings, and `notes` about the
-    /// terminal at the end.
+    /// Draws the help: sentences about `further` keys, then the keys of the bindings, then `notes`
+    /// about the terminal.
     pub fn draw(
         &mut self,
         canvas: &mut impl Canvas,
@@ -515,7 +525,7 @@ impl HelpScroll {
         let body: Vec<String> = further.into_iter().chain(keys).chain(notes).collect();
         self.lines = body.len();
         let fits = body.len() < room;
-        // The line that says how to scroll takes a line.
+        // The line that says how to scroll takes up one line.
         self.page = if fits { body.len() } else { room.saturating_sub(2).max(1) };
         self.first = self.first.min(self.last());
         let shown = body.iter().skip(self.first).take(self.page).cloned();
@@ -530,7 +540,7 @@ impl HelpScroll {
     }
 }
 
-/// The line that says how to close the help and, if it fits, how to leave the game.
+/// The line that says how to close the help and, if there is space, how to leave the game.
 fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
     let first = |action| bindings.keys(action).next().map(|key| key.to_string());
     let close = first(Action::ToggleHelp).unwrap_or_else(|| Key::Escape.to_string());
@@ -540,7 +550,7 @@ fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
         .unwrap_or_else(|| format!("{close} closes"))
 }
 
-/// Actions that share a line, which begins with the first of them.
+/// Groups of actions that share a line. The line stands in the place of the first action.
 const TOGETHER: [(&[Action], &str); 4] = [
     (&[Action::Want(Intent::FineLeft), Action::Want(Intent::FineRight)], "turn by 5°"),
     (
@@ -559,7 +569,7 @@ const TOGETHER: [(&[Action], &str); 4] = [
     (&[Action::WidenView, Action::NarrowView], "widen, narrow"),
 ];
 
-/// The keys of all actions with a short description each, in the order of [`Action::ALL`].
+/// The keys and a short description of all actions, in the order of [`Action::ALL`].
 fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
     let line = |(_, does, action, _): (_, &'static str, Action, _)| {
         let Some((actions, does)) = TOGETHER.iter().find(|group| group.0.contains(&action)) else {
@@ -572,8 +582,8 @@ fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
     Action::ALL.into_iter().filter_map(line).collect()
 }
 
-/// Each line with its keys, in as many columns as are needed to fit into `room` lines and possible
-/// in `most_columns`. If not even one column fits, lines are wrapped.
+/// The lines with keys and descriptions, in as many columns as needed to fit into `room` lines, up
+/// to the number that fits into `most_columns`. If not even one column fits, lines are wrapped.
 fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec<String> {
     let lines = described(bindings);
     let padded: Vec<String> =
@@ -595,19 +605,19 @@ fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec
         .collect()
 }
 
-/// The smallest window to play in.
+/// The smallest playable window.
 const LEAST_COLUMNS: u16 = 20;
 const LEAST_ROWS: u16 = 6;
 /// The smallest picture with room for a minimap.
 const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
-/// The largest minimap: a larger one would hide too much of the picture.
+/// The largest minimap. A larger one would hide too much of the picture.
 const LARGEST_MINIMAP: (u16, u16) = (40, 20);
-/// The columns or rows that the borders of a panel take.
+/// The number of columns or rows that the borders of a panel take.
 pub(crate) const BORDERS: u16 = 2;
-/// The columns that a message leaves blank at both sides.
+/// The number of blank columns beside a message, both sides together.
 pub(crate) const PADDING: u16 = 2;
 
-/// Whether `area` is too small to play in.
+/// Returns true if `area` is too small to play in.
 pub fn is_too_small(area: Rect) -> bool {
     area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
 }
@@ -618,15 +628,15 @@ pub fn too_small(canvas: &mut impl Canvas) {
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
-/// The areas of the picture and of the status line.
+/// The areas of the picture and the status line.
 pub fn picture_and_status(area: Rect) -> [Rect; 2] {
     let picture = Rect { height: area.height.saturating_sub(1), ..area };
     let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
     [picture, status]
 }
 
-/// The area of the panel of `map`, in the upper right corner of the picture, if there is room for
-/// it.
+/// The area of the panel of `map` in the upper right corner of the picture; `None` if there is no
+/// room for it.
 pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
     let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
@@ -643,8 +653,8 @@ pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 
 /// Draws the border of a panel with a title, and returns the area inside.
 ///
-/// A ratatui block would also clear the inside, which a minimap fills anyway, and allocate a list for
-/// its titles, in each frame.
+/// Rejected: a ratatui block. In each frame it would clear the inside, which a minimap fills
+/// anyway, and allocate a list for its titles.
 pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     if area.width < BORDERS || area.height < BORDERS {
@@ -667,7 +677,7 @@ pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect 
     inside
 }
 
-/// Draws the question whether to leave; `effect` is what that does.
+/// Draws the question whether to leave; `effect` says what leaving does.
 pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
@@ -675,7 +685,7 @@ pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, eff
     message(canvas, picture, "leave?", Text::from(text).centered());
 }
 
-/// Draws a panel in the middle of the picture, as large as `text` needs and the picture has room for.
+/// Draws a panel in the middle of the picture, as large as `text` needs and the picture allows.
 pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(Span::raw(title).width()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
@@ -692,8 +702,8 @@ pub(crate) fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Tex
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);
 }
 
-/// Wraps `text` into lines of up to `width` characters, between words, and within words that are
-/// longer.
+/// Wraps `text` into lines of up to `width` characters. Lines break between words, and inside a
+/// word only if it is longer than a line.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     let mut room = width;

@@ -1,17 +1,19 @@
-//! The picture of one player, and over it the HUD and the map: directions of sounds, a flash at the edge, the compass,
-//! the middle of the picture, and the text of a note.
+//! The picture of one player, with the HUD and the map over it: directions of sounds, a flash at
+//! the edge, the compass, the middle of the picture, and the text of a note.
 //!
-//! All of it depends on the game and the player alone, so that a game at home and a room of several show the same. A
-//! level without guards looks and costs as if there were no HUD, because absent things are not drawn.
+//! All of it depends only on the game and the player. A game at home and a room with several
+//! players therefore show the same picture. Absent things are not drawn, so a level without guards
+//! looks and costs as if there were no HUD.
 //!
-//! - **Sounds.** The edge is a ring around the player as seen from above: a sound ahead is at the top,
-//!   one from behind at the bottom. A mark is an arrow and one to three characters by the strength. Each
-//!   kind of sound has its own character, so that colours are not needed. If a guard has noticed the
-//!   player, or strikes, a word says so. Marks that would cover each other move aside: a louder one keeps
-//!   its place.
-//! - **The flash.** It is red when the player is hurt, on the side of the blow, and golden when they find
-//!   something. It tints the pixels before they are painted, so that every colour depth shows it. Without
-//!   colours, the edge is drawn in characters.
+//! - **Sounds.** The edge of the picture is a ring around the player, seen from above. A sound from
+//!   ahead is marked at the top, a sound from behind at the bottom. A mark is an arrow with one to
+//!   three characters, depending on the loudness. Each kind of sound has its own character, so the
+//!   marks work without colours. If a guard notices the player or strikes, a word says so. If two
+//!   marks would overlap, a threat or the louder sound keeps its place, and the other mark moves
+//!   aside.
+//! - **The flash.** It is red on the side of the blow when the player is hurt, and golden when the
+//!   player finds something. It tints the pixels before they are painted, so every colour depth
+//!   shows it. Without colours, the edge is drawn in characters.
 
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
@@ -31,21 +33,21 @@ use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, Explored, FirstPerson, GlyphSet, MapMark, Minimap, View};
 use crate::world::{Camera, FieldOfView, Heading};
 
-/// How the terminal shows pictures, as far as it is known.
+/// The known properties of the terminal that affect the picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TerminalLook {
-    /// The shape of a cell.
+    /// The height-to-width ratio of a cell, if known.
     pub aspect: Option<CellAspect>,
     /// The colour depth.
     pub depth: ColorDepth,
-    /// How the terminal draws shades.
+    /// The way in which the terminal draws shade characters.
     pub shade_ink: ShadeInk,
-    /// The finest blocks that the terminal is known to draw well.
+    /// The finest block glyphs that the terminal is known to draw well.
     pub glyphs: GlyphSet,
 }
 
 impl TerminalLook {
-    /// The terminal at the other end of `protocol`.
+    /// The properties of the terminal that `protocol` talks to.
     pub fn of(protocol: &Protocol) -> Self {
         Self {
             aspect: protocol.size().cell_aspect.and_then(CellAspect::new),
@@ -56,31 +58,31 @@ impl TerminalLook {
     }
 }
 
-/// How a picture is drawn.
+/// Options for drawing a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawOptions {
     /// The glyph set.
     pub glyphs: GlyphSet,
     /// The colour depth.
     pub depth: ColorDepth,
-    /// How the terminal draws shades.
+    /// The way in which the terminal draws shade characters.
     pub shade_ink: ShadeInk,
-    /// The shape of a cell.
+    /// The height-to-width ratio of a cell.
     pub cell_aspect: CellAspect,
     /// The texture filter.
     pub filter: Filter,
-    /// How pictures are changed for the player's eyes.
+    /// The colour correction for the player's eyes.
     pub correction: Correction,
     /// The field of view.
     pub field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
     pub flash: Option<(Flash, Heading)>,
-    /// Whether a dot marks the middle.
+    /// `true` to mark the middle with a dot.
     pub marks_middle: bool,
 }
 
 impl DrawOptions {
-    /// Draws `scene` from `camera` at the time `seconds`.
+    /// Draws `scene` from `camera` at game time `seconds`.
     pub fn draw<S: Renderable>(
         &self,
         scene: &S,
@@ -95,7 +97,7 @@ impl DrawOptions {
         picture.paint(view, 0, area, canvas);
     }
 
-    /// The picture of `scene` from `camera` at the time `seconds`.
+    /// The picture of `scene` from `camera` at game time `seconds`.
     pub(crate) fn picture<'a, S: Renderable>(
         &self,
         scene: &'a S,
@@ -112,8 +114,8 @@ impl DrawOptions {
             .time(seconds)
     }
 
-    /// Renders `picture` for an area of this size into `view`; may stop once `go_on` returns `false`.
-    /// Returns whether the picture is complete.
+    /// Renders `picture` for an area of this size into `view`. Rendering may stop once `go_on`
+    /// returns `false`. Returns whether the picture is complete.
     pub(crate) fn render<S: Renderable>(
         &self,
         picture: &FirstPerson<'_, S>,
@@ -129,7 +131,7 @@ impl DrawOptions {
         is_complete
     }
 
-    /// Tints and marks the pixels of a picture in colours.
+    /// Tints the edge and marks the middle of a picture in colours.
     fn change_pixels(&self, frame: &mut Frame) {
         if let Some((flash, heading)) = &self.flash {
             tint(frame, flash, *heading);
@@ -140,13 +142,14 @@ impl DrawOptions {
     }
 }
 
-/// `view` after a key that widens or narrows it, in degrees by 6 from 30 to 120.
+/// The field of view after a key press: 6 degrees wider or narrower than `view`, and between 30 and
+/// 120 degrees.
 pub fn widened(view: FieldOfView, widens: bool) -> FieldOfView {
     let by = if widens { 6.0 } else { -6.0 };
     FieldOfView::from_degrees((view.degrees() + by).clamp(30.0, 120.0)).unwrap_or(view)
 }
 
-/// A player of a game, and how their picture is drawn.
+/// One player of a game, and the options for their picture.
 pub struct Overlay<'a> {
     game: &'a Game,
     player: PlayerView<'a>,
@@ -155,7 +158,7 @@ pub struct Overlay<'a> {
 }
 
 impl<'a> Overlay<'a> {
-    /// The overlay of `player`'s picture; `None` if they are not in the game.
+    /// The overlay for `player`'s picture; `None` if that player is not in the game.
     pub fn new(
         game: &'a Game,
         player: PlayerId,
@@ -165,8 +168,8 @@ impl<'a> Overlay<'a> {
         Some(Self { game, player: game.seen_by(player)?, options, preferences })
     }
 
-    /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
-    /// `shows_events`.
+    /// Draws the middle mark, the flash at the edge, and the compass. If `shows_events`, also draws
+    /// sounds and the note.
     pub fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
         let Self { player, options, .. } = self;
         options.draw_middle(canvas, area);
@@ -186,7 +189,8 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Draws the map with its panel, and perhaps a ghost, if it is shown. `view` has drawn the picture.
+    /// Draws the map panel, if it is shown, and the ghost on it, if there is one. `view` must hold
+    /// the last picture.
     pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
@@ -218,7 +222,7 @@ impl<'a> Overlay<'a> {
 }
 
 impl DrawOptions {
-    /// Marks the middle by a character, where pixels do not show it.
+    /// Marks the middle with a character if pixels do not show it.
     pub(crate) fn draw_middle(&self, canvas: &mut impl Canvas, area: Rect) {
         let is_plain = self.depth == ColorDepth::Mono;
         if self.marks_middle && (is_plain || !self.glyphs.has_blocks()) {
@@ -228,7 +232,7 @@ impl DrawOptions {
     }
 }
 
-/// The widest text of a note, in columns.
+/// The maximum width of a note's text, in columns.
 const NOTE_COLUMNS: usize = 56;
 
 /// Draws the text of a note at the bottom of the picture.
@@ -248,21 +252,21 @@ pub(crate) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
     panel(canvas, area, "note", lines.into_iter().map(Line::from).collect());
 }
 
-/// Marks the middle of a picture that is painted in half blocks.
+/// Marks the middle of a picture in half blocks.
 fn mark_middle(frame: &mut Frame) {
     let (x, y) = (frame.width() as usize / 2, frame.height() as usize / 2);
     let Some(pixel) = frame.rows_mut().nth(y).and_then(|row| row.get_mut(x)) else { return };
     *pixel = if pixel.luma() < 128 { Rgb::WHITE } else { Rgb::BLACK };
 }
 
-/// The most marks that are shown.
+/// The maximum number of marks.
 const MOST: usize = 8;
-/// The rows at the top that other panels use.
+/// The number of rows at the top that other panels use.
 const ROWS_ABOVE: u16 = 1;
-/// The columns of a picture with room for words.
+/// The minimum width of a picture with room for words, in columns.
 const COLUMNS_FOR_WORDS: u16 = 40;
 
-/// Draws a mark for each of `heard`, as heard in the direction of view `heading`.
+/// Draws a mark for each of `heard`, relative to the direction of view `heading`.
 fn draw_sounds(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -285,12 +289,13 @@ fn draw_sounds(
     }
 }
 
-/// Whether the sound means that somebody has noticed the player or is about to strike.
+/// Returns true if the sound means that a guard has noticed the player or is about to strike.
 fn is_threat(kind: SoundKind) -> bool {
     sign(kind).1.is_some()
 }
 
-/// The character of a kind of sound, and what the guard behind it does, if that threatens the player.
+/// The character for a kind of sound, and a word for what the guard does if that threatens the
+/// player.
 const fn sign(kind: SoundKind) -> (char, Option<&'static str>) {
     match kind {
         SoundKind::Walking => ('.', None),
@@ -317,13 +322,13 @@ const fn sign(kind: SoundKind) -> (char, Option<&'static str>) {
     }
 }
 
-/// The angle from the direction of view to the sound, clockwise, from −180 to 180 degrees.
+/// The angle from the direction of view to the sound: clockwise, from −180 to 180 degrees.
 fn angle(heard: &Heard, heading: Heading) -> f64 {
     let clockwise = heard.bearing.degrees() - heading.degrees();
     (clockwise + 540.0).rem_euclid(360.0) - 180.0
 }
 
-/// The side of the ring on which a sound at `angle` is shown.
+/// The side of the ring that shows a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Ahead,
@@ -360,7 +365,7 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     }
 }
 
-/// The place of `text` on the ring, or the nearest free place.
+/// The position of `text` on the ring, or the nearest free position.
 fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect> {
     let width = text.chars().count() as u16;
     let place = place(ring, angle, width);
@@ -376,10 +381,10 @@ fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect
     nearest.filter_map(moved).find(|place| taken.iter().all(|other| !other.intersects(*place)))
 }
 
-/// The place of a mark `width` columns wide.
+/// The position of a mark that is `width` columns wide.
 fn place(ring: Rect, angle: f64, width: u16) -> Rect {
     let spare = [ring.width - width, ring.height - 1].map(f64::from);
-    // From 0 to 1 along the side: from the left to the right, or from the top to the bottom.
+    // The position along the side, from 0 to 1: from left to right, or from top to bottom.
     let along = |angle: f64| ((angle + 45.0) / 90.0).clamp(0.0, 1.0);
     let (x, y) = match Side::of(angle) {
         Side::Ahead => (along(angle), 0.0),
@@ -412,15 +417,15 @@ fn style(kind: SoundKind, depth: ColorDepth) -> Style {
 /// The colours of a flash.
 const HURT: Rgb = Rgb::new(0xe8, 0x18, 0x10);
 const GAIN: Rgb = Rgb::new(0xff, 0xd0, 0x40);
-/// The opacity of the tint at the edge.
+/// The opacity of the tint at the edge, out of 255.
 const HURT_OPACITY: f64 = 210.0;
 const GAIN_OPACITY: f64 = 130.0;
-/// The width of the tint, as a share of the picture's smaller side, on the side of the blow and on
-/// the others.
+/// The width of the tint as a fraction of the picture's shorter side, on the side of the blow and
+/// on the other sides.
 const NEAR_SIDE: f64 = 0.3;
 const OTHER_SIDES: f64 = 0.08;
 
-/// The side of the picture on which the flash is, from which the player was hurt; `None` for all of them.
+/// The side of the picture from which the player was hurt; `None` if the flash covers all sides.
 fn side_of(flash: &Flash, heading: Heading) -> Option<Side> {
     let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { return None };
     let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
@@ -438,7 +443,7 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     let hit = side_of(flash, heading);
     // A flash without a direction is thin on all sides.
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
-    // Half blocks are square; the pixels of other glyphs are higher than wide.
+    // The pixels of half blocks are square. The pixels of other glyphs are higher than wide.
     let aspect = frame.pixel_aspect().height_over_width();
     let side = width.min(height * aspect);
     let reach = |which| side * if hit == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
@@ -457,7 +462,7 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     }
 }
 
-/// Draws the edge in characters, for pictures without colours.
+/// Draws the edge in characters, for a picture without colours.
 fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: Heading) {
     let character = match flash.kind {
         FlashKind::Hurt { .. } => '#',
@@ -478,14 +483,14 @@ fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: He
     }
 }
 
-/// The names of the directions, clockwise from the east, where a heading is 0.
+/// The names of the directions, clockwise from east, which is heading 0.
 const NAMES: [&str; 8] = ["E", "SE", "S", "SW", "W", "NW", "N", "NE"];
-/// The columns from one name to the next. It is odd, and a third of it is 15 degrees.
+/// The number of columns between two names. It is odd, and a third of it stands for 15 degrees.
 const ADVANCE: i32 = 9;
-/// The widest strip.
+/// The maximum width of the strip, in columns.
 const MOST_COLUMNS: u16 = 31;
 
-/// Draws the strip in the middle of the picture's first row.
+/// Draws the strip in the middle of the first row of the picture.
 fn draw_compass(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
     let width = MOST_COLUMNS.min(picture.width / 3);
     if width < 7 {
@@ -496,13 +501,13 @@ fn draw_compass(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
     canvas.draw_widget(strip.style(Style::new().add_modifier(Modifier::REVERSED)), area);
 }
 
-/// The directions around `heading`, which is in the middle.
+/// The directions around `heading`, with `heading` in the middle.
 fn strip(heading: Heading, width: usize) -> String {
     let around = NAMES.len() as i32 * ADVANCE;
     let middle = (heading.degrees() / 360.0 * f64::from(around)).round() as i32;
     let letter = |column: usize| {
         let at = (middle + column as i32 - width as i32 / 2).rem_euclid(around);
-        // A name with two letters begins at the column of its direction.
+        // A two-letter name begins at the column of its direction.
         let (name, offset) = (NAMES[(at / ADVANCE) as usize], at % ADVANCE);
         match (name.as_bytes().get(offset as usize), offset % (ADVANCE / 3)) {
             (Some(&letter), _) => char::from(letter),
@@ -516,24 +521,24 @@ fn strip(heading: Heading, width: usize) -> String {
 /// The state of the minimap between frames.
 #[derive(Clone, Debug, Default)]
 pub struct MapPanel {
-    /// Whether the map is shown.
+    /// `true` if the map is shown.
     pub is_shown: bool,
     display: MapDisplay,
     explored: Explored,
     zoom: i32,
-    /// How far the shown part has been moved away from the player, in cells.
+    /// The displacement of the visible part from the player, in cells.
     offset: DVec2,
-    /// The numbers of cells shown last from left to right and from top to bottom.
+    /// The numbers of cells visible in the last drawing, from left to right and from top to bottom.
     extent: DVec2,
 }
 
-/// The most levels of zoom in each direction.
+/// The maximum number of zoom levels in each direction.
 const MOST_ZOOM: i32 = 6;
-/// The share of the shown part by which the map is moved at once.
+/// The fraction of the visible part by which one key press moves the map.
 const MOVED_BY: f64 = 0.25;
 
 impl MapPanel {
-    /// A panel with this content.
+    /// A panel that displays this content.
     pub fn new(display: MapDisplay) -> Self {
         Self { is_shown: display != MapDisplay::Off, display, ..Self::default() }
     }
@@ -553,7 +558,7 @@ impl MapPanel {
         self.offset = DVec2::ZERO;
     }
 
-    /// Adds the cells that `camera` sees in a picture with that many columns.
+    /// Adds the cells that `camera` sees in a picture with `columns` columns.
     fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
         if self.display == MapDisplay::All {
             return;
@@ -564,13 +569,13 @@ impl MapPanel {
         self.explored.look(game.world(), camera, columns.into());
     }
 
-    /// The share of the level that has been seen, if that is counted.
+    /// The fraction of the level that the player has seen, if that is counted.
     pub(crate) fn share_seen(&self, game: &Game) -> Option<f64> {
         let is_counted = self.display != MapDisplay::All && game.corner().is_none();
         is_counted.then(|| self.explored.share())
     }
 
-    /// Applies a change of the zoom or of the shown part.
+    /// Changes the zoom or the visible part.
     pub fn change(&mut self, change: MapChange) {
         let by = self.extent * MOVED_BY;
         match change {
@@ -601,8 +606,8 @@ impl MapPanel {
         }
     }
 
-    /// Records that `extent` cells were shown. The offset is limited to the map, so that no key
-    /// presses are needed to come back from outside.
+    /// Records that `extent` cells were visible. Limits the offset to the map, so that the player
+    /// needs no extra key presses to come back from outside.
     pub(crate) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
         let grid = game.world().grid();
         let size = grid.extent();

@@ -1,10 +1,11 @@
-//! The level that is played: a game in a grid, or a flight among bodies.
+//! The current level: a game on a grid, or a flight among bodies.
 //!
-//! [`Played`] has the interface of both, and [`Played::grid`] gives access to the rest of a game in a grid.
+//! [`Played`] is the interface that both share, and [`Played::grid`] gives access to the rest of a
+//! game on a grid.
 //!
-//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
-//! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
-//! steps in which only guards move do not count.
+//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock.
+//! That would draw a frame while nothing moves, and hide the goal from slow readers. For the same
+//! reason, steps in which only guards move do not count.
 
 use glam::DVec3;
 use ratatui::layout::{Rect, Size};
@@ -25,12 +26,13 @@ pub(crate) enum Played {
     Space(Box<Flight>),
 }
 
-/// The player's position and direction of view, in a grid or among bodies.
+/// The player's position and direction of view, on a grid or among bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Viewpoint {
     position: DVec3,
     heading: Heading,
-    /// The direction upwards: the slope of a pitch, or an elevation in radians.
+    /// The vertical direction of view: the slope of the pitch on a grid, the elevation in radians
+    /// among bodies.
     upwards: f64,
     field_of_view: FieldOfView,
 }
@@ -53,7 +55,7 @@ impl Played {
         Self::with_rules(level, Rules::default())
     }
 
-    /// `level` at its start, with these rules.
+    /// `level` at its start, under these rules.
     pub(crate) fn with_rules(level: Level, rules: Rules) -> Self {
         match level {
             Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
@@ -61,7 +63,7 @@ impl Played {
         }
     }
 
-    /// Begins `level` at the player's position in this game, if possible.
+    /// Begins `level`, at the player's current position if possible.
     pub(crate) fn begun_again_in(&self, level: Level) -> Self {
         match (self, level) {
             (Self::Grid(game), Level::Grid(world)) => {
@@ -74,7 +76,7 @@ impl Played {
         }
     }
 
-    /// The game, if it is in a grid.
+    /// The game, if it is on a grid.
     pub(crate) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
@@ -82,7 +84,7 @@ impl Played {
         }
     }
 
-    /// The game, if it is in a grid.
+    /// The game, if it is on a grid.
     pub(crate) fn grid_mut(&mut self) -> Option<&mut Game> {
         match self {
             Self::Grid(game) => Some(game),
@@ -92,15 +94,15 @@ impl Played {
 }
 
 impl Default for Played {
-    /// A flight through nothing.
+    /// A flight through empty space.
     fn default() -> Self {
         Self::new(Level::Space(space::Scene::default()))
     }
 }
 
-/// The parts that both kinds of levels have.
+/// The interface that both kinds of level share.
 impl Played {
-    /// The level's title, or a substitute if the map gives none.
+    /// The level's title, or a substitute if the map has none.
     pub(crate) fn title(&self) -> &str {
         let title = match self {
             Self::Grid(game) => game.world().title(),
@@ -133,17 +135,18 @@ impl Played {
         }
     }
 
-    /// A number that grows with every visible change except of the viewpoint and of figures. Bodies do not change.
+    /// A number that grows with every visible change apart from the viewpoint and the figures.
+    /// Bodies do not change.
     pub(crate) fn revision(&self) -> u64 {
         self.grid().map_or(0, Game::revision_without_figures)
     }
 
-    /// Whether the exit is reached. A flight has none.
+    /// Returns true if the player has reached the exit. A flight has no exit.
     pub(crate) fn is_finished(&self) -> bool {
         self.grid().is_some_and(Game::is_finished)
     }
 
-    /// Whether steps with these intents change only the clock.
+    /// Returns true if steps with these intents change only the clock.
     pub(crate) fn is_at_rest(&self, intents: Intents) -> bool {
         match self {
             Self::Grid(game) => game.is_at_rest(intents),
@@ -168,8 +171,8 @@ impl Played {
 }
 
 impl Played {
-    /// Renders the player's view for an area of this size; may stop once `go_on` returns `false`.
-    /// Returns whether the picture is complete.
+    /// Renders the player's view for an area of this size. Rendering may stop once `go_on` returns
+    /// `false`. Returns whether the picture is complete.
     pub(crate) fn render(
         &self,
         options: &DrawOptions,
@@ -192,7 +195,7 @@ impl Played {
         }
     }
 
-    /// Paints the rendered picture into `area`, which has the size that it was rendered for.
+    /// Paints the rendered picture into `area`, which must have the size used for rendering.
     pub(crate) fn paint(
         &self,
         options: &DrawOptions,
@@ -216,10 +219,10 @@ impl Played {
     }
 }
 
-/// The number of steps with intents for which the goal is shown: four seconds.
+/// The number of steps with intents for which a goal is shown: four seconds.
 const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 
-/// A goal, and how much longer it is shown.
+/// A goal, and the remaining time for which it is shown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Goal {
     text: String,
@@ -228,7 +231,7 @@ pub(crate) struct Goal {
 }
 
 impl Goal {
-    /// The goal of `game`, from its map if that has one.
+    /// The goal of `game`: the map's own goal if it has one, otherwise a general one.
     pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
         let has_exit = game.grid().is_some_and(Game::has_exit);
         let (text, short) = match game.grid().and_then(|game| game.world().goal()) {
@@ -240,22 +243,22 @@ impl Goal {
         Self::new(text, short)
     }
 
-    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
+    /// A goal with a shorter form for narrow windows. Both are sentences without the full stop.
     pub(crate) fn new(text: &str, short: &str) -> Self {
         Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
     }
 
-    /// A sentence without its full stop.
+    /// The goal as a sentence without the full stop.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// A shorter form for narrow windows.
+    /// The shorter form for narrow windows.
     pub(crate) fn short(&self) -> &str {
         &self.short
     }
 
-    /// Whether the goal is still shown.
+    /// Returns true if the goal is still shown.
     pub(crate) fn is_shown(&self) -> bool {
         self.steps_left > 0
     }
@@ -266,29 +269,31 @@ impl Goal {
     }
 }
 
-/// The last state, to compare the next one with.
+/// Compares the state after each step with the previous one, to notice a rise of the alarm or a
+/// loss of health.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watch {
     alarm: Alarm,
     health: u8,
-    /// Whether something has happened since [`Watch::take_ring`].
+    /// `true` if the alarm has risen or the player has lost health since the last
+    /// [`Watch::take_ring`].
     rings: bool,
 }
 
 impl Watch {
-    /// A watch that begins with the state of the player of `game`.
+    /// A watch that starts from the state of the first player of `game`.
     pub(crate) fn begin(game: Option<&Game>) -> Self {
         game.map_or_else(Self::default, |game| Self::of(game, PlayerId::FIRST))
     }
 
-    /// A watch that begins with the state of `player` in `game`.
+    /// A watch that starts from the state of `player` in `game`.
     pub fn of(game: &Game, player: PlayerId) -> Self {
         let mut watch = Self::default();
         watch.look_at(game, player);
         Self { rings: false, ..watch }
     }
 
-    /// Looks at the state of `player` after a step.
+    /// Compares the state of `player` after a step with the previous state.
     pub fn look_at(&mut self, game: &Game, player: PlayerId) {
         let alarm = game.alarm();
         let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
@@ -296,7 +301,7 @@ impl Watch {
         (self.alarm, self.health) = (alarm, health);
     }
 
-    /// Whether something has happened since the last call.
+    /// Returns true if the alarm has risen or the player has lost health since the last call.
     pub fn take_ring(&mut self) -> bool {
         std::mem::take(&mut self.rings)
     }

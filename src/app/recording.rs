@@ -1,7 +1,7 @@
-//! Runs as scripts: recorded while the game is played, and played again by the ghost of the best run.
+//! Runs as scripts: the game records them, and the ghost of the best run replays them.
 //!
-//! The ghost is a game of its own. Rejected: recorded positions. A script is a hundredth of their size,
-//! and is kept anyway.
+//! The ghost is a second game that runs beside the player's. Rejected: recorded positions. A script
+//! is a hundredth of their size, and the store keeps it anyway.
 
 use std::io::Write;
 use std::iter::{self, FlatMap, RepeatN};
@@ -14,13 +14,13 @@ use crate::terminal;
 use crate::tui::MapMark;
 use crate::world::{Camera, FieldOfView, Figure, SpriteId};
 
-/// The recordings to make of a game; by default, none.
+/// The recordings to make during a game; none by default.
 #[derive(Default)]
 pub struct Recording {
-    /// Receives every byte that is sent to the terminal.
+    /// Receives every byte sent to the terminal.
     pub terminal: Option<Box<dyn terminal::Recorder>>,
-    /// Receives the player's intents, as a script that gives the same game when it is [replayed].
-    /// Changes of the view only, and time during a pause, are not part of it.
+    /// Receives the player's intents as a script. [Replaying][replayed] the script produces the
+    /// same game. Changes that affect only the view, and the time during a pause, are left out.
     ///
     /// [replayed]: super::Replay
     pub script: Option<ScriptRecorder>,
@@ -50,7 +50,7 @@ impl App {
     }
 }
 
-/// The stretches of a run so far.
+/// The stretches of a run up to now.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RunLog {
     stretches: Vec<Stretch>,
@@ -75,12 +75,12 @@ impl RunLog {
         }
     }
 
-    /// Whether nothing has been recorded.
+    /// Returns true if nothing has been recorded.
     pub(crate) fn is_empty(&self) -> bool {
         self.stretches.is_empty()
     }
 
-    /// The number of steps.
+    /// The number of recorded steps.
     pub(crate) fn steps(&self) -> u64 {
         self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
     }
@@ -95,7 +95,7 @@ impl RunLog {
     }
 }
 
-/// The intents of each step of a script.
+/// An iterator over the intents of each step of a script.
 pub(crate) type Steps =
     FlatMap<vec::IntoIter<Stretch>, RepeatN<Intents>, fn(Stretch) -> RepeatN<Intents>>;
 
@@ -106,10 +106,10 @@ pub(crate) fn steps(script: &Script) -> Steps {
     stretches.collect::<Vec<_>>().into_iter().flat_map(steps as fn(Stretch) -> RepeatN<Intents>)
 }
 
-/// How much of the ghost shows, of 255.
+/// The opacity of the ghost, out of 255.
 const OPACITY: u8 = 96;
 
-/// The game of the best run, step by step beside the player's game.
+/// A game that replays the best run, step by step beside the player's game.
 #[derive(Debug)]
 pub(crate) struct Ghost {
     game: Game,
@@ -119,7 +119,7 @@ pub(crate) struct Ghost {
 }
 
 impl App {
-    /// Switches ghosts on or off, and says so.
+    /// Switches ghosts on or off, and shows a notice about it.
     pub(crate) fn toggle_ghost(&mut self) {
         self.prefer(|it| it.ghost ^= true);
         let is_on = self.store.preferences().ghost;
@@ -136,7 +136,7 @@ impl App {
 }
 
 impl Ghost {
-    /// The best run at its start, in `game` at its start.
+    /// The best run at its start. `game` must be at its start too.
     pub(crate) fn new(game: Game, mut steps: Steps) -> Self {
         let next = steps.next();
         Self { game, steps, next }
@@ -150,17 +150,17 @@ impl Ghost {
         }
     }
 
-    /// Whether the run has ended.
+    /// Returns true if the run has ended.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.next.is_none()
     }
 
-    /// A number that changes when the ghost has moved.
+    /// A number that changes whenever the ghost moves.
     pub(crate) fn steps(&self) -> u64 {
         self.game.tally().steps
     }
 
-    /// The figure of the ghost; `None` after it has left the level.
+    /// The ghost's figure; `None` after the ghost has left the level.
     pub(crate) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
         let camera = self.camera()?;
         Some(Figure {
@@ -173,7 +173,7 @@ impl Ghost {
         })
     }
 
-    /// The ghost on the map; `None` after it has left the level.
+    /// The ghost's mark on the map; `None` after the ghost has left the level.
     pub(crate) fn on_map(&self) -> Option<MapMark> {
         let camera = self.camera()?;
         Some(MapMark { position: camera.position(), heading: camera.heading })

@@ -1,5 +1,5 @@
-//! Results: records of a run, and the panels at the end of a level, at a death, and at the end of
-//! the last level.
+//! Results: the records of a run, and the panels at the end of a level, after a death, and at the
+//! end of the last level.
 
 use crate::app::App;
 use crate::app::page::Menu;
@@ -11,7 +11,7 @@ use crate::game::{Game, Header, LevelName, Outcome, STEP, Script, Share, Tally};
 use crate::map::builtin;
 
 impl App {
-    /// Records the level that has just been won, and returns its improvement.
+    /// Records the result of the level that the player has just won, and returns its improvement.
     pub(crate) fn record_result(&mut self) -> Option<Improved> {
         if self.is_descent() {
             self.record_floor();
@@ -26,8 +26,8 @@ impl App {
         Some(self.store.record(&level, self.difficulty, run))
     }
 
-    /// The script of the run so far, with a header that names the level. A descent is one run from its
-    /// first floor on.
+    /// The script of the run up to now, with a header that names the level. A descent counts as one
+    /// run from its first floor on.
     pub(crate) fn run_script(&self, game: &Game) -> String {
         let level = if self.is_descent() {
             Some(LevelName::of_floor(1))
@@ -39,7 +39,7 @@ impl App {
         format!("{header}\n{}", self.log.script())
     }
 
-    /// One line about the game that is played: the level, the time, and what happened.
+    /// A line about the current game: the level, the time, and the main counts.
     pub(crate) fn summary(&self) -> Option<String> {
         if self.demo.is_some() || self.log.is_empty() {
             return self.left.clone();
@@ -61,8 +61,9 @@ impl App {
         Some(format!("{title} on {}: {seconds}, {alarms}{gold}", self.difficulty.name()))
     }
 
-    /// Keeps what was done in the game that is left, and saves it to go on with later. Returns a sentence if
-    /// it is not saved, which is also in the line about the game.
+    /// Ends the current game, stores a line about it, and saves it so that the player can continue
+    /// later. If it cannot be saved, returns a sentence that says so, and adds that sentence to the
+    /// line.
     pub(crate) fn leave_game(&mut self) -> Option<String> {
         self.left = self.summary();
         let saved = self.save_game();
@@ -72,14 +73,14 @@ impl App {
         Some(sentence)
     }
 
-    /// The best run of the level as a script, to walk along.
+    /// The best run of the level, for the ghost.
     pub(crate) fn best_run(&self) -> Option<Steps> {
         let text = self.store.script(self.levels.stage.name()?, self.difficulty)?;
         Script::parse(&text, "the best run").ok().map(|script| recording::steps(&script))
     }
 
-    /// The index of the first built-in level that was not won at the preferred difficulty, if any
-    /// was won.
+    /// The index of the first built-in level that is not yet won at the preferred difficulty;
+    /// `None` if the player has won none or all of them.
     pub(crate) fn first_not_won(&self) -> Option<usize> {
         let difficulty = self.store.preferences().difficulty;
         let won: Vec<&str> = self.store.won(difficulty).collect();
@@ -88,7 +89,7 @@ impl App {
     }
 }
 
-/// The name of a level for the player: without the hash of a map's text.
+/// The level name to show to the player: a map's key without the hash of its text.
 pub(crate) fn shown_name(key: &str) -> &str {
     match key.rsplit_once('-').filter(|_| builtin_named(key).is_none()) {
         Some((name, _)) => name,
@@ -101,7 +102,7 @@ pub(crate) fn builtin_named(name: &str) -> Option<usize> {
 }
 
 impl App {
-    /// The result of the level, and the ways to go on.
+    /// The menu with the result of the level and the ways to continue.
     pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
         let is_fastest = self.improved.is_some_and(|improved| improved.time);
         let fastest = if is_fastest { " (your fastest)" } else { "" };
@@ -115,7 +116,8 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// The cause of death, and the ways to go on. The first choice goes on at once.
+    /// The menu with the cause of death and the ways to continue. The first entry retries
+    /// immediately.
     pub(crate) fn death_menu(&self) -> Menu<Choice> {
         let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
@@ -139,7 +141,7 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// The level's title and, if there are several levels, its number.
+    /// The level's title, followed by its number if there are several levels.
     pub(crate) fn level_lines(&self) -> impl Iterator<Item = String> {
         let number = self.levels.number;
         let number = number.is_one_of_several().then(|| number.to_string());
@@ -147,7 +149,7 @@ impl App {
     }
 }
 
-/// `number` as an ordinal: 1st, 2nd, 3rd, 4th.
+/// Formats `number` as an ordinal: 1st, 2nd, 3rd, 4th.
 fn ordinal(number: u32) -> String {
     let ending = match (number % 10, number % 100) {
         (_, 11..=13) => "th",
@@ -159,7 +161,7 @@ fn ordinal(number: u32) -> String {
     format!("{number}{ending}")
 }
 
-/// The rank first, as it is what a small window has room for.
+/// The lines of the result. The rank comes first, because a small window shows only the first line.
 fn result_lines((improved, game): (Improved, &Game)) -> impl Iterator<Item = String> {
     let (tally, par) = (game.tally(), game.world().par());
     let best = if improved.rank { " (your best)" } else { "" };
@@ -171,7 +173,7 @@ fn result_lines((improved, game): (Improved, &Game)) -> impl Iterator<Item = Str
     }))
 }
 
-/// The counts of finds and events, without zeros that say nothing.
+/// The counts of finds and events. Zeros are left out unless they mean something.
 fn counts(tally: &Tally) -> String {
     let shares = [("gold", tally.treasure), ("secrets", tally.secrets)];
     let shares = shares.into_iter().filter(|(_, share)| share.total > 0);

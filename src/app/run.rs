@@ -1,24 +1,24 @@
-//! The main loop, which has a terminal and a clock, the steps of the game that pass with time, and replays without
-//! either.
+//! The main loop, which owns the terminal and the clock; the steps that the game takes as time
+//! passes; and replays, which need neither.
 //!
-//! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
-//! frame, so that nothing is computed or written.
+//! The loop sleeps until a key, a signal or the next frame is due. While nothing moves there is no
+//! next frame, so nothing is computed or written.
 //!
-//! The time comes from the machine's clock. For tests, a debug build has another one: if the environment
-//! variable `CELLCASTER_CLOCK` is `focus`, time stands still until the terminal reports that the
-//! window has the focus, and each such report is one step of the game. What happens is then a
-//! function of the bytes that the program reads, on a machine under any load. Bytes, keys, screens
+//! Time comes from the machine's clock. A debug build also has a clock for tests. If the
+//! environment variable `CELLCASTER_CLOCK` is `focus`, time stands still until the terminal reports
+//! that the window has the focus, and each such report is one step of the game. The game is then a
+//! function of the bytes that the program reads, even on a machine under load. Bytes, keys, screens
 //! and the terminal are the same under both clocks.
 //!
-//! A report of the focus has no other effect, and every terminal can send it. Rejected: time as a private
-//! sequence, which the decoder would have to know; and time from a file or a socket, which would have no
-//! order with the keys.
+//! A focus report has no other effect, and every terminal can send one. Rejected: time as a private
+//! sequence, which the decoder would have to recognise. Also rejected: time from a file or a
+//! socket, which would not be ordered with respect to the keys.
 //!
-//! Each step uses the keys held at its own time, even if several steps pass between two frames: a
-//! tap lasts the same number of steps on a slow machine as on a fast one.
+//! Each step uses the keys held at its own time, even if several steps pass between two frames. A
+//! tap therefore lasts the same number of steps on a slow machine as on a fast one.
 //!
-//! Steps that take long are not caught up with: the game slows down, and keys are read between two
-//! steps, whatever a step takes.
+//! The loop does not catch up after slow steps. The game slows down instead, and the loop reads
+//! keys between two steps, however long a step takes.
 
 use std::num::NonZeroU32;
 use std::sync::OnceLock;
@@ -46,21 +46,21 @@ use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_u
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
-/// The way in which the program begins.
+/// The state in which the program starts.
 #[derive(Debug)]
 pub enum Opening {
-    /// The title screen, with these offers.
+    /// The title screen with these entries.
     Title(Offers),
-    /// The daily run, and then the title.
+    /// The daily run, with the title behind it.
     Daily(Offers),
-    /// An endless descent, and then the title.
+    /// An endless descent, with the title behind it.
     Endless(Offers),
-    /// A game, without a title to return to.
+    /// A game with no title to return to.
     Levels(Box<Levels>),
 }
 
-/// Begins with `opening` on the terminal, plays until the player leaves or the program is ended from outside, and
-/// makes the recordings in `recording`.
+/// Starts with `opening` on the terminal, plays until the player leaves or the program is ended
+/// from outside, and makes the recordings in `recording`.
 ///
 /// # Errors
 /// If there is no terminal, or if it fails.
@@ -133,29 +133,29 @@ pub fn play(
     Ok(Farewell { done: app.left, trouble })
 }
 
-/// The lines that are printed after the terminal has been given back.
+/// The lines to print after the terminal has been restored.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Farewell {
-    /// A line about what was done; `None` if nothing was.
+    /// A line about the last game; `None` if no game was played.
     pub done: Option<String>,
-    /// A sentence about what is damaged or could not be kept.
+    /// A sentence about damaged data or data that could not be saved.
     pub trouble: Option<String>,
 }
 
-/// Shows the newest state of the game, at most at the given frame rate and only when the terminal
-/// is ready.
+/// Shows the latest state of the game, at no more than the given frame rate and only when the
+/// terminal is ready.
 #[derive(Default)]
 struct Presenter {
     next_frame: Duration,
-    /// Whether a frame is due and the terminal is not ready; it will report when it is.
+    /// `true` while a frame is due and the terminal is not ready. The terminal reports when it is.
     waits: bool,
-    /// Whether a frame was possible at the last look, and there was nothing to show.
+    /// `true` if a frame was allowed at the last check, but there was nothing to show.
     is_idle: bool,
     meter: Meter,
 }
 
 impl Presenter {
-    /// Draws or refines a frame, if one is due, and unless an event comes first.
+    /// Draws or refines a frame if one is due, unless an event must be handled first.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
         let may_be_due = now >= self.next_frame;
         let is_due = may_be_due && is_unfinished(app, session);
@@ -172,7 +172,7 @@ impl Presenter {
                 return Ok(());
             }
             session.draw(|screen| {
-                // The window may have changed during a wait for the terminal.
+                // The window may have been resized during the wait for the terminal.
                 if screen.bounds().as_size() != window {
                     app.render(screen.bounds().as_size(), &mut |_, _| false);
                 }
@@ -185,15 +185,15 @@ impl Presenter {
         } else {
             session.refine()?;
         }
-        // Counted from the time at which this frame was due: the time for drawing must not slow
-        // frames down.
+        // Counted from the time at which this frame was due, so the time spent on drawing does not
+        // lower the frame rate.
         self.next_frame = Some(self.next_frame + app.settings.frame_time)
             .filter(|&next| now < next)
             .unwrap_or(now + app.settings.frame_time);
         Ok(())
     }
 
-    /// The time of the next change without an event; `None` for never.
+    /// The time of the next change that happens without an event; `None` for never.
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
         let (frame, soonest) = if self.waits {
             // The game continues while the terminal is not ready.
@@ -201,7 +201,8 @@ impl Presenter {
         } else {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
-        // While others move out of view and the player does not, a look at each step is in vain.
+        // While only others move, and out of view, there is nothing to show at each step. One check
+        // per frame is enough.
         let rests = self.is_idle && app.waits_for_others();
         let soonest = if rests { now + app.settings.frame_time } else { soonest };
         let change = app.next_change().map(|change| change.max(soonest));
@@ -210,7 +211,7 @@ impl Presenter {
     }
 }
 
-/// Whether the terminal does not show the current state, or not exactly.
+/// Returns true if the terminal does not yet show the exact current state.
 fn is_unfinished(app: &App, session: &Session) -> bool {
     app.is_stale() || !session.protocol().is_settled()
 }
@@ -225,30 +226,30 @@ fn update_terminal(app: &mut App, session: &Session) {
     app.renew_tmux_offer(offered.as_deref());
 }
 
-/// The locale setting that restricts output to ASCII; `None` if there is none, or if the chosen
-/// glyphs need more than ASCII.
+/// The locale setting that restricts output to ASCII; `None` if there is no such setting, or if the
+/// chosen glyphs need more than ASCII.
 fn ascii_locale(glyphs: GlyphSet) -> Option<String> {
     if glyphs.has_blocks() { None } else { locale_without_utf8(|name| env::var(name).ok()) }
 }
 
-/// Panics in the middle of a game, for tests of how it ends.
+/// Panics in the middle of a game. Tests use it to check that the terminal is restored.
 #[cfg(debug_assertions)]
 fn panic_on_demand(key: Key) {
     let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
     assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
 }
 
-/// The time since the main loop began.
+/// The time since the start of the main loop.
 #[derive(Debug)]
 pub(crate) struct Time {
     start: Instant,
-    /// The time, if the terminal gives it.
+    /// The time counted from focus reports, if they are the clock.
     #[cfg(debug_assertions)]
     told: Option<std::cell::Cell<Duration>>,
 }
 
 impl Time {
-    /// Begins at zero.
+    /// A time that starts at zero now.
     pub(crate) fn begin() -> Self {
         Self {
             start: Instant::now(),
@@ -267,8 +268,8 @@ impl Time {
         self.start.elapsed()
     }
 
-    /// The machine's clock, by which steps that take long are noticed; `None` if the terminal gives
-    /// the time.
+    /// The machine's clock, used to notice steps that take too long; `None` if focus reports are
+    /// the clock.
     fn of_machine(&self) -> Option<fn() -> Duration> {
         #[cfg(debug_assertions)]
         if self.told.is_some() {
@@ -280,8 +281,7 @@ impl Time {
         })
     }
 
-    /// How long it is until `time`; `None` if time stands still until the terminal reports
-    /// something.
+    /// The duration from now until `time`; `None` if time stands still until the next focus report.
     pub(crate) fn until(&self, time: Duration) -> Option<Duration> {
         #[cfg(debug_assertions)]
         if self.told.is_some() {
@@ -290,7 +290,7 @@ impl Time {
         Some(time.saturating_sub(self.now()))
     }
 
-    /// Handles a report that the window has the focus.
+    /// Handles a focus report.
     #[cfg(debug_assertions)]
     fn focus_reported(&self) {
         if let Some(told) = &self.told {
@@ -299,11 +299,12 @@ impl Time {
     }
 }
 
-/// The time after which no further step is begun before keys are read.
+/// The time after which no more steps begin before keys are read.
 const MOST_TIME: Duration = Duration::from_millis(25);
 
 impl App {
-    /// Advances the game to `now`, or as far as it gets in a moment. The rest of the time is lost.
+    /// Advances the game towards `now` for as long as a short time limit allows. The remaining time
+    /// is dropped.
     pub(crate) fn advance(&mut self, now: Duration) {
         self.now = now;
         let begun = self.machine_time.map(|time| time());
@@ -334,8 +335,8 @@ impl App {
         self.settle(now);
     }
 
-    /// Advances by one step that ends at `now`, or by up to `most` steps while the game rests.
-    /// Returns their number.
+    /// Advances by one step that ends at `now`, or by up to `most` steps while the game is at rest.
+    /// Returns the number of steps.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
         let context = self.key_context();
         self.controls.advance(now, context);
@@ -368,12 +369,12 @@ impl App {
         steps
     }
 
-    /// Whether steps with these intents change only clocks.
+    /// Returns true if steps with these intents change only clocks.
     pub(crate) fn is_at_rest(&self, intents: Intents) -> bool {
         self.game.is_at_rest(intents) && self.ghost.as_ref().is_none_or(Ghost::is_at_rest)
     }
 
-    /// Shows the result if the level is won or the player is dead.
+    /// Shows the result if the player has won the level or died.
     fn follow_outcome(&mut self) {
         if self.game.is_finished() {
             self.improved = self.record_result();
@@ -384,17 +385,17 @@ impl App {
     }
 }
 
-/// A game without a terminal, one step at a time. It draws the picture, minimap and status line
-/// that a player with the same intents would see.
+/// A game without a terminal, advanced one step at a time. It draws the same picture, minimap and
+/// status line that a player with the same intents would see.
 ///
-/// After a level's exit is reached, the next step is the first one of the next level.
+/// After the player reaches a level's exit, the next step is the first step of the next level.
 pub struct Replay {
     app: App,
     picture: Buffer,
 }
 
 impl Replay {
-    /// Begins `levels` in a window of `size`.
+    /// Starts `levels` in a window of `size`.
     pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
         let area = Rect::from(size);
         Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
@@ -414,12 +415,12 @@ impl Replay {
         }
     }
 
-    /// Plays `script` and calls `show` with its frames, `frames_per_second` per second; the first
-    /// shows the state before the first step. The arguments are the frame's number, the section of
-    /// the script that led to it, and its cells.
+    /// Plays `script`, and calls `show` with `frames_per_second` frames for each second. The first
+    /// frame shows the state before the first step. The arguments of `show` are the number of the
+    /// frame, the section of the script that led to it, and the cells.
     ///
     /// # Errors
-    /// The first error of `show`.
+    /// The first error that `show` returns.
     pub fn play<E>(
         &mut self,
         script: &Script,
@@ -444,7 +445,7 @@ impl Replay {
         self.app.draw(canvas);
     }
 
-    /// The current picture. As in a game, it is redrawn only if something has changed.
+    /// The current picture. As during play, it is redrawn only after a change.
     pub fn picture(&mut self) -> &Buffer {
         if self.app.is_stale() {
             self.picture.reset();

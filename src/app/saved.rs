@@ -1,13 +1,14 @@
-//! Saved games: a game that is left is kept as the script so far, and goes on after replaying it.
+//! Saved games. When the player leaves a game, the store keeps it as a script of its steps. To
+//! continue the game, the program replays the script.
 //!
-//! There is one for each level, map file and difficulty, and one for each descent. A level with a saved
-//! game begins with the question which of both to play; the saved game stays until the new one is left
-//! or won.
+//! There is one saved game for each combination of level, map file and difficulty, and one for each
+//! descent. A level with a saved game begins with the question which game to play. The saved game
+//! stays until the player leaves or wins the new one.
 //!
-//! The checksum of the game at the end of the script is kept beside it. Where a replay ends in another
-//! state, the level or the rules have changed since, and the player is offered to begin anew. Rejected:
-//! a checksum of the map alone. It would not notice a change of the rules, and would reject a map in
-//! which only a comment has changed.
+//! A saved game includes a checksum of its state at the end of the script. If a replay ends in a
+//! different state, then the level or the rules have changed since, and the player may begin again.
+//! Rejected: a checksum of the map alone. It would miss a change of the rules, and would reject a
+//! map in which only a comment has changed.
 
 use super::levels::{date_of, save_of_descent};
 use super::page::Menu;
@@ -23,10 +24,10 @@ use crate::map::builtin;
 use crate::world::Difficulty;
 
 impl App {
-    /// Saves a game that has begun and is not over, if its level has a name to find it by.
+    /// Saves the current game if it has begun, is not over, and has a level name to save it under.
     ///
     /// # Errors
-    /// If the store does not take it.
+    /// If the store rejects it.
     pub(crate) fn save_game(&mut self) -> Result<(), NotSaved> {
         let game = self.game.grid().filter(|_| self.is_unfinished());
         let Some((game, save)) = game.zip(self.as_save()) else { return Ok(()) };
@@ -34,8 +35,8 @@ impl App {
         self.store.save(&SavedGame { save, script: self.run_script(game) })
     }
 
-    /// The description under which the game that is played would be saved, without a checksum; `None` if
-    /// it has no name to find it by.
+    /// The description under which the current game would be saved, without a checksum; `None` if
+    /// there is no level name to save it under.
     fn as_save(&self) -> Option<Save> {
         let game = self.game.grid().filter(|_| self.demo.is_none())?;
         let steps = Some(self.log.steps());
@@ -52,8 +53,8 @@ impl App {
         })
     }
 
-    /// Whether a game has begun and is not over. A descent is not over at the exit of a floor, but with the
-    /// player's death.
+    /// Returns true if a game has begun and is not over. A descent does not end at the exit of a
+    /// floor, only with the player's death.
     fn is_unfinished(&self) -> bool {
         let is_over = |game: &Game| match self.levels.descent {
             Some(_) => matches!(game.outcome(), Outcome::Dead { .. }),
@@ -63,7 +64,7 @@ impl App {
         game.is_some_and(|game| !is_over(game))
     }
 
-    /// The effect of leaving the program, for the question whether to leave.
+    /// The effect of leaving the program, as text for the question whether to leave.
     pub(crate) fn effect_of_leaving(&self) -> &'static str {
         if !self.is_unfinished() {
             return "leaves the program";
@@ -73,19 +74,20 @@ impl App {
                 "leaves the program\nthe game is saved"
             }
             Some(_) => "leaves the program\nno room to save the game",
-            // The level has no name to find it by.
+            // The level has no name to save the game under.
             None => "leaves the program\nthis game cannot be saved",
         }
     }
 
-    /// Removes the saved game of the level that has just been won.
+    /// Removes the saved game of the level that the player has just won.
     pub(crate) fn remove_save_of_level(&mut self) {
         if let Some(save) = self.as_save() {
             self.store.remove_saved(save.id());
         }
     }
 
-    /// Asks how to begin a level if a game in it is saved, or if there is no room to save another.
+    /// At the start of a level, asks what to do if the level has a saved game, or if there is no
+    /// room to save another one.
     pub(crate) fn ask_about_saved(&mut self) {
         let is_at_start = self.screen() == Screen::Playing && self.log.is_empty();
         let Some(save) = self.as_save().filter(|_| is_at_start) else { return };
@@ -96,7 +98,7 @@ impl App {
         }
     }
 
-    /// The question which game to play in a level in which one is saved.
+    /// The menu that asks which game to play in a level with a saved game.
     pub(crate) fn has_saved_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("a saved game");
         let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
@@ -108,13 +110,13 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// The question how to begin a level in which no game can be saved.
+    /// The menu that asks how to begin a level if no more games can be saved.
     pub(crate) fn no_room_menu(&self) -> Menu<Choice> {
         let menu = self.with_removal(Menu::new("no room"));
         self.with_leaving(menu.entry("Play without saving", Choice::GoOn))
     }
 
-    /// Adds the offer to remove the oldest saved game.
+    /// Adds an entry that removes the oldest saved game.
     pub(crate) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let oldest = self.store.saves().last();
         menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."))
@@ -134,7 +136,8 @@ impl App {
         }
     }
 
-    /// Adds to the title's menu how to go on: at once if there is one way, or by a list.
+    /// Adds a "Continue" entry to the title's menu. It continues directly if there is only one
+    /// game, and opens a list otherwise.
     pub(crate) fn with_continue(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let mut ways = self.ways_on();
         let (first, second) = (ways.next(), ways.next());
@@ -148,19 +151,19 @@ impl App {
         }
     }
 
-    /// The list of saved games, the newest first, and the next level of the campaign.
+    /// The list of saved games, newest first, followed by the next level of the campaign.
     pub(crate) fn saves_menu(&self) -> Menu<Choice> {
         Menu::new("continue").line("x removes a saved game").entries(self.ways_on())
     }
 
-    /// The games to continue: name, time played, and choice.
+    /// The games that can be continued: name, time played, and choice.
     fn ways_on(&self) -> impl Iterator<Item = (String, String, Choice)> {
         let saves = self.store.saves();
         let saves = saves.map(|save| (name_of(save), time_of(save), Choice::Continue(save.id())));
         saves.chain(self.next_of_campaign())
     }
 
-    /// The first level that was not won, unless a game in it is saved.
+    /// The first level that is not yet won, unless it has a saved game.
     fn next_of_campaign(&self) -> Option<(String, String, Choice)> {
         let index = self.first_not_won()?;
         let name = builtin::LEVELS[index].name;
@@ -173,7 +176,7 @@ impl App {
         (!self.store.saves().any(is_it)).then_some((name, "new".to_owned(), Choice::Level(index)))
     }
 
-    /// The question whether to remove a saved game.
+    /// The menu that asks whether to remove a saved game.
     pub(crate) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
         Menu::new("remove the saved game?")
             .lines(self.store.saves().find(|save| save.id() == id).map(described))
@@ -181,7 +184,7 @@ impl App {
             .entry("Remove it", Choice::Remove(id))
     }
 
-    /// Removes a saved game, and returns to the list, or to the title if it is empty.
+    /// Removes a saved game, and returns to the list, or to the title if the list is now empty.
     pub(crate) fn remove_saved(&mut self, id: SaveId) {
         self.store.remove_saved(id);
         self.show(Screen::Title);
@@ -190,17 +193,17 @@ impl App {
         }
     }
 
-    /// Goes on with the saved game, if its script still leads to the state in which it was left.
+    /// Continues a saved game, if its script still leads to the state in which the player left it.
     pub(crate) fn continue_saved(&mut self, id: SaveId) {
         self.repeat_after(id, Self::begin_saved);
     }
 
-    /// Goes on with the saved game of the level that has just begun.
+    /// Continues the saved game of the level that has just begun.
     pub(crate) fn resume(&mut self, id: SaveId) {
         self.repeat_after(id, |_, _| Ok(()));
     }
 
-    /// Reads a saved game, and repeats it after `begin`.
+    /// Reads a saved game, and replays it after `begin`.
     fn repeat_after(
         &mut self,
         id: SaveId,
@@ -222,7 +225,7 @@ impl App {
     /// Begins the level of a saved game, or the first floor of its descent.
     ///
     /// # Errors
-    /// A sentence why there is no such level now.
+    /// A sentence that says why the level no longer exists.
     fn begin_saved(&mut self, save: &Save) -> Result<(), String> {
         let levels = match save.descent {
             Some(kind) => Levels::descent(save.rules.seed, kind),
@@ -233,7 +236,7 @@ impl App {
         Ok(())
     }
 
-    /// Repeats the steps of a saved game from the start of its level on.
+    /// Replays the steps of a saved game from the start of its level.
     fn repeat(&mut self, save: &Save, script: &Script) {
         script.iter().for_each(|(_, intents)| self.step_again(intents));
         let checksum = self.game.grid().map(Game::checksum);
@@ -242,14 +245,14 @@ impl App {
         }
         if let Some(script) = &mut self.script {
             for stretch in self.log.stretches() {
-                // As while playing, the owner of the file asks for the error later.
+                // As during play, the owner of the file asks for the error later.
                 _ = script.record(stretch.intents, stretch.steps.into());
             }
         }
         self.watch = Watch::begin(self.game.grid());
         self.show(Screen::Playing);
         if save.descent.is_some() {
-            // It goes on once: a death cannot be undone.
+            // A descent can be continued only once, so a death cannot be undone.
             self.store.remove_saved(save.id());
             if self.game.is_finished() {
                 self.next_level();
@@ -257,7 +260,7 @@ impl App {
         }
     }
 
-    /// Repeats a step of a saved game. In a descent, the step after an exit is on the next floor.
+    /// Replays one step of a saved game. In a descent, the step after an exit is on the next floor.
     fn step_again(&mut self, intents: Intents) {
         if self.is_descent() && self.game.is_finished() {
             self.next_level();
@@ -272,7 +275,7 @@ impl App {
         }
     }
 
-    /// Offers to begin anew what a saved game no longer leads to.
+    /// Offers to begin again because the level no longer matches the saved game.
     fn show_outdated(&mut self, save: &Save) {
         self.log = RunLog::default();
         match save.descent {
@@ -290,13 +293,14 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// Plays what has begun, without the saved game that cannot go on.
+    /// Plays the level that has just begun, and removes the saved game that cannot continue.
     pub(crate) fn begin_anew(&mut self, id: SaveId) {
         self.store.remove_saved(id);
         self.show(Screen::Playing);
     }
 
-    /// The level of a saved game and the levels after it: built-in ones, or a map of the player's own.
+    /// The level of a saved game and the levels after it: built-in levels, or one of the player's
+    /// own maps.
     fn levels_of(&mut self, save: &Save) -> Result<Levels, String> {
         if let Some(file) = &save.file {
             let load =
@@ -315,7 +319,7 @@ impl App {
 
 const NO_MAP: &str = "The map of the saved game is not as it was.";
 
-/// The name of a saved game for the player.
+/// The name of a saved game, for the player.
 fn name_of(save: &Save) -> String {
     let Rules { difficulty, seed } = save.rules;
     match save.descent {
@@ -330,7 +334,7 @@ fn on_difficulty(name: &str, difficulty: Difficulty) -> String {
     format!("{name} on {}", difficulty.name())
 }
 
-/// How long it was played; blank for old files.
+/// The time played; empty for games from old files.
 fn time_of(save: &Save) -> String {
     let seconds = save.steps.map(|steps| whole_seconds(steps as f64 * STEP));
     seconds.map_or_else(String::new, |seconds| seconds.to_string())

@@ -1,4 +1,5 @@
-//! Screens: the pages of the game at home, their menus, and the effect of keys, the mouse and entries on each.
+//! Screens: the pages of the game at home, their menus, and the effect of keys, the mouse and menu
+//! entries on each.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -15,7 +16,7 @@ use crate::terminal::{Key, KeyEvent, MouseEvent};
 use crate::tui::Press;
 use crate::world::Difficulty;
 
-/// The panel on the picture. The effect of keys depends on it.
+/// The panel over the picture. It decides the effect of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Screen {
     Title,
@@ -33,9 +34,9 @@ pub(crate) enum Screen {
     Daily,
     /// The question whether to continue the saved game of a level that begins.
     HasSaved,
-    /// The question what to do where no other game can be saved.
+    /// The question what to do if no more games can be saved.
     NoRoom,
-    /// The offer to begin a saved game anew that cannot go on.
+    /// The offer to begin again in place of a saved game that cannot continue.
     Outdated(SaveId),
     Settings,
     /// The question whether to tell tmux that its terminal shows 24-bit colours.
@@ -44,7 +45,7 @@ pub(crate) enum Screen {
     Playing,
     Paused,
     Help,
-    /// The question whether to leave.
+    /// The question whether to leave the game.
     Leaving,
     LevelDone,
     /// The player is dead.
@@ -52,42 +53,42 @@ pub(crate) enum Screen {
     End,
 }
 
-/// The effect of an entry of a menu.
+/// The effect of a menu entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice {
     /// Opens a screen.
     Open(Screen),
     /// Begins the campaign.
     Begin(Difficulty),
-    /// Begins the built-in level with that index.
+    /// Begins the built-in level with this index.
     Level(usize),
-    /// Begins the map with that index in the list of own maps.
+    /// Begins the map with this index in the list of own maps.
     Map(usize),
-    /// Goes on with a saved game.
+    /// Continues a saved game.
     Continue(SaveId),
-    /// Goes on with the saved game of the level that has just begun.
+    /// Continues the saved game of the level that has just begun.
     Resume(SaveId),
-    /// Plays what has begun in place of a saved game that cannot go on.
+    /// Plays the level that has just begun, in place of a saved game that cannot continue.
     BeginAnew(SaveId),
     /// Removes a saved game.
     Remove(SaveId),
     /// Removes the oldest saved game to make room.
     RemoveOldest,
-    /// Returns to the screen before.
+    /// Returns to the previous screen.
     Back,
-    /// Begins the descent of the day.
+    /// Begins the daily descent.
     Daily,
     /// Begins an endless descent.
     Endless,
-    /// Changes the setting in that row of the settings page.
+    /// Changes the setting in this row of the settings page.
     Change(usize),
-    /// Goes on with the game.
+    /// Continues the current game.
     GoOn,
-    /// Goes on from the last checkpoint.
+    /// Continues from the last checkpoint.
     Retry,
     /// Begins the level again.
     Restart,
-    /// Goes on to the next level.
+    /// Continues with the next level.
     NextLevel,
     /// Returns to the title.
     ToTitle,
@@ -111,7 +112,7 @@ impl Page for Screen {
 }
 
 impl Screen {
-    /// Whether the screen is a question before the first step of a level.
+    /// Returns true if the screen is a question before the first step of a level.
     fn is_before_start(self) -> bool {
         matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
     }
@@ -122,40 +123,40 @@ impl App {
         self.pages.page()
     }
 
-    /// Whether a result is shown.
+    /// Returns true if a result is shown.
     pub(crate) fn shows_result(&self) -> bool {
         self.screen().kind() == Kind::Result
     }
 
-    /// Shows `screen`, from which there is no way back.
+    /// Shows `screen`, with no way back.
     pub(crate) fn show(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
         self.pages.show(screen, menu, self.now);
         self.shown = None;
     }
 
-    /// Opens `screen` over the present one.
+    /// Opens `screen` over the current one.
     pub(crate) fn open(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
         self.pages.open(screen, menu, self.now);
         self.shown = None;
     }
 
-    /// Returns to the screen from which this one was opened, or to the game.
+    /// Returns to the screen from which the current one was opened, or to the game.
     pub(crate) fn close(&mut self) {
         self.pages.close(Screen::Playing, self.now);
-        // What the menu offers may have changed.
+        // The menu may offer different entries now.
         self.renew_menu();
     }
 
-    /// Makes the menu again, after something that it shows has changed.
+    /// Rebuilds the menu after a change to something that it shows.
     pub(crate) fn renew_menu(&mut self) {
         let menu = self.menu_of(self.screen());
         self.pages.renew(menu);
         self.shown = None;
     }
 
-    /// Shows a sentence above the entries of the menu.
+    /// Shows a sentence above the menu entries.
     pub(crate) fn say_in_menu(&mut self, sentence: &str) {
         let menu = self.menu_of(self.screen()).line(sentence);
         self.pages.renew(menu);
@@ -164,7 +165,7 @@ impl App {
 }
 
 impl App {
-    /// The menu of `screen`; an empty one if it has none.
+    /// The menu of `screen`; empty if the screen has none.
     pub(crate) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
         match screen {
             Screen::Title => self.title_menu(),
@@ -187,7 +188,7 @@ impl App {
         }
     }
 
-    /// Does what the selected entry says.
+    /// Carries out the selected entry.
     pub(crate) fn choose(&mut self) {
         let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
@@ -206,7 +207,7 @@ impl App {
             Choice::Endless => self.begin_endless(),
             Choice::Continue(id) => {
                 if self.screen() != Screen::Daily {
-                    // A recorded script is about what the program began with.
+                    // A recorded script covers only the level with which the program began.
                     self.script = None;
                 }
                 self.continue_saved(id);
@@ -241,7 +242,7 @@ impl App {
             .entry("Leave", Choice::Leave)
     }
 
-    /// The built-in levels, each with the best time and the best rank.
+    /// The built-in levels, each with its best time and best rank.
     fn level_menu(&self) -> Menu<Choice> {
         let difficulty = self.store.preferences().difficulty;
         Menu::new(format!("levels, {}", difficulty.name()))
@@ -252,7 +253,7 @@ impl App {
             }))
     }
 
-    /// The best time and the best rank in the level that the store calls `name`.
+    /// The best time and best rank in the level that the store calls `name`.
     fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
         self.store.best(name, difficulty).map_or_else(
             || "-".to_owned(),
@@ -260,13 +261,13 @@ impl App {
         )
     }
 
-    /// Looks for the player's own maps now.
+    /// Searches for the player's own maps.
     pub(crate) fn find_own_maps(&mut self) {
         let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
         self.own_maps = find.map_or_else(Vec::new, |find| find());
     }
 
-    /// The menu of own maps, which are looked for now.
+    /// The menu of own maps, after a fresh search for them.
     fn map_menu(&mut self) -> Menu<Choice> {
         self.find_own_maps();
         let difficulty = self.store.preferences().difficulty;
@@ -296,7 +297,7 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// Adds the entries that end the game.
+    /// Adds the entries that leave the game.
     pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let title = self.offers.as_ref().map(|_| ("Leave to the title", "", Choice::ToTitle));
         menu.entries(title).entry("Leave", Choice::Leave)
@@ -314,7 +315,7 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
     Menu::new("new game").entries(Difficulty::ALL.map(entry)).selecting(usual.unwrap_or(0))
 }
 
-/// `text` with a capital letter at its start.
+/// `text` with its first letter in upper case.
 pub(crate) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
@@ -324,7 +325,7 @@ pub(crate) fn capitalized(text: &str) -> String {
 }
 
 impl App {
-    /// Handles a press, a repetition or a release at time `now`.
+    /// Handles a key press, repeat or release at time `now`.
     pub(crate) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
         let event = self.settings.bindings.resolve(event);
@@ -335,7 +336,7 @@ impl App {
         }
     }
 
-    /// Handles the loss of the focus: keys may be released in another window.
+    /// Handles the loss of focus. The player may release keys while another window has the focus.
     pub(crate) fn focus_lost(&mut self, now: Duration) {
         self.advance(now);
         self.release_keys();
@@ -347,7 +348,7 @@ impl App {
         self.controls.held.release_all();
     }
 
-    /// Answers the question on the screen by a pending key that did not repeat.
+    /// Answers the question on the screen with the pending key, once the key can no longer repeat.
     pub(crate) fn settle(&mut self, now: Duration) {
         let effect = self.pages.settle(&self.settings.bindings, now);
         self.carry_out(effect);
@@ -383,7 +384,7 @@ impl App {
         }
     }
 
-    /// Handles the keys of the game, and the keys with one effect on every screen.
+    /// Handles the keys of the game, and the keys that have the same effect on every screen.
     fn press_command(&mut self, key: Key, press: Press) {
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),
@@ -402,7 +403,7 @@ impl App {
         }
     }
 
-    /// Whether `key` removes the selected saved game.
+    /// Returns true if `key` removes the selected saved game.
     fn removes(&self, key: Key) -> bool {
         self.screen() == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
     }
@@ -441,7 +442,7 @@ impl App {
         }
     }
 
-    /// Keeps a choice of the player.
+    /// Changes a preference and stores it.
     pub(crate) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
         let mut preferences = self.store.preferences();
         change(&mut preferences);
@@ -449,7 +450,7 @@ impl App {
         self.shown = None;
     }
 
-    /// Returns to the screen before, or asks whether to leave where there is none.
+    /// Returns to the previous screen. If there is none, leaves to the title or leaves the program.
     fn go_back(&mut self) {
         match self.screen() {
             Screen::Playing => {}
@@ -460,7 +461,7 @@ impl App {
         }
     }
 
-    /// Asks whether to leave. Where there is no game to lose, it is not asked.
+    /// Asks whether to leave. If there is no game to lose, leaves without asking.
     fn ask_to_leave(&mut self) {
         if self.demo.is_some() || self.screen().is_before_start() {
             self.leave();
@@ -475,13 +476,13 @@ impl App {
         self.has_left = true;
     }
 
-    /// Handles an event of the mouse at time `now`.
+    /// Handles a mouse event at time `now`.
     pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
         self.pointer.handle(event, self.screen() == Screen::Playing);
     }
 
-    /// The player's intents for the next step, by keys and mouse.
+    /// The player's intents for the next step, from keys and mouse.
     pub(crate) fn wanted(&self) -> Intents {
         let keys = self.intents();
         keys.iter()
@@ -490,7 +491,7 @@ impl App {
             .with_look(self.pointer.look())
     }
 
-    /// The player's intents by the held keys.
+    /// The player's intents from the held keys.
     pub(crate) fn intents(&self) -> Intents {
         self.controls.intents(&self.settings.bindings, self.key_context())
     }
@@ -500,7 +501,7 @@ impl App {
     }
 }
 
-/// Toggles a switch that is visible on the screen.
+/// Toggles a switch that the screen shows.
 fn toggle<T>(switch: &mut bool, shown: &mut Option<T>) {
     *switch = !*switch;
     *shown = None;

@@ -1,9 +1,12 @@
-//! Settings as tables: a row for each, with its key, a text about it, and where its value is kept.
+//! Settings as tables. Each row holds a setting's key, a text about it, and a reference to the
+//! field with its value.
 //!
-//! One row serves the file, which it reads and writes, the settings page, and the merging of two games'
-//! choices. A type of values is a [`Value`]; one with a few named values is a [`Choice`].
+//! The same row reads and writes the file, fills the settings page, and merges the choices of two
+//! running games. The type of a setting's value implements [`Value`], or [`Choice`] if it has a few
+//! named values.
 //!
-//! Rejected: serde. It stops at the first fault of a file, writes no comments, and knows no page.
+//! Rejected: serde. It stops at the first fault in a file, writes no comments, and does not support
+//! a settings page.
 
 use std::fmt::Write;
 use std::num::NonZeroU32;
@@ -19,13 +22,13 @@ use crate::terminal::Fidelity;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 
-/// A setting that `C` contains.
+/// A setting stored in `C`.
 pub struct Setting<C: 'static> {
     /// The key in a file.
     pub key: &'static str,
-    /// Its meaning in lines of a comment, or its label on a settings page.
+    /// The comment lines in a file that explain the setting, or its label on a settings page.
     pub about: &'static str,
-    /// The value.
+    /// The field with the value.
     pub value: &'static dyn Field<C>,
 }
 
@@ -39,32 +42,32 @@ impl<C> Setting<C> {
     }
 }
 
-/// The value of a setting in `C`.
+/// The value of a setting stored in `C`.
 pub trait Field<C>: Sync {
-    /// Reads the value of `entry`, or reports a fault.
+    /// Reads the value of `entry` into `into`, or reports a fault.
     fn read(&self, entry: &Entry<'_, '_>, into: &mut C);
 
     /// The value as TOML.
     fn write(&self, of: &C) -> String;
 
-    /// Whether the values differ.
+    /// Returns true if `one` and `other` have different values.
     fn differs(&self, one: &C, other: &C) -> bool;
 
-    /// Copies the value.
+    /// Copies the value from `from` into `into`.
     fn copy(&self, from: &C, into: &mut C);
 
-    /// Takes the next value on a settings page, or the one before if `forward` is false. A value that no page
-    /// changes stays.
+    /// Moves to the next value on a settings page, or to the previous one if `forward` is false.
+    /// Does nothing if no settings page changes the value.
     fn change(&self, _of: &mut C, _forward: bool) {}
 
-    /// The value on a settings page.
+    /// The value as a settings page shows it.
     fn label(&self, of: &C) -> String {
         self.write(of)
     }
 }
 
-/// The field of `C` that a function returns. Reading a value goes by a copy of `C`, so that a row needs one
-/// function only.
+/// The field of `C` that a function borrows. A value is read from a copy of `C`, so one function
+/// per row is enough.
 pub struct At<C, T>(pub fn(&mut C) -> &mut T);
 
 impl<C: Clone, T: Value> At<C, T> {
@@ -102,21 +105,22 @@ impl<C: Clone, T: Value> Field<C> for At<C, T> {
     }
 }
 
-/// A value that a setting can have.
+/// The value of a setting.
 pub trait Value: Copy + PartialEq {
-    /// The value of `entry`. Reports a fault if it is none.
+    /// Reads the value of `entry`. Reports a fault if it is not valid.
     fn read(entry: &Entry<'_, '_>) -> Option<Self>;
 
     /// The value as TOML.
     fn write(self) -> String;
 
-    /// The next value on a settings page, or the one before. A value that no page changes stays.
+    /// The next value on a settings page, or the previous one if `forward` is false. Returns the
+    /// same value if no settings page changes it.
     #[must_use]
     fn after(self, _forward: bool) -> Self {
         self
     }
 
-    /// The value on a settings page.
+    /// The value as a settings page shows it.
     fn label(self) -> String {
         self.write()
     }
@@ -125,11 +129,12 @@ pub trait Value: Copy + PartialEq {
 /// A value, its name in files, and its label on a settings page.
 type Named<T> = (T, &'static str, &'static str);
 
-/// A value that is one of a few with names.
+/// A value from a small set of named values.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// The label of no value, which lets the terminal decide, if a settings page offers it.
+    /// The label for "automatic", where the terminal decides; `None` if settings pages do not offer
+    /// that.
     const AUTO: Option<&'static str> = None;
-    /// The values, in the order of a settings page.
+    /// The values in the order of a settings page.
     const ALL: &'static [Named<Self>];
 
     /// The name in files.
@@ -137,13 +142,13 @@ pub trait Choice: Copy + PartialEq + 'static {
         Self::ALL.iter().find(|(value, ..)| *value == self).map_or("", |(_, name, _)| name)
     }
 
-    /// The next value on a settings page, or the one before.
+    /// The next value on a settings page, or the previous one if `forward` is false.
     #[must_use]
     fn neighbour(self, forward: bool) -> Self {
         next(Self::ALL, |(value, ..)| *value == self, forward).0
     }
 
-    /// The value with that name.
+    /// The value called `name` in files.
     fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known, _)| *known == name).map(|&(value, ..)| value)
     }
@@ -189,12 +194,12 @@ impl Choice for Difficulty {
 /// The content of the minimap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum MapDisplay {
-    /// The cells that the player has seen so far.
+    /// The cells that the player has already seen.
     #[default]
     Seen,
     /// The whole map.
     All,
-    /// Nothing, until the player switches it on; then the seen cells.
+    /// Nothing at first. If the player switches the map on, the cells already seen.
     Off,
 }
 
@@ -205,7 +210,7 @@ impl Choice for MapDisplay {
         (Self::Off, "off", "off"),
     ];
 
-    /// Shows the map or hides it. The content of a map that is shown again is its panel's affair.
+    /// Switches between visible and hidden. The map panel decides the content of a visible map.
     fn neighbour(self, _forward: bool) -> Self {
         if self == Self::Off { Self::Seen } else { Self::Off }
     }
@@ -237,10 +242,10 @@ impl<T: Choice> Value for T {
     }
 }
 
-/// The name of a value that the terminal decides.
+/// The name of the choice to let the terminal decide.
 const AUTO: &str = "auto";
 
-/// `None` if the terminal decides.
+/// `None` lets the terminal decide.
 impl<T: Choice> Value for Option<T> {
     fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let known: Vec<&str> = [AUTO].into_iter().chain(names::<T>()).collect();
@@ -303,12 +308,12 @@ impl Value for FieldOfView {
     }
 }
 
-/// The most frames a second.
+/// The default maximum frame rate, in frames per second.
 pub(crate) const FRAME_RATE: NonZeroU32 = NonZeroU32::new(30).unwrap();
-/// The rates that a settings page offers.
+/// The frame rates that a settings page offers.
 const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
 
-/// Frames a second, from 1 to 240.
+/// A frame rate, from 1 to 240 frames per second.
 impl Value for NonZeroU32 {
     fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let example = format!("{} = {FRAME_RATE}", entry.key);
@@ -331,7 +336,7 @@ impl Value for NonZeroU32 {
     }
 }
 
-/// `None` for the default.
+/// `None` means the default.
 impl Value for Option<NonZeroU32> {
     fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         NonZeroU32::read(entry).map(Some)
@@ -346,7 +351,7 @@ impl Value for Option<NonZeroU32> {
     }
 }
 
-/// `None` if the link to the terminal decides.
+/// `None` lets the link to the terminal decide.
 impl Value for Option<Fidelity> {
     fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let example = format!("{} = \"{AUTO}\"", entry.key);
@@ -370,7 +375,8 @@ fn names<T: Choice>() -> impl Iterator<Item = &'static str> {
     T::ALL.iter().map(|&(_, name, _)| name)
 }
 
-/// The name in `entry`, which is one of `known`. Numbers, such as 256 colours, need no quotes.
+/// The name in `entry` if it is one of `known`; otherwise reports a fault. Numbers, such as 256
+/// colours, need no quotes.
 fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
     let number = entry.number().map(|number| number.to_string());
     let of_number = known.iter().find(|&&name| Some(name) == number.as_deref());
@@ -390,22 +396,23 @@ fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
     entry.reject(format!("{} is no value of {}", quoted(text), quoted(entry.key)), "", help)
 }
 
-/// Reports that the value of `entry` is not what is `wanted`; `example` is a whole entry.
+/// Reports that the value of `entry` must be `wanted`. `example` is a complete valid entry.
 pub fn reject_range<T>(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Option<T> {
     let message = format!("{} must be {wanted}", quoted(entry.key));
     entry.reject(message, "", format!("write {example}"))
 }
 
-/// The value after the value that `is_it`, or before it. The first follows the last.
+/// The value after the first one for which `is_it` returns true, or the value before it. The values
+/// form a cycle.
 fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
     let index = values.iter().position(is_it).unwrap_or(0);
     let by = if forward { 1 } else { values.len() - 1 };
     values[(index + by) % values.len()]
 }
 
-/// `text` as a TOML string.
+/// Formats `text` as a TOML string.
 ///
-/// Rejected: `toml_writer`, which escapes some characters in another way, so that kept files would change.
+/// Rejected: `toml_writer`. It escapes some characters differently, so existing files would change.
 pub fn toml_string(text: &str) -> String {
     let mut string = String::from("\"");
     for character in text.chars() {
@@ -422,28 +429,28 @@ pub fn toml_string(text: &str) -> String {
     string
 }
 
-/// The player's choices.
+/// The player's stored choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Preferences {
-    /// Whether a dot marks the middle of the picture.
+    /// `true` to mark the middle of the picture with a dot.
     pub crosshair: bool,
-    /// Whether a strip shows the directions.
+    /// `true` to show the compass.
     pub compass: bool,
-    /// Whether the terminal's bell rings at sounds.
+    /// `true` to ring the terminal's bell when the player is noticed or hurt.
     pub bell: bool,
-    /// Whether the best run walks along.
+    /// `true` to show the ghost of the best run.
     pub ghost: bool,
     /// The difficulty of new games.
     pub difficulty: Difficulty,
-    /// The glyph set; `None` for the best that the terminal can show.
+    /// The glyph set; `None` for the best set that the terminal supports.
     pub glyphs: Option<GlyphSet>,
-    /// The colour depth; `None` for the terminal's.
+    /// The colour depth; `None` for the terminal's own.
     pub colors: Option<ColorDepth>,
-    /// How pictures are changed for the player's eyes.
+    /// The colour correction for the player's eyes.
     pub correction: Correction,
-    /// The most frames per second; `None` for the default.
+    /// The maximum frame rate; `None` for the default.
     pub frames_per_second: Option<NonZeroU32>,
 }
 
@@ -470,7 +477,7 @@ impl AsMut<Self> for Preferences {
 }
 
 impl Preferences {
-    /// Takes over what differs between `before` and `after`.
+    /// Applies the differences between `before` and `after` to these preferences.
     pub fn choose(&mut self, before: Self, after: Self) {
         for setting in &PREFERENCES {
             if setting.value.differs(&before, &after) {
@@ -480,7 +487,7 @@ impl Preferences {
     }
 }
 
-/// The preferences in the order of the file.
+/// The preferences, in the order of the file.
 pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
     Setting::CROSSHAIR,
     Setting::COMPASS,
@@ -493,18 +500,19 @@ pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
     Setting::FRAME_RATE,
 ];
 
-/// The preferences in all that contains them, with their labels on a settings page.
+/// The preferences as settings of any type that contains them, with their labels on a settings
+/// page.
 impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// Whether a dot marks the middle of the picture.
     pub const CROSSHAIR: Self =
         Self::new("crosshair", "Crosshair", &At(|it: &mut C| &mut it.as_mut().crosshair));
-    /// Whether a strip shows the directions.
+    /// Whether the compass is shown.
     pub const COMPASS: Self =
         Self::new("compass", "Compass", &At(|it: &mut C| &mut it.as_mut().compass));
-    /// Whether the terminal's bell rings at sounds.
+    /// Whether the terminal's bell rings when the player is noticed or hurt.
     pub const BELL: Self =
         Self::new("bell", "Bell when noticed or hurt", &At(|it: &mut C| &mut it.as_mut().bell));
-    /// Whether the best run walks along.
+    /// Whether the ghost of the best run is shown.
     pub const GHOST: Self =
         Self::new("ghost", "Ghost of the best run", &At(|it: &mut C| &mut it.as_mut().ghost));
     /// The difficulty of new games.
@@ -516,10 +524,10 @@ impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// The colour depth.
     pub const COLORS: Self =
         Self::new("colors", "Colours", &At(|it: &mut C| &mut it.as_mut().colors));
-    /// How pictures are changed for the player's eyes.
+    /// The colour correction for the player's eyes.
     pub const CORRECTION: Self =
         Self::new("correction", "Picture", &At(|it: &mut C| &mut it.as_mut().correction));
-    /// The most frames per second.
+    /// The maximum frame rate.
     pub const FRAME_RATE: Self =
         Self::new("fps", "Frames a second", &At(|it: &mut C| &mut it.as_mut().frames_per_second));
 }

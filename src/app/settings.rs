@@ -10,19 +10,19 @@
 //! toggle-run = "c"
 //! ```
 //!
-//! A [`Configuration`] is the content of such a file; the command line takes precedence. All faults
-//! of a file are reported in one run, each with its place.
+//! A [`Configuration`] is the content of such a file. The command line takes precedence over it.
+//! All faults in a file are reported in one run, each with its place.
 //!
-//! - A key that the file gives to an action is removed from its action in the preset.
-//! - A key given to two actions is a fault.
+//! - A key that the file binds to an action loses its action in the preset.
+//! - A key bound to two actions is a fault.
 //! - An empty list leaves an action without a key.
 //!
-//! A settings page, at home and in a session on a server, is a table of [`Setting`]s. Its owner collects the values in
-//! force, has a row change them, and takes over the difference.
+//! A settings page is a table of [`Setting`]s, both at home and in a session on a server. Its owner
+//! collects the current values, lets a row change them, and applies the difference.
 //!
-//! The store keeps what the player chooses here, except the map and the mouse, which a game begins with
-//! as the configuration file says. A flag or the configuration file wins over what is kept, and the
-//! page names it beside the value. The program never writes the configuration file.
+//! The store keeps the player's choices on this page, apart from the map and the mouse, which start
+//! as the configuration file says. A flag or the configuration file overrides a stored choice, and
+//! the page says so beside the value. The program never writes the configuration file.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -44,63 +44,64 @@ use crate::terminal::{Fidelity, Key};
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 
-/// How the game is shown and controlled.
+/// The settings for display and controls.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// The actions of keys.
+    /// The key bindings.
     pub bindings: Bindings,
     /// The time between two frames while something moves.
     pub frame_time: Duration,
-    /// The field of view. Keys change it.
+    /// The field of view. Keys can change it.
     pub field_of_view: FieldOfView,
-    /// The shape of a cell; `None` for the terminal's.
+    /// The height-to-width ratio of a cell; `None` for the terminal's own.
     pub cell_aspect: Option<CellAspect>,
     /// The glyph set.
     pub glyphs: GlyphSet,
-    /// The colour depth; `None` for the terminal's.
+    /// The colour depth; `None` for the terminal's own.
     pub depth: Option<ColorDepth>,
-    /// The caster that finds the walls.
+    /// The caster that the renderer uses to find walls.
     pub caster: DynCaster,
     /// The texture filter.
     pub filter: Filter,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
-    /// Whether the status line shows the figures of frames and the link. A key changes it.
+    /// `true` to show the statistics about frames and the link in the status line. A key changes
+    /// it.
     pub shows_stats: bool,
-    /// The difficulty of levels that are played without the title; `None` for the player's
-    /// earlier choice.
+    /// The difficulty of levels that start without the title; `None` for the player's stored
+    /// choice.
     pub difficulty: Option<Difficulty>,
-    /// The content of the minimap at first.
+    /// The initial content of the minimap.
     pub minimap: MapDisplay,
-    /// Whether the mouse turns the player at first.
+    /// `true` if the mouse turns the player from the start.
     pub mouse: bool,
-    /// The origin of the settings that the game keeps.
+    /// The origins of the settings that the store also keeps.
     pub given: Given,
 }
 
-/// The origin of the settings that the game keeps. A given value takes the place of the player's choice
-/// in an earlier game.
+/// The origin of each setting that the store also keeps. A setting with an origin overrides the
+/// player's stored choice. `None` means that neither a flag nor the configuration file sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Given {
-    /// Of the glyph set.
+    /// The origin of the glyph set.
     pub glyphs: Option<Origin>,
-    /// Of the colour depth.
+    /// The origin of the colour depth.
     pub depth: Option<Origin>,
-    /// Of the frame time.
+    /// The origin of the frame time.
     pub frame_time: Option<Origin>,
 }
 
-/// Where a setting is given.
+/// The source of a setting's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// By a flag of the command line.
+    /// A command-line flag.
     Flag,
-    /// By the configuration file.
+    /// The configuration file.
     File,
 }
 
 impl Settings {
-    /// These settings, with what the player has chosen in earlier games where nothing is given.
+    /// These settings, with the player's stored choices for every setting without an origin.
     #[must_use]
     pub fn preferring(mut self, preferences: &Preferences) -> Self {
         if let (None, Some(glyphs)) = (self.given.glyphs, preferences.glyphs) {
@@ -131,21 +132,21 @@ impl Settings {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
-    /// The preset that the bindings are based on.
+    /// The preset on which the bindings are based.
     pub preset: Preset,
-    /// The actions of keys.
+    /// The key bindings.
     pub bindings: Bindings,
-    /// The colour depth; `None` for the terminal's.
+    /// The colour depth; `None` for the terminal's own.
     pub colors: Option<ColorDepth>,
-    /// The glyph set; `None` for the best that the terminal can show.
+    /// The glyph set; `None` for the best set that the terminal supports.
     pub glyphs: Option<GlyphSet>,
-    /// The field of view at first.
+    /// The initial field of view.
     pub field_of_view: FieldOfView,
-    /// The most frames per second, from 1 to 240.
+    /// The maximum frame rate, from 1 to 240 frames per second.
     pub frames_per_second: NonZeroU32,
-    /// Whether the mouse turns the player at first.
+    /// `true` if the mouse turns the player from the start.
     pub mouse: bool,
-    /// The content of the minimap at first.
+    /// The initial content of the minimap.
     pub minimap: MapDisplay,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
@@ -167,7 +168,7 @@ impl Default for Configuration {
     }
 }
 
-/// The settings in the order of a file. The table of keys follows them.
+/// The settings, in the order of the file. The table of keys comes after them.
 const SETTINGS: [Setting<Configuration>; 8] = [
     Setting {
         key: "preset",
@@ -215,10 +216,10 @@ const SETTINGS: [Setting<Configuration>; 8] = [
 ];
 
 impl Configuration {
-    /// Parses a configuration file, which faults refer to as `name`.
+    /// Parses a configuration file. Faults refer to the file as `name`.
     ///
     /// # Errors
-    /// All faults of the file.
+    /// All faults in the file.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         let faults = FaultList::default();
         let document = document::parse(text, &faults);
@@ -251,7 +252,7 @@ impl Configuration {
         self.bindings = self.preset.bindings().rebound(&bound.actions, bound.keys);
     }
 
-    /// Takes the bindings of another preset.
+    /// Replaces all bindings by the bindings of `preset`.
     pub fn set_preset(&mut self, preset: Preset) {
         self.preset = preset;
         self.bindings = preset.bindings();
@@ -261,10 +262,10 @@ impl Configuration {
 /// The name of the table of keys.
 const KEYS: &str = "keys";
 
-/// The keys that a file gives to actions.
+/// The keys that a file binds to actions.
 #[derive(Default)]
 struct Bound {
-    /// The actions in the table.
+    /// The actions that the table mentions.
     actions: Vec<Action>,
     keys: Vec<(Key, Action)>,
 }
@@ -282,7 +283,7 @@ impl Bound {
         bound
     }
 
-    /// Binds the key or the list of keys of `entry` to `action`.
+    /// Binds the key or the list of keys in `entry` to `action`.
     fn bind(&mut self, action: Action, entry: &Entry<'_, '_>) {
         self.actions.push(action);
         let values = match entry.value {
@@ -318,7 +319,7 @@ fn bound_twice(key: Key, place: Range<usize>) -> Fault {
 
 impl fmt::Display for Configuration {
     /// Writes a complete file: each setting with its description, its default and its value. Keys
-    /// of the preset are commented out, so that they follow the preset.
+    /// that match the preset are commented out, so that they change with the preset.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let default = Self::default();
         for Setting { key, about, value } in &SETTINGS {
@@ -349,12 +350,12 @@ fn list(bindings: &Bindings, action: Action) -> String {
     format!("[{}]", keys.join(", "))
 }
 
-/// The values that every settings page shows and changes.
+/// The values that every settings page can show and change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choices {
-    /// The choices that are kept from one game to the next.
+    /// The choices that the store keeps.
     pub preferences: Preferences,
-    /// Whether the mouse turns the player.
+    /// `true` if the mouse turns the player.
     pub mouse: bool,
     /// The content of the map.
     pub map: MapDisplay,
@@ -372,7 +373,7 @@ impl AsMut<Preferences> for Choices {
     }
 }
 
-/// The settings of a game that is played, with their labels.
+/// The settings of a running game, with their labels.
 impl<C: AsMut<Choices> + Clone> Setting<C> {
     /// Whether the mouse turns the player.
     pub const MOUSE: Self =
@@ -381,7 +382,7 @@ impl<C: AsMut<Choices> + Clone> Setting<C> {
     pub const MAP: Self = Self::new("minimap", "Map", &At(|it: &mut C| &mut it.as_mut().map));
 }
 
-/// The rows in their order on the page.
+/// The rows, in the order of the page.
 const ROWS: [Setting<Choices>; 11] = [
     Setting::DIFFICULTY,
     Setting::CROSSHAIR,
@@ -409,7 +410,7 @@ impl App {
         settings_menu(note, self.detection.ascii_locale.is_none(), rows)
     }
 
-    /// The values in force.
+    /// The current values.
     fn choices(&self) -> Choices {
         Choices {
             preferences: self.settings.in_force(self.store.preferences()),
@@ -418,7 +419,8 @@ impl App {
         }
     }
 
-    /// Changes the setting in that row to its next value, or to the one before if `forward` is false.
+    /// Moves the setting in row `row` to its next value, or to the previous one if `forward` is
+    /// false.
     pub(crate) fn change_setting(&mut self, row: usize, forward: bool) {
         self.change_choices(|choices| ROWS[row].value.change(choices, forward));
     }
@@ -446,7 +448,7 @@ impl App {
 }
 
 impl Settings {
-    /// `preferences`, with what is in force in place of what was chosen.
+    /// `preferences`, with the current values in place of the stored choices.
     fn in_force(&self, preferences: Preferences) -> Preferences {
         let rate = (1.0 / self.frame_time.as_secs_f64().max(1e-3)).round() as u32;
         Preferences {
@@ -457,7 +459,7 @@ impl Settings {
         }
     }
 
-    /// Follows a choice of the player, which wins over flags and the file from now on.
+    /// Applies a choice of the player. From now on it overrides flags and the file.
     fn follow(&mut self, before: &Preferences, after: &Preferences) {
         if let Some(glyphs) = after.glyphs.filter(|_| after.glyphs != before.glyphs) {
             self.glyphs = glyphs;
@@ -475,7 +477,7 @@ impl Settings {
     }
 }
 
-/// Says where the setting `key` is given.
+/// A suffix that names the origin of the setting `key`; empty if it has none.
 fn origin(given: Given, key: &str) -> &'static str {
     let origin = match key {
         "glyphs" => given.glyphs,
@@ -490,8 +492,8 @@ fn origin(given: Given, key: &str) -> &'static str {
     }
 }
 
-/// A settings page with a note, perhaps a card that shows which characters the terminal has, and rows with their
-/// labels, values and choices.
+/// A settings page with a note, an optional card for comparing the terminal's characters, and rows
+/// of label, value and choice.
 pub fn settings_menu<C: Copy>(
     note: Option<&str>,
     has_card: bool,

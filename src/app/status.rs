@@ -1,11 +1,12 @@
-//! The status line below the picture, with the figures of frames and times as players read them.
+//! The status line below the picture, the statistics about frames, and the format of times for
+//! players.
 //!
-//! It is rewritten in each frame, into memory that is kept: no change must be tracked, and nothing
-//! is allocated. So it shows the time of the last frame: while nothing moves, no frame is
-//! drawn to show another second.
+//! The line is rewritten in each frame, into memory that is reused. No change has to be tracked,
+//! and nothing is allocated. The line therefore shows the time of the last frame: while nothing
+//! moves, no frame is drawn just to show another second.
 //!
-//! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
-//! line at its end. In a narrow window, the key for help would be lost.
+//! A part that does not fit is left out as a whole, the least important part first. Rejected:
+//! cutting the line at its end. In a narrow window, the key for help would be lost.
 
 use std::fmt::{self, Display, Write};
 use std::time::Duration;
@@ -23,7 +24,7 @@ use crate::terminal::{Fidelity, Protocol};
 use crate::tui::GlyphSet;
 use crate::world::{FieldOfView, Supply};
 
-/// The texts of the line: place and state of the player at the left; progress and help at the
+/// The texts of the line: the player's location and state on the left, progress and help on the
 /// right.
 #[derive(Clone, Debug, Default)]
 pub struct StatusLine {
@@ -33,35 +34,35 @@ pub struct StatusLine {
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The health.
+    /// The player's health.
     Health,
-    /// The alarm of the guards.
+    /// The guards' alarm.
     Alarm,
-    /// How lit the player is.
+    /// The amount of light on the player.
     Light,
-    /// The supplies.
+    /// The player's supplies.
     Supplies,
     /// The level's title.
     Title,
     /// The level's number.
     Level,
-    /// The place in a generated level.
+    /// The position in a generated level.
     Site,
-    /// The modes of motion.
+    /// The movement modes that are switched on.
     Modes,
-    /// The keys that the player has.
+    /// The keys that the player carries.
     Keys,
-    /// The latest event, or the goal.
+    /// The latest notice, or the goal.
     Notice,
-    /// The figures of frames and the link.
+    /// The statistics about frames and the link.
     Stats,
     /// The treasure found.
     Treasure,
-    /// The share of the level that was seen.
+    /// The share of the level that the player has seen.
     Seen,
     /// The time played.
     Time,
-    /// The key for help.
+    /// The key that shows the help.
     Help,
 }
 
@@ -69,14 +70,14 @@ const PARTS: usize = 15;
 /// The first part at the right end of the line.
 const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
 
-/// A part has a short and a long form, which may be equal.
+/// The short or the long form of a part. The two forms may be equal.
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Short,
     Long,
 }
 
-/// The forms in the order in which they get room, the most important first.
+/// The order in which forms receive space, the most important first.
 const PRIORITIES: [(Part, Form); 21] = [
     (Part::Help, Form::Short),
     (Part::Health, Form::Short),
@@ -100,8 +101,8 @@ const PRIORITIES: [(Part, Form); 21] = [
     (Part::Seen, Form::Short),
     (Part::Keys, Form::Long),
 ];
-/// The forms that come before those where the player has asked for stats: the stats take the room of
-/// the title and the goal, and yield to the state of the player.
+/// The forms that come before [`PRIORITIES`] if the player has switched the statistics on. The
+/// statistics take the space of the title and the goal, but not the space of the player's state.
 const PRIORITIES_WITH_STATS: [(Part, Form); 11] = [
     (Part::Help, Form::Short),
     (Part::Health, Form::Short),
@@ -115,21 +116,23 @@ const PRIORITIES_WITH_STATS: [(Part, Form); 11] = [
     (Part::Notice, Form::Short),
     (Part::Stats, Form::Long),
 ];
-/// The number of blank columns of each part.
+/// The number of blank columns between parts.
 const GAP: u16 = 2;
-/// The least widths to which the title and the notice are cut. Three letters of a title say nothing.
+/// The minimum widths of the title and the notice when they are cut. Three letters of a title say
+/// nothing.
 const LEAST_TITLE: u16 = 8;
 const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
-    /// Replaces all texts with the output of `write`.
+    /// Replaces all texts by the output of `write`.
     pub fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
         _ = write(self);
     }
 
-    /// The text and the width of each part that a line of `width` columns has room for.
+    /// The text and width of each part in a line of `width` columns. A part without space has width
+    /// zero.
     fn fitted(&self, width: u16) -> [(&str, u16); PARTS] {
         let mut fitted = [("", 0); PARTS];
         let mut room = width;
@@ -158,7 +161,7 @@ impl StatusLine {
     }
 }
 
-/// The least width to which a part can be cut; `None` if it is left out instead.
+/// The minimum width to which a part can be cut; `None` if it is left out instead.
 fn least_cut(part: Part) -> Option<u16> {
     match part {
         Part::Title => Some(LEAST_TITLE),
@@ -185,7 +188,7 @@ impl Widget for &StatusLine {
     }
 }
 
-/// Draws a text. Most are ASCII, which needs no division into graphemes.
+/// Draws a text. Most texts are ASCII, and need no division into graphemes.
 fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
     if !text.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
         return Span::raw(text).render(area, buffer);
@@ -197,13 +200,13 @@ fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// A line with a hint instead of the game's state.
+/// A line that shows a hint in place of the game's state.
 pub fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
 }
 
 impl StatusLine {
-    /// Writes the modes that are switched on.
+    /// Writes the movement modes, the mouse and the lamp, if they are on.
     pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
         let modes = [
             (toggles.runs, "running"),
@@ -216,19 +219,19 @@ impl StatusLine {
         self.list(Part::Modes, modes.map(|(_, mode)| mode))
     }
 
-    /// Writes the figures of frames and the link.
+    /// Writes the statistics about frames and the link.
     pub fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
         let [short, long] = self.forms(Part::Stats);
         write!(short, "{}", stats.rates)?;
         write!(long, "{stats}")
     }
 
-    /// Writes the names of the keys that the player has.
+    /// Writes the names of the keys that the player carries.
     pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
         self.list(Part::Keys, keys.map(|key| fmt::from_fn(move |f| write!(f, "{key} key"))))
     }
 
-    /// Writes items between commas.
+    /// Writes items, separated by commas.
     fn list(&mut self, part: Part, items: impl Iterator<Item: Display>) -> fmt::Result {
         for (index, item) in items.enumerate() {
             let comma = if index > 0 { ", " } else { "" };
@@ -254,13 +257,13 @@ impl StatusLine {
         &mut self.texts[part as usize]
     }
 
-    /// Appends to both forms of `part`.
+    /// Appends `text` to both forms of `part`.
     pub fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
         self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 }
 
-/// How health is written.
+/// The notation for health.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HealthSigns {
     /// A heart for each point.
@@ -269,12 +272,12 @@ pub enum HealthSigns {
     Digits,
 }
 
-/// Visibility below which the player is in the dark, and below which the light is dim.
+/// Below the first visibility the player is in the dark. Below the second the light is dim.
 const DARK: u8 = 64;
 const DIM: u8 = 144;
 
 impl HealthSigns {
-    /// The signs that a picture of that kind shows best.
+    /// The notation that suits a picture with this glyph set and colour depth.
     pub fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
         let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
         if has_hearts { Self::Hearts } else { Self::Digits }
@@ -318,7 +321,7 @@ impl StatusLine {
         Ok(())
     }
 
-    /// Writes the alarm, and the kind of the nearest guard who has raised it.
+    /// Writes the alarm level, and the kind of the nearest guard at that level.
     fn write_alarm(&mut self, game: &Game, player: &PlayerView) -> fmt::Result {
         let alarm = match game.alarm() {
             Alarm::Calm => return Ok(()),
@@ -348,7 +351,8 @@ impl StatusLine {
         }
     }
 
-    /// Writes what the player carries: the first letters, or the names.
+    /// Writes the player's supplies: counts with first letters in the short form, with names in the
+    /// long form.
     fn write_supplies(&mut self, player: &PlayerView) -> fmt::Result {
         let carried = Supply::ALL.map(|supply| (supply.name(), player.supplies(supply)));
         let [short, long] = self.forms(Part::Supplies);
@@ -363,16 +367,17 @@ impl StatusLine {
     }
 }
 
-/// The current figures.
+/// The current statistics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stats {
     /// The rates of frames and bytes.
     pub rates: Rates,
-    /// The time from sending a frame to the terminal's answer, if it answers.
+    /// The time from sending a frame to the terminal's answer; `None` if the terminal does not
+    /// answer.
     pub round_trip: Option<Duration>,
     /// The fidelity of frames.
     pub fidelity: Fidelity,
-    /// Whether the link limits the fidelity, so that compression would help.
+    /// `true` if the link limits the fidelity, so that compression would help.
     pub wants_compression: bool,
 }
 
@@ -401,8 +406,8 @@ impl Display for Stats {
     }
 }
 
-/// Measures the rates while frames follow one another. Pauses between motions do not count, so that
-/// the figures need no update when motion ends.
+/// Measures the rates while frames follow one another. Pauses between motions do not count, so the
+/// statistics need no update when motion ends.
 #[derive(Debug, Default)]
 pub struct Meter {
     begun: Duration,
@@ -411,13 +416,13 @@ pub struct Meter {
     last: Duration,
 }
 
-/// The time between two figures.
+/// The time between two measurements.
 const PERIOD: Duration = Duration::from_millis(500);
 /// The shortest time without frames that counts as a pause.
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl Meter {
-    /// Counts a frame that `protocol` has drawn. Returns new figures when they are due.
+    /// Counts a frame that `protocol` has drawn. Returns new statistics when they are due.
     pub fn measure(&mut self, protocol: &Protocol, now: Duration) -> Option<Stats> {
         let rates = self.frame(now, protocol.bytes_drawn())?;
         let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
@@ -425,7 +430,8 @@ impl Meter {
         Some(Stats { rates, round_trip, fidelity, wants_compression })
     }
 
-    /// Counts a frame; `bytes` is the total so far. Returns new rates when they are due.
+    /// Counts a frame; `bytes` is the total number of bytes up to now. Returns new rates when they
+    /// are due.
     fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
         let pauses = now.saturating_sub(self.last) > PAUSE;
         let elapsed = now.saturating_sub(self.begun);
@@ -444,19 +450,19 @@ impl Meter {
     }
 }
 
-/// Formats minutes and seconds.
+/// Formats a time as minutes and seconds.
 pub fn whole_seconds(seconds: f64) -> impl Display {
     let seconds = seconds as u64;
     fmt::from_fn(move |f| write!(f, "{}:{:02}", seconds / 60, seconds % 60))
 }
 
-/// Formats minutes, seconds and tenths.
+/// Formats a time as minutes, seconds and tenths.
 pub fn tenths(seconds: f64) -> String {
     let all = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
 }
 
-/// Formats the time of `steps` steps of a game as minutes, seconds and tenths.
+/// Formats the duration of `steps` steps of a game as minutes, seconds and tenths.
 pub fn of_steps(steps: u64) -> String {
     tenths(steps as f64 * STEP)
 }

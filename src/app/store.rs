@@ -1,4 +1,4 @@
-//! The store: what a player keeps from one game to the next.
+//! The store: the data that a player keeps from one game to the next.
 //!
 //! It is a folder with these files:
 //!
@@ -6,29 +6,30 @@
 //! |---|---|
 //! | `progress.toml` | best results, the saved games, preferences, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
-//! | `runs/saved.HASH.script` | the run of a saved game so far; there are at most [`MOST_SAVES`] |
+//! | `runs/saved.HASH.script` | the steps of a saved game; there are at most [`MOST_SAVES`] |
 //! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
-//! | `runs/descent.REACHED.script` | the best descent without an end, up to the same |
-//! | `progress.lock` | nothing; it is locked while a game writes |
+//! | `runs/descent.REACHED.script` | the best endless descent, up to the last exit it reached |
+//! | `progress.lock` | nothing; a game locks it while it writes |
 //!
 //! Rules:
 //!
-//! - **A change is applied to the file, not to a copy of it.** A game takes the lock, reads the file
-//!   again, applies its own changes, and replaces the file. So two games lose nothing of each other.
-//! - **A file is replaced at once.** It is written under another name, synchronised and renamed. Scripts
-//!   are written before the file that names them, under a name that is not in use. So a power cut
-//!   leaves the state before or the state after a change.
-//! - **A damaged file is kept.** It is renamed to `progress.toml.damaged-1`, everything in it that can be
-//!   read is kept in force, and a sentence says so. The newest three such files stay. A file of a newer
-//!   version is left alone.
-//! - **Nobody else reads it.** Only the owner can read its folders and files. Only regular files are opened, and no
-//!   named pipe, for example.
-//! - **A failure does not stop the game.** Changes that can't be written stay in memory, are tried
-//!   again with the next change, and [`Store::trouble`] is one sentence about them.
+//! - **A change is applied to the file, not to a copy of it.** A game takes the lock, reads the
+//!   file again, applies its own changes, and replaces the file. Two games therefore never
+//!   overwrite each other's changes.
+//! - **A file is replaced atomically.** It is written under another name, synchronised and renamed.
+//!   A script is written before the file that names it, under an unused name. A power cut therefore
+//!   leaves the state before a change or the state after it.
+//! - **A damaged file is kept.** It is renamed to `progress.toml.damaged-1`, everything readable in
+//!   it stays in force, and a sentence says so. The three newest damaged files stay. A file from a
+//!   newer version is not touched.
+//! - **Only the owner can read it.** The permissions of its folders and files exclude everybody
+//!   else. The store opens only regular files, never a named pipe, for example.
+//! - **A failure does not stop the game.** Changes that cannot be written stay in memory and are
+//!   tried again with the next change. [`Store::trouble`] returns one sentence about them.
 //!
 //! Rejected: a database. It would be the largest dependency of the program, for a hundred lines of
-//! text that the player can read and copy. Also rejected: one file that is
-//! locked while the game runs. The second game would keep nothing.
+//! text that the player can read and copy. Also rejected: one file that stays locked while the game
+//! runs. A second game could then save nothing.
 
 pub mod home;
 pub mod private;
@@ -47,7 +48,7 @@ use progress::{Change, Progress};
 pub use crate::app::setting::Preferences;
 use crate::world::Difficulty;
 
-/// One player's store: a folder, or memory.
+/// One player's store, in a folder or in memory.
 ///
 /// ```
 /// use cellcaster::app::store::{Preferences, Store};
@@ -59,20 +60,21 @@ use crate::world::Difficulty;
 /// ```
 #[derive(Debug, Default)]
 pub struct Store {
-    /// The state that the player sees: the file as last read, with all changes.
+    /// The state that the player sees: the last content read from the file, with all changes
+    /// applied.
     progress: Progress,
-    /// The changes that are not in the file.
+    /// The changes that are not yet in the file.
     pending: Vec<Change>,
     home: Option<Home>,
-    /// About a file that was found damaged during the game.
+    /// A sentence about a file that was found damaged during the game.
     damage: Option<String>,
-    /// About the pending changes.
+    /// A sentence about the reason why changes are still pending.
     trouble: Option<String>,
 }
 
 impl Store {
-    /// The store in `folder`, which is created with the first change; and a sentence if something
-    /// in it is damaged, or can't be used.
+    /// Opens the store in `folder`. The folder is created with the first change. Also returns a
+    /// sentence if something in it is damaged or unusable.
     pub fn open(folder: &Path) -> (Self, Option<String>) {
         Self::at(Home::new(folder.to_owned(), Box::new(home::Real)))
     }
@@ -82,18 +84,18 @@ impl Store {
         (Self { progress, home: Some(home), ..Self::in_memory() }, sentence)
     }
 
-    /// A store that ends with the program.
+    /// A store that is lost when the program ends.
     pub fn in_memory() -> Self {
         Self::default()
     }
 
-    /// The best results in a level. `level` is the name of a built-in level, or the [key](map_key) of
-    /// a map.
+    /// The best results in a level. `level` is the name of a built-in level, or the [key](map_key)
+    /// of a map.
     pub fn best(&self, level: &str, difficulty: Difficulty) -> Option<&Best> {
         self.progress.best(level, difficulty)
     }
 
-    /// The script of the fastest run of a level, if there is one and it can be read.
+    /// The script of the fastest run of a level, if there is one and it is readable.
     pub fn script(&self, level: &str, difficulty: Difficulty) -> Option<String> {
         self.text_in(|progress| {
             let best = progress.best(level, difficulty)?;
@@ -101,7 +103,7 @@ impl Store {
         })
     }
 
-    /// Records a run that reached the exit, and returns what it improved.
+    /// Records a run that reached the exit, and returns the improvements.
     pub fn record(&mut self, level: &str, difficulty: Difficulty, run: Run) -> Improved {
         let best = self.best(level, difficulty);
         let improved = Improved {
@@ -114,37 +116,38 @@ impl Store {
         improved
     }
 
-    /// The levels that were won at a difficulty, in the order of their names.
+    /// The levels won at a difficulty, ordered by name.
     pub fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
         let levels = self.progress.bests.keys().filter(move |(_, at)| *at == difficulty);
         levels.map(|(level, _)| level.as_str())
     }
 
-    /// The saved games, the newest first.
+    /// The saved games, newest first.
     pub fn saves(&self) -> impl Iterator<Item = &Save> {
         self.progress.saves.iter().rev().map(|entry| &entry.save)
     }
 
-    /// Whether there is a saved game `id`.
+    /// Returns true if there is a saved game `id`.
     pub fn has_saved(&self, id: SaveId) -> bool {
         self.progress.saved(id).is_some()
     }
 
-    /// The saved game `id`, if there is one and its script can be read.
+    /// The saved game `id`, if there is one and its script is readable.
     pub fn saved(&self, id: SaveId) -> Option<SavedGame> {
         let script = self.text_in(|progress| Some(progress.saved(id)?.script.clone()))?;
         Some(SavedGame { save: self.progress.saved(id)?.save.clone(), script })
     }
 
-    /// Whether a game with this identity can be saved: there is room, or it takes the place of another.
+    /// Returns true if a game with this identity can be saved: there is room for it, or it replaces
+    /// one with the same identity.
     pub fn has_room_for(&self, id: SaveId) -> bool {
         self.progress.saves.len() < MOST_SAVES || self.has_saved(id)
     }
 
-    /// Saves a game, in place of the one with the same identity if there is one.
+    /// Saves a game. It replaces the saved game with the same identity, if there is one.
     ///
     /// # Errors
-    /// If there is no room for another game, or if its script is too long to be read again.
+    /// If there is no room for another game, or if the script is too long to be read again.
     pub fn save(&mut self, game: &SavedGame) -> Result<(), NotSaved> {
         if !self.has_room_for(game.save.id()) {
             return Err(NotSaved::Full);
@@ -163,12 +166,13 @@ impl Store {
         }
     }
 
-    /// The player's choices.
+    /// The player's preferences.
     pub fn preferences(&self) -> Preferences {
         self.progress.preferences
     }
 
-    /// Sets the preferences. Those that stay as they are do not undo the choice of another game.
+    /// Sets the preferences. Preferences that do not change here keep the choice that another game
+    /// may have made.
     pub fn set_preferences(&mut self, preferences: Preferences) {
         let before = self.progress.preferences;
         if before != preferences {
@@ -176,13 +180,13 @@ impl Store {
         }
     }
 
-    /// How far the daily run of a date, such as 20261122, came, if it was tried.
+    /// The result of the daily run of a date, such as 20261122; `None` if it was not tried.
     pub fn daily(&self, date: u32) -> Option<Reached> {
         self.progress.dailies.get(&date).copied()
     }
 
-    /// Begins the daily run of a date, and returns whether it counts: the first try does. A try counts
-    /// from its beginning, so that leaving does not undo it.
+    /// Begins the daily run of a date, and returns whether the try counts. Only the first try
+    /// counts. It counts from its beginning, so leaving does not undo it.
     pub fn begin_daily(&mut self, date: u32) -> bool {
         if self.daily(date).is_some() {
             return false;
@@ -192,32 +196,32 @@ impl Store {
         before.is_none_or(|before| !before.dailies.contains_key(&date))
     }
 
-    /// Records what the try that counts has reached so far, and its script up to there.
+    /// Records the latest result of the try that counts, and its script up to there.
     pub fn record_daily(&mut self, date: u32, reached: Reached, script: String) {
         if self.daily(date).is_none_or(|known| known < reached) {
             self.change(Change::Daily { date, reached, script });
         }
     }
 
-    /// The best descent without an end.
+    /// The result of the best endless descent.
     pub fn best_descent(&self) -> Option<Reached> {
         self.progress.descent
     }
 
-    /// Records a descent without an end and its script, if it is the best one.
+    /// Records an endless descent and its script, if it is the best one.
     pub fn record_descent(&mut self, reached: Reached, script: String) {
         if self.progress.descent.is_none_or(|best| best < reached) {
             self.change(Change::Descent { reached, script });
         }
     }
 
-    /// A sentence about what is damaged or could not be kept, for the end of the game.
+    /// A sentence about damaged or unsaved data, to show at the end of the game.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref().or(self.damage.as_deref())
     }
 
-    /// Applies `change` to the state that the player sees, and to the file. Returns the state of the
-    /// file before, if it could be changed.
+    /// Applies `change` to the state that the player sees and to the file. Returns the previous
+    /// state of the file, if the file could be changed.
     fn change(&mut self, change: Change) -> Option<Progress> {
         self.progress.apply(&change);
         self.pending.push(change);
@@ -236,7 +240,8 @@ impl Store {
         }
     }
 
-    /// The text of the script that `name` finds in the progress, written or not.
+    /// The text of the script that `name` selects in the progress, whether it is in a file or still
+    /// pending.
     fn text_in(&self, name: impl Fn(&Progress) -> Option<String>) -> Option<String> {
         let wanted = name(&self.progress)?;
         let unwritten = self.pending.iter().rev().find_map(|change| change.script(&wanted));
@@ -244,7 +249,7 @@ impl Store {
             return Some(text.to_owned());
         }
         let home = self.home.as_ref()?;
-        // Another game may have replaced it.
+        // Another game may have replaced the script.
         home.script(&wanted).or_else(|| home.script(&name(&home.read_again()?)?))
     }
 }

@@ -1,4 +1,4 @@
-//! The keys of the game, from timed bytes to the player's motion, in simulated time.
+//! The keys of the game in simulated time, from timed bytes to the player's motion.
 
 mod colours;
 mod gestures;
@@ -31,10 +31,10 @@ use crate::world::{FieldOfView, World};
 const W: Key = Key::Char('w');
 const SPACE: Key = Key::Char(' ');
 
-/// The delay in milliseconds, and repetitions per second.
+/// A keyboard's delay in milliseconds, and its repeats per second.
 type Rate = (u64, u32);
 
-/// The game and a keyboard. Without a keyboard rate, the terminal reports releases.
+/// A game with a keyboard. Without a rate, the terminal reports key releases.
 struct Rig {
     app: App,
     keyboard: Option<Keyboard<Key>>,
@@ -106,7 +106,7 @@ impl Rig {
     }
 }
 
-/// An open floor with the start in its middle, looking east.
+/// A level with an open floor. The player starts in the middle, looking east.
 fn floor() -> World {
     let (wall, row) = ("#".repeat(61), format!("#{}#", ".".repeat(59)));
     let middle = format!("#{}@{}#", ".".repeat(29), ".".repeat(29));
@@ -122,7 +122,7 @@ fn floor() -> World {
     parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A pit one cell wide, which a running jump crosses.
+/// A pit one cell wide. A running jump crosses it.
 const PIT: &str = r##"
 ceiling = "sky"
 grid = '''
@@ -163,14 +163,14 @@ fn walking_and_turning_is_a_circle() {
         rig.wait(1000);
         rig.press(Key::Right);
         rig.wait(1500);
-        // 3 cells and 2.4 radians per second: a circle with a radius of 1.25 cells.
+        // At 3 cells and 2.4 radians per second, the circle has a radius of 1.25 cells.
         let positions: Vec<DVec2> = (0..6)
             .map(|_| {
                 rig.wait(437);
                 rig.position()
             })
             .collect();
-        // Six positions a sixth of a turn apart: opposite ones are a diameter apart.
+        // The six positions are a sixth of a turn apart, so opposite ones are a diameter apart.
         for (one, other) in positions.iter().zip(&positions[3..]) {
             let diameter = one.distance(*other);
             assert!((diameter - 2.5).abs() < 0.05, "{delay} ms, {rate} Hz: {positions:?}");
@@ -208,7 +208,7 @@ fn losing_the_focus_releases_all_keys() {
         rig.press(Key::Right);
         rig.wait(100);
         rig.app.release_keys();
-        // From now on, another window gets the keyboard's bytes.
+        // From now on, another window receives the keyboard's bytes.
         if let Some(keyboard) = &mut rig.keyboard {
             keyboard.release(Key::Right);
         }

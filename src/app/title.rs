@@ -1,14 +1,15 @@
-//! The title screen: the program's name, the level that plays itself behind it, and what it offers from outside of the
-//! program.
+//! The title screen: the program's name, the level that plays itself behind it, and the entries
+//! that depend on data from outside the program.
 //!
-//! - The demo has no guards: their pictures take twice the time of everything else in the first frame.
-//! - The app knows neither files nor the date. Its caller passes them as [`Offers`].
-//! - While tmux sends fewer colours than the terminal is known to show, and nothing else decides about
-//!   colours, an entry offers to tell tmux. It opens a panel with the command, and only an answer there
-//!   has the loop run it. Rejected: a letter as its key. A player can bind every letter, and letters
-//!   that walk select in menus.
-//! - The letters of the name are a font of 3 by 5 points. Where half blocks can be shown, a point is half a cell high;
-//!   otherwise it is a cell.
+//! - The demo has no guards, because their pictures take twice the time of everything else in the
+//!   first frame.
+//! - The app has no access to files or to the date. Its caller passes them as [`Offers`].
+//! - While tmux sends fewer colours than the terminal is known to show, and no other setting
+//!   decides the colours, a menu entry offers to tell tmux. It opens a panel with the command. Only
+//!   the answer in that panel makes the loop run the command. Rejected: a letter as its key. A
+//!   player can bind every letter, and the walking keys select entries in menus.
+//! - The letters of the name are a font of 3 by 5 points. A point is half a cell high if half
+//!   blocks can be shown, and one cell high otherwise.
 
 use std::fmt;
 
@@ -29,12 +30,12 @@ use crate::terminal::{ColorSource, TmuxClient};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
-/// The level, and the script that plays it.
+/// The demo's level, and the script that plays it.
 const LEVEL: &str = "citadel";
 const SCRIPT: &str = include_str!("../../maps/showcase.script");
 
-/// The demo's level at its start, and the intents of its steps. Only this level is read, as the first picture of the
-/// program needs no other.
+/// The demo's level at its start, and the intents of each step. Only this level is read, because
+/// the program's first picture needs no other.
 fn demo() -> Option<(Played, Steps)> {
     let level = builtin::LEVELS.iter().find(|level| level.name == LEVEL)?;
     let script = Script::parse(SCRIPT, "showcase").ok()?;
@@ -42,44 +43,44 @@ fn demo() -> Option<(Played, Steps)> {
     Some((Played::new(Level::from(world)), recording::steps(&script)))
 }
 
-/// The offers of the title screen, beside the built-in levels.
+/// The data for the title screen's entries, apart from the built-in levels.
 #[derive(Default)]
 pub struct Offers {
-    /// Finds the player's own maps. It is called when the player asks for them.
+    /// Finds the player's own maps. Called when the player opens the list of maps.
     pub maps: Option<FindMaps>,
-    /// Loads the map file at a path, to go on with a game that was saved in it.
+    /// Loads the map file at a path, to continue a saved game in it.
     pub load: Option<LoadMap>,
-    /// The date, such as 20261122, whose daily run is offered.
+    /// The date of the daily run, such as 20261122; `None` to offer no daily run.
     pub today: Option<u32>,
-    /// The seed of the first endless descent. Each further one has the next seed.
+    /// The seed of the first endless descent. Each later descent uses the next seed.
     pub seed: u64,
 }
 
-/// Returns the player's own maps.
+/// A function that returns the player's own maps.
 pub type FindMaps = Box<dyn FnMut() -> Vec<OwnMap>>;
 
-/// Loads the map at a path; an error is a sentence for the player.
+/// A function that loads the map at a path. An error is a sentence for the player.
 pub type LoadMap = Box<dyn Fn(&str) -> Result<OwnLevel, String>>;
 
-/// A map of the player's own.
+/// A map that belongs to the player.
 pub struct OwnMap {
-    /// Its name in the list.
+    /// The name in the list of maps.
     pub name: String,
-    /// The key of its results in the store, when it was found.
+    /// The key for its results in the store, as of the time when the map was found.
     pub key: String,
-    /// Reads it; an error is a sentence for the player.
+    /// Reads the map. An error is a sentence for the player.
     pub load: Box<dyn Fn() -> Result<OwnLevel, String>>,
 }
 
-/// The level of a map of the player's own.
+/// The level in a map that belongs to the player.
 #[derive(Clone, Debug)]
 pub struct OwnLevel {
     /// The level.
     pub level: Level,
-    /// The key of its results in the store. It differs from the map's key if the file was changed after it
-    /// was found.
+    /// The key for its results in the store. It differs from the key in [`OwnMap`] if the file has
+    /// changed since the map was found.
     pub key: String,
-    /// The absolute path of its file, for [`Offers::load`]. Without it, the map is found by its key.
+    /// The absolute path of its file, for [`Offers::load`]; `None` if the map is found by its key.
     pub file: Option<String>,
 }
 
@@ -95,12 +96,12 @@ impl fmt::Debug for OwnMap {
     }
 }
 
-/// The state of the player's order to tell tmux.
+/// The progress of the player's request to tell tmux.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum TmuxOrder {
     #[default]
     None,
-    /// The loop has not taken it yet.
+    /// The loop has not yet taken the request.
     Given,
     Running,
     Done,
@@ -114,7 +115,7 @@ impl App {
         (self.game, self.demo) = (game.unwrap_or_default(), steps);
     }
 
-    /// Advances the level behind the title by one step. It begins again at its end.
+    /// Advances the level behind the title by one step. At its end, the level begins again.
     pub(crate) fn step_demo(&mut self) {
         let Some(demo) = &mut self.demo else { return };
         match demo.next().filter(|_| !self.game.is_finished()) {
@@ -123,7 +124,7 @@ impl App {
         }
     }
 
-    /// The command that is offered; `None` if nothing is offered.
+    /// The command that the title offers to run; `None` if it offers none.
     pub(crate) fn tmux_remedy(&self) -> Option<String> {
         let decides = self.detection.source == Some(ColorSource::Tmux);
         let is_offered =
@@ -131,7 +132,7 @@ impl App {
         self.detection.tmux.as_ref().filter(|_| is_offered).and_then(TmuxClient::remedy)
     }
 
-    /// The offer as an entry of the title.
+    /// The title's entry for the offer to tell tmux.
     pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, Choice)> {
         self.tmux_remedy().map(|_| ("24-bit colours in tmux", "", Choice::Open(Screen::Tmux)))
     }
@@ -161,7 +162,7 @@ impl App {
         self.renew_menu();
     }
 
-    /// Whether tmux must be told now. The loop does it once for each order.
+    /// Returns true if the loop must tell tmux now. Each request returns true once.
     pub(crate) fn take_tmux_order(&mut self) -> bool {
         let is_given = self.tmux_order == TmuxOrder::Given;
         if is_given {
@@ -170,7 +171,7 @@ impl App {
         is_given
     }
 
-    /// Shows whether telling tmux has worked.
+    /// Shows whether telling tmux has succeeded.
     pub(crate) fn tmux_told(&mut self, has_worked: bool) {
         self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
         if self.screen() == Screen::Tmux {
@@ -178,7 +179,7 @@ impl App {
         }
     }
 
-    /// Follows a change of what was `offered` before.
+    /// Updates the menu if the offered command is no longer `offered`.
     pub(crate) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
         let now = self.tmux_remedy();
         if now.as_deref() == offered {
@@ -194,7 +195,8 @@ impl App {
 }
 
 const NAME: &str = "CELLCASTER";
-/// The rows of each letter that the name needs, with a bit for each point, the left one first.
+/// The five rows of each letter in the name. Each row has one bit per point, with the left point in
+/// the highest bit.
 const FONT: [(char, [u8; 5]); 7] = [
     ('A', [0b010, 0b101, 0b111, 0b101, 0b101]),
     ('C', [0b111, 0b100, 0b100, 0b100, 0b111]),
@@ -204,15 +206,16 @@ const FONT: [(char, [u8; 5]); 7] = [
     ('S', [0b111, 0b100, 0b111, 0b001, 0b111]),
     ('T', [0b111, 0b010, 0b010, 0b010, 0b010]),
 ];
-/// The points of a letter and of the gap after it.
+/// The width of a letter and the gap after it, in points.
 const ADVANCE: usize = 4;
 const ROWS: usize = 5;
-/// The points of the whole name from left to right.
+/// The width of the whole name, in points.
 const COLUMNS: usize = NAME.len() * ADVANCE - 1;
-/// The rows that a menu below the name needs at least.
+/// The minimum number of rows for the menu below the name.
 const LEAST_BELOW: u16 = 6;
 
-/// Draws the name on a band at the top of `picture`, as large as there is room. Returns the area below it.
+/// Draws the name on a band at the top of `picture`, in the largest size that fits. Returns the
+/// area below the band.
 pub fn draw_banner(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -243,7 +246,7 @@ pub fn draw_banner(
     Rect { y: picture.y + taken, height: picture.height - taken, ..picture }
 }
 
-/// Bright on black, on terminals with a light background too.
+/// Bright letters on black, even on a terminal with a light background.
 fn style(depth: ColorDepth) -> Style {
     let [text, ground] = match depth {
         ColorDepth::Mono => return Style::new(),
@@ -254,8 +257,8 @@ fn style(depth: ColorDepth) -> Style {
     Style::new().fg(text).bg(ground)
 }
 
-/// The name in lines of characters. Each point is `scale` columns wide, and as many half cells or
-/// cells high as fits the shape of a cell.
+/// The name as lines of characters. Each point is `scale` columns wide. Its height follows from the
+/// shape of a cell: `scale` half cells with half blocks, one cell otherwise.
 fn lines(glyphs: GlyphSet, scale: usize) -> Vec<String> {
     let is_set = |x: usize, y: usize| {
         let letter = NAME.chars().nth(x / scale / ADVANCE);
@@ -274,7 +277,7 @@ fn lines(glyphs: GlyphSet, scale: usize) -> Vec<String> {
     }
 }
 
-/// The character of two points, one above the other.
+/// The character for two points, one above the other.
 fn block(upper: bool, lower: bool) -> char {
     match (upper, lower) {
         (true, true) => '█',

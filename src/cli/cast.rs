@@ -20,7 +20,8 @@ pub(crate) struct Cast {
     /// A map file, or a built-in level, as "cellcaster levels" lists them
     #[arg(value_hint = ValueHint::FilePath)]
     map: Option<OsString>,
-    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP
+    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS,
+    /// table:ANGLES or march:STEP
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
     pub(crate) caster: String,
 }
@@ -38,7 +39,7 @@ const EXAMPLES: &str = "Examples:\n  echo \"1.5 1.5 1 0\" | cellcaster cast my.t
 /// Reads rays from standard input until it ends, and writes hits to standard output.
 ///
 /// # Errors
-/// A mistake if a line was no ray, after all lines are answered.
+/// After all lines are answered, a user error if any line was not a ray.
 pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
     if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) {
         return Err(Error::mistake(
@@ -78,7 +79,7 @@ fn verdict(wrong_lines: u64) -> Result<(), Error> {
     Err(Error::mistake(format!("{lines} not a ray; each has its reason in the output")))
 }
 
-/// The line of output for one ray.
+/// The output line for one ray.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Answer {

@@ -1,4 +1,4 @@
-//! `cellcaster check`: all faults of maps.
+//! `cellcaster check`: reports all faults in maps.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -28,13 +28,13 @@ pub(crate) struct Check {
     deny: Option<Denied>,
 }
 
-/// The kind of message that counts as a fault.
+/// A kind of message that counts as a fault.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Denied {
     Remarks,
 }
 
-/// Checks all maps, even after a fault, and lists the valid ones.
+/// Checks all maps, even after a fault, and prints a line for each valid one.
 pub(crate) fn run(options: &Check) -> Result<(), Error> {
     if options.maps.iter().filter(|map| *map == STANDARD_INPUT).count() > 1 {
         return Err(Error::mistake("standard input holds one map, and \"-\" stands there twice"));
@@ -71,7 +71,7 @@ fn size(level: &Level) -> String {
     }
 }
 
-/// A remark on a level that can be shown, but not won.
+/// A remark on a level that can be shown but not won.
 fn remark(level: &Level) -> Option<&'static str> {
     let Level::Grid(world) = level else { return None };
     if !world.has_exit() {

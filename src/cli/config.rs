@@ -1,4 +1,4 @@
-//! `cellcaster config`: the settings in force, as a configuration file.
+//! `cellcaster config`: prints the current settings as a configuration file.
 
 use std::io;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use crate::app::Configuration;
 use crate::app::store::private;
 use crate::fault::printable;
 
-/// The largest configuration, in bytes.
+/// The size limit of a configuration file, in bytes.
 pub const LARGEST: u64 = 1 << 20;
 
 /// Print the settings in force, as a file with comments
@@ -26,15 +26,15 @@ pub(crate) struct Config {
     config: Option<PathBuf>,
 }
 
-/// The configuration in force, and the path of its file.
+/// The current configuration, and the path of its file.
 pub(crate) struct InForce {
     pub(crate) configuration: Configuration,
     path: Option<PathBuf>,
-    /// Whether the file exists.
+    /// `true` if the file exists.
     is_there: bool,
 }
 
-/// Prints the configuration as a file with the same effect.
+/// Prints the configuration as a file that produces the same settings.
 pub(crate) fn run(options: Config) -> Result<(), Error> {
     let InForce { configuration, path, is_there } = load(options.config)?;
     let place = match path {
@@ -51,7 +51,7 @@ pub(crate) fn run(options: Config) -> Result<(), Error> {
     print(text.as_bytes())
 }
 
-/// The configuration of the named file, or of the user's own file if it exists.
+/// The configuration in the file `named`, or in the user's own file if it exists.
 pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     let is_named = named.is_some();
     let Some(path) = named.or_else(|| configuration_file("config.toml")) else {

@@ -7,25 +7,25 @@ use std::process::ExitCode;
 use crate::fault::{Faults, printable, printable_lines};
 use crate::terminal;
 
-/// The error of a command: a message without characters that a terminal obeys, and the exit status.
+/// A command's error: a message without control characters, and the exit status.
 #[derive(Debug)]
 pub struct Error {
-    /// Empty if there is nothing more to say.
+    /// The message; empty if there is nothing more to say.
     message: String,
     status: u8,
 }
 
-/// The exit status after a failure of the system, and after a mistake of the user.
+/// The exit status after a system failure, and after a user error.
 const FAILURE: u8 = 1;
 const MISTAKE: u8 = 2;
 
 impl Error {
-    /// An invalid request, described by `sentence`.
+    /// A user error, described by `sentence`.
     pub fn mistake(sentence: impl Into<String>) -> Self {
         Self::sentence(&sentence.into(), MISTAKE)
     }
 
-    /// A failure of the system, described by `sentence`.
+    /// A system failure, described by `sentence`.
     pub fn machine(sentence: impl Into<String>) -> Self {
         Self::sentence(&sentence.into(), FAILURE)
     }
@@ -34,22 +34,23 @@ impl Error {
         Self { message: printable(&format!("cellcaster: {sentence}")), status }
     }
 
-    /// Faults of several files: `text` has a line with the place of each.
+    /// Faults in several files. `text` has one line for each, with its place.
     pub fn report_of(text: &str) -> Self {
         Self { message: printable_lines(text), status: MISTAKE }
     }
 
-    /// A mistake that has already been reported.
+    /// A user error that has already been reported.
     pub(crate) fn reported() -> Self {
         Self { message: String::new(), status: MISTAKE }
     }
 
-    /// The answer is no, as the output says.
+    /// A negative result that the output already shows.
     pub(crate) fn failed() -> Self {
         Self { message: String::new(), status: FAILURE }
     }
 
-    /// The error of writing to standard output. A reader that closes the pipe ends the program silently.
+    /// An error while writing to standard output. If the reader closed the pipe, the program ends
+    /// silently.
     pub fn of_output(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self { message: String::new(), status: 0 },
@@ -57,7 +58,8 @@ impl Error {
         }
     }
 
-    /// Prints the message of a command that continues. If standard error is closed, the message is lost.
+    /// Prints the message of a command that continues. The message is lost if standard error is
+    /// closed.
     pub fn warn(&self) {
         let _ = writeln!(io::stderr(), "{self}");
     }

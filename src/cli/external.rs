@@ -1,7 +1,7 @@
-//! Commands of other programs: `cellcaster NAME` runs `cellcaster-NAME`, as git and cargo do.
+//! Commands in other programs: `cellcaster NAME` runs `cellcaster-NAME`, as git and cargo do.
 //!
-//! A program beside this one comes before one on the `PATH`. Commands that once were part of this program go
-//! to the one that has them now.
+//! A program in the same folder takes precedence over one on the `PATH`. Commands that used to be
+//! part of this program are forwarded to the program that contains them now.
 
 use std::env;
 use std::ffi::OsString;
@@ -10,7 +10,8 @@ use std::process::Command;
 
 use super::Error;
 
-/// Commands of other programs: the name here, the program, and the words before the arguments there.
+/// The commands that moved to other programs: the name here, the program, and the words before the
+/// arguments there.
 const MOVED: [(&str, &str, &[&str]); 6] = [
     ("serve", "server", &[]),
     ("admin", "server", &["admin"]),
@@ -20,21 +21,21 @@ const MOVED: [(&str, &str, &[&str]); 6] = [
     ("wire", "lab", &["wire"]),
 ];
 
-/// The programs of this project, and how each is installed.
+/// The other programs of this project, and the command that installs each.
 const INSTALLED: [(&str, &str); 2] =
     [("server", "cargo install cellcaster-server"), ("lab", "cargo install --path crates/lab")];
 
-/// A command of another program.
+/// A command in another program.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct External {
-    /// The part of its name after `cellcaster-`.
+    /// The part of the program's name after `cellcaster-`.
     program: String,
     arguments: Vec<OsString>,
 }
 
 impl External {
-    /// The command of another program that `words` request; `None` for a command of this program. The first word is this
-    /// program's own name.
+    /// The command that `words` name, if it is in another program; `None` if it is in this one. The
+    /// first word is the name of this program.
     pub(crate) fn of(words: &[OsString]) -> Option<Self> {
         let (_, arguments) = words.split_first()?;
         let (name, rest) = arguments.split_first()?;
@@ -51,7 +52,7 @@ impl External {
         Self { program: program.to_owned(), arguments }
     }
 
-    /// The command `words` with a caster of the laboratory.
+    /// The command `words`, to be run by the laboratory, which contains the other casters.
     pub(crate) fn laboratory(words: Vec<OsString>) -> Self {
         Self::new("lab", words)
     }
@@ -61,10 +62,10 @@ impl External {
         Self::new("server", ["replay".into()].into_iter().chain(arguments).collect())
     }
 
-    /// Runs the program in place of this one.
+    /// Runs the other program in place of this one.
     ///
     /// # Errors
-    /// If it is not installed, cannot be started, or ends with a failure.
+    /// If the program is not installed, cannot be started, or ends with a failure.
     pub(crate) fn run(self) -> Result<(), Error> {
         let Self { program, arguments } = self;
         let Some(path) = installed(&program) else {
@@ -92,7 +93,7 @@ impl External {
     }
 }
 
-/// The path of `cellcaster-NAME`: beside this program, or on the `PATH`.
+/// The path of `cellcaster-NAME`, in the folder of this program or on the `PATH`.
 fn installed(name: &str) -> Option<PathBuf> {
     let is_name = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
     if name.is_empty() || name.starts_with('-') || !name.bytes().all(is_name) {

@@ -1,4 +1,5 @@
-//! Texts about the program: the parts of its help that clap does not write, the manual page, and shell completions.
+//! Texts about the program: the parts of the help that clap does not write, the manual page, and
+//! shell completions.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -32,7 +33,7 @@ pub(crate) struct Completions {
 pub(crate) struct Manual;
 
 impl Completions {
-    /// Writes the completions of `program`.
+    /// Writes the completion script of `program`.
     pub(crate) fn run(&self, mut program: Command) -> Result<(), Error> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut program, "cellcaster", &mut script);
@@ -41,8 +42,8 @@ impl Completions {
 }
 
 impl Manual {
-    /// Writes the page in roff. There is one for everything, because separate pages for commands would all have to be
-    /// installed.
+    /// Writes the manual page in roff. There is one page for everything, because each separate page
+    /// would have to be installed too.
     pub(crate) fn run(program: Command) -> Result<(), Error> {
         let page =
             page(program).map_err(|error| Error::machine(format!("no manual page: {error}")))?;
@@ -50,16 +51,17 @@ impl Manual {
     }
 }
 
-/// The width of help in columns, in windows of any width.
+/// The width of the help in columns, whatever the width of the window.
 pub(crate) const WIDTH: usize = 80;
 
-/// The text before the options of the game.
+/// The text before the options in the program's help.
 pub(crate) fn about() -> String {
     let names: Vec<&str> = LEVELS.iter().map(|level| level.name).collect();
     format!("{ABOUT}{MAP}{}.", names.join(", "))
 }
 
-/// The text after the options of the game: `play`'s examples, the other commands, and the keys.
+/// The text after the options in the program's help: the examples of `play`, the other commands,
+/// and the keys.
 pub(crate) fn more(play_examples: &str, commands: &Command) -> String {
     let mut text = format!("{play_examples}\n\n");
     for command in commands.get_subcommands().filter(|command| command.get_name() != "play") {
@@ -119,7 +121,7 @@ Exit status: 0; 2 for a mistake in the arguments, a map or a script; 1 where the
 machine refuses something, or where replay --verify does not reach an exit.";
 
 fn page(program: Command) -> io::Result<Vec<u8>> {
-    // The text after the options repeats the other sections of the page.
+    // The text after the options would repeat other sections of the page.
     let mut program = program.after_help(None).after_long_help(None);
     program.build();
     let subcommands: Vec<_> = program.get_subcommands().cloned().collect();
@@ -136,7 +138,7 @@ fn page(program: Command) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// A section for a command, instead of the several sections of a separate page.
+/// Writes one section for a command. A separate page would have several.
 fn render_subcommand(command: Command, page: &mut Vec<u8>) -> io::Result<()> {
     let name = command.get_name().to_uppercase();
     let man = Man::new(command);

@@ -1,4 +1,5 @@
-//! The level of a command: built in, generated, on standard input, or in a map file of the player's own.
+//! The level of a command: built in, generated, read from standard input, or one of the player's
+//! map files.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -16,12 +17,12 @@ use crate::map::{self, Folder, Level, builtin};
 use crate::sort;
 use crate::world::World;
 
-/// As [`load`], for a command that needs a grid.
+/// As [`load`], for commands that need a grid.
 pub fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
     grid_of(load(argument)?, &argument.unwrap_or_default().to_string_lossy())
 }
 
-/// The world of the level `name`, for a command that needs a grid.
+/// The world of `level`. Returns an error that mentions `name` if the level has no grid.
 pub(crate) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
     match level {
         Level::Grid(world) => Ok(*world),
@@ -32,8 +33,8 @@ pub(crate) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
     }
 }
 
-/// The level that `argument` names: a built-in level or a map file; without it, the first built-in
-/// level.
+/// The level called `argument`, which is a built-in level or a map file. Without an argument, the
+/// first built-in level.
 pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
     let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
@@ -54,14 +55,14 @@ pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     }
 }
 
-/// The level in the map file of `place`, and its [`Watch`]. Only files can change.
+/// The level in the map file of `place`, and its [`Watch`]. Only files can be watched.
 pub(crate) fn watch(place: &Place) -> Result<(Level, Watch), Error> {
     match place.map.as_deref() {
         Some(name) if name != STANDARD_INPUT && Path::new(name).is_file() => {
             let (level, watch) = Watch::load(Path::new(name));
             Ok((level?, watch))
         }
-        // A name that looks like a map reports why it cannot be loaded.
+        // For a name that looks like a map, the error says why the map cannot be loaded.
         Some(name) if name != STANDARD_INPUT && builtin_level(name).is_none() => {
             load(Some(name)).and_then(|_| Err(Error::mistake(NOTHING_TO_WATCH)))
         }
@@ -72,21 +73,21 @@ pub(crate) fn watch(place: &Place) -> Result<(Level, Watch), Error> {
 const NOTHING_TO_WATCH: &str =
     "--watch needs a map file, as in \"cellcaster play my.toml --watch\": nothing else changes";
 
-/// The level that `argument` names; if it is built in, followed by the later ones.
+/// The level called `argument`. If it is built in, the later built-in levels follow.
 pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     if let Some(levels) = argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
         return Ok(levels);
     }
     let level = load(argument)?;
     let path = argument.filter(|argument| *argument != STANDARD_INPUT).map(Path::new);
-    // A pipe, or anything else that is no file, cannot be found again.
+    // A pipe, or anything else that is not a file, cannot be found again.
     Ok(match path.and_then(|path| own_level(path, level.clone())) {
         Some(own) => Levels::own(own),
         None => Levels::new(level, iter::empty()),
     })
 }
 
-/// As [`load_series`], or the generated level followed by the levels of the next seeds.
+/// As [`load_series`]; or the generated level, followed by the levels with the next seeds.
 pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
     let Some(generator) = place.generate else { return load_series(place.map.as_deref()) };
     let (seed, extent) = (place.seed.unwrap_or(FIRST_SEED), place.level_size.unwrap_or_default());
@@ -100,7 +101,7 @@ pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
     Ok(Levels::of_games(first, later))
 }
 
-/// The levels that the options name, or else the level in the script's header.
+/// The levels in the options; if there are none, the level in the script's header.
 pub(crate) fn of_script(place: &Place, header: &Header) -> Result<Levels, Error> {
     let rules = header.rules();
     match &header.level {
@@ -128,7 +129,7 @@ pub(crate) fn of_script(place: &Place, header: &Header) -> Result<Levels, Error>
     }
 }
 
-/// The level that a script's header names.
+/// The level in a script's header.
 pub(crate) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
     match name.floor() {
         Some(floor) => Ok(Level::from(descent(seed, floor)?)),
@@ -136,7 +137,7 @@ pub(crate) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
     }
 }
 
-/// The name of the level that `argument` names, for a script's header. Standard input has none.
+/// The name of the level `argument` for a script's header; `None` for standard input.
 pub(crate) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
     match argument {
         None => LevelName::new(builtin::LEVELS[0].name),
@@ -145,7 +146,7 @@ pub(crate) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
     }
 }
 
-/// The part around `site` of a level that `generator` makes, or around the start.
+/// The part around `site` of a generated level. Without a site, the part around the start.
 pub(crate) fn generate(
     generator: Generator,
     place: &Place,
@@ -157,26 +158,27 @@ pub(crate) fn generate(
     Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))
 }
 
-/// The seed of generated levels for which none is given.
+/// The default seed of generated levels.
 const FIRST_SEED: u64 = 1;
 
 const NO_START: &str =
     "there is nowhere to stand at --start or --camera: that is outside the level";
 
-/// The index of the built-in level `name`. A file of this name takes precedence.
+/// The index of the built-in level `name`; `None` if there is a file with that name, which takes
+/// precedence.
 fn builtin_level(name: &OsStr) -> Option<usize> {
     let index = builtin::LEVELS.iter().position(|level| name == level.name)?;
     (!Path::new(name).exists()).then_some(index)
 }
 
-/// The command or built-in level with a name similar to `name`.
+/// The command or built-in level whose name is similar to `name`.
 fn similar_name(name: &OsStr) -> Option<&'static str> {
     let levels = builtin::LEVELS.iter().map(|level| level.name);
     let known: Vec<&str> = COMMANDS.into_iter().chain(levels).collect();
     nearest(name.to_str()?, &known)
 }
 
-/// The map files in `folders`, sorted by name. Folders that cannot be read have none.
+/// The map files in `folders`, sorted by path. Unreadable folders are skipped.
 pub(crate) fn find_maps(folders: &[PathBuf]) -> Vec<OwnMap> {
     let entries = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
@@ -184,7 +186,7 @@ pub(crate) fn find_maps(folders: &[PathBuf]) -> Vec<OwnMap> {
     paths.into_iter().filter_map(own_map).collect()
 }
 
-/// The map in the file at `path`, if it is a TOML file with a grid or a list of bodies at its top level.
+/// The map in the file at `path`, if it is a TOML file with a grid or with bodies at the top level.
 fn own_map(path: PathBuf) -> Option<OwnMap> {
     let is_toml = path.extension().is_some_and(|ending| ending == OsStr::new("toml"));
     let text = text_of(&path).filter(|text| is_toml && text.lines().any(begins_a_map))?;
@@ -206,8 +208,8 @@ pub(crate) fn load_own(path: &Path) -> Result<OwnLevel, String> {
     own_level(path, level).ok_or_else(|| format!("{} can't be read", path.display()))
 }
 
-/// `level` with what it is kept by, which was loaded from `path`; `None` if that is no file that can be read
-/// again.
+/// `level`, which was loaded from `path`, with the key and the path that the store needs; `None` if
+/// it is not a file that can be read again.
 fn own_level(path: &Path, level: Level) -> Option<OwnLevel> {
     let text = text_of(path)?;
     let file = fs::canonicalize(path).ok()?.into_os_string().into_string().ok();
@@ -218,7 +220,7 @@ fn key_of(path: &Path, text: &str) -> String {
     map_key(&path.file_name().unwrap_or_default().to_string_lossy(), text)
 }
 
-/// The text of a file that is not too large for a map.
+/// The text of a file, if the file is not too large for a map.
 fn text_of(path: &Path) -> Option<String> {
     const LARGEST: u64 = 1 << 20;
     let is_small = fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);

@@ -1,4 +1,4 @@
-//! `cellcaster levels`: the built-in levels, and what the player has reached in them.
+//! `cellcaster levels`: lists the built-in levels and the player's best results.
 
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -35,15 +35,15 @@ enum Format {
 
 /// A built-in level with its best results.
 struct Entry {
-    /// The place in the playing order, from 1.
+    /// The position in the playing order, counted from 1.
     order: usize,
     name: &'static str,
     world: World,
-    /// For each difficulty.
+    /// The best results, by difficulty.
     bests: [Option<Best>; 3],
 }
 
-/// Writes the list that `options` request.
+/// Writes the list in the format that `options` select.
 pub(crate) fn run(options: &Levels) -> Result<(), Error> {
     let (store, damage) = open_store();
     if let Some(sentence) = damage {

@@ -1,4 +1,4 @@
-//! Facts about the user's machine: the folders for data and configuration, and the date.
+//! The user's machine: the folders for data and configuration, and the date.
 
 use std::env;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 use crate::app::store::Store;
 use crate::generate::daily_seed;
 
-/// `cellcaster` in the platform's folder for data, or the folder that `CELLCASTER_DATA` names.
+/// The folder `cellcaster` in the platform's data folder, or the folder in `CELLCASTER_DATA`.
 /// `None` if there is no such folder.
 pub fn data_folder() -> Option<PathBuf> {
     let named = env::var_os("CELLCASTER_DATA").filter(|name| !name.is_empty());
@@ -20,18 +20,19 @@ pub fn data_folder() -> Option<PathBuf> {
     })
 }
 
-/// The player's store in [`data_folder`], or one in memory, and a sentence about damage to it.
+/// The player's store in [`data_folder`], or one in memory. Also returns a sentence if the store is
+/// damaged or unusable.
 pub(crate) fn open_store() -> (Store, Option<String>) {
     data_folder().map_or_else(|| (Store::in_memory(), None), |folder| Store::open(&folder))
 }
 
-/// A file in `cellcaster` in the platform's folder for configuration.
+/// The path of the file `name` in the folder `cellcaster` in the platform's configuration folder.
 pub fn configuration_file(name: &str) -> Option<PathBuf> {
     let folder = choose_base_strategy().ok()?.config_dir();
     Some(folder.join("cellcaster").join(name))
 }
 
-/// The present date in UTC as a number, such as 20261122, and the seconds since 1970.
+/// The current date in UTC as a number, such as 20261122, and the seconds since 1970.
 pub fn today() -> (u32, u64) {
     let elapsed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     (date(elapsed.as_secs() / SECONDS_PER_DAY), elapsed.as_secs())
@@ -39,8 +40,8 @@ pub fn today() -> (u32, u64) {
 
 const SECONDS_PER_DAY: u64 = 24 * 60 * 60;
 
-/// The date that many days after 1970-01-01 (Howard Hinnant, "chrono-Compatible Low-Level Date
-/// Algorithms", `civil_from_days`, 2013).
+/// The date `days` days after 1970-01-01. Source: Howard Hinnant, "chrono-Compatible Low-Level Date
+/// Algorithms", `civil_from_days`, 2013.
 fn date(days: u64) -> u32 {
     let days = days + 719_468;
     let era = days / 146_097;
@@ -48,7 +49,7 @@ fn date(days: u64) -> u32 {
     let year_of_era =
         (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
     let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    // Years begin in March.
+    // Years begin in March here.
     let month_from_march = (5 * day_of_year + 2) / 153;
     let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
     let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };

@@ -1,4 +1,4 @@
-//! Options that several commands share, and parsers of their values.
+//! Options that several commands share, and the parsers of their values.
 
 use std::ffi::OsString;
 use std::num::NonZeroU32;
@@ -17,7 +17,7 @@ use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::FieldOfView;
 
-/// The name for a map on standard input.
+/// The name that stands for a map on standard input.
 pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// The names of the commands.
@@ -69,7 +69,8 @@ pub(crate) struct Look {
     /// that they cover, with smooth edges (area)
     #[arg(long, value_name = "FILTER", default_value = Filter::default().name(), value_parser = filter())]
     pub(crate) filter: Filter,
-    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP
+    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS,
+    /// table:ANGLES or march:STEP
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
     pub(crate) caster: String,
     #[command(flatten)]
@@ -87,10 +88,10 @@ pub(crate) struct View {
     pub(crate) depth: Option<ColorDepth>,
 }
 
-/// The method of casting that this program has.
+/// The name of the only caster in this program.
 pub(crate) const EXACT: &str = "exact";
 
-/// A value with one of these names, which completions know.
+/// A parser for a value with one of these names. Shell completions offer the names.
 pub(crate) fn named<T: Clone + Send + Sync + 'static>(
     names: impl IntoIterator<Item = &'static str>,
     named: fn(&str) -> Option<T>,
@@ -99,7 +100,7 @@ pub(crate) fn named<T: Clone + Send + Sync + 'static>(
         .try_map(move |name| named(&name).ok_or(Takes("one of the values in the help")))
 }
 
-/// A value of a setting that is one of a few.
+/// A parser for a value of a setting with a few named values.
 pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     named(T::ALL.iter().map(|&(_, name, _)| name), T::named)
 }
@@ -110,7 +111,8 @@ pub(crate) fn filter() -> impl TypedValueParser<Value = Filter> {
     })
 }
 
-/// The value of `text`, if it `fits`.
+/// Parses `text`. Returns an error that says `takes` if that fails, or if the value does not
+/// satisfy `fits`.
 pub fn within<T: FromStr>(
     text: &str,
     fits: impl Fn(&T) -> bool,
@@ -119,17 +121,17 @@ pub fn within<T: FromStr>(
     text.parse().ok().filter(fits).ok_or(Takes(takes))
 }
 
-/// The frames in a second.
+/// Parses a frame rate.
 pub fn frames(text: &str) -> Result<NonZeroU32, Takes> {
     within(text, |frames: &NonZeroU32| frames.get() <= 240, "a whole number from 1 to 240")
 }
 
-/// Any seed.
+/// Parses a seed.
 pub fn seed(text: &str) -> Result<u64, Takes> {
     within(text, |_| true, "a whole number from 0 to 18446744073709551615")
 }
 
-/// The size of a picture.
+/// Parses the size of a picture.
 pub(crate) fn size(text: &str) -> Result<Size, Takes> {
     let size = pair(text, 'x')
         .filter(|&(columns, rows)| (1..=4096).contains(&columns) && (1..=4096).contains(&rows));
@@ -137,8 +139,8 @@ pub(crate) fn size(text: &str) -> Result<Size, Takes> {
     size.ok_or(Takes("COLSxROWS from 1x1 to 4096x4096, such as 80x24"))
 }
 
-/// As [`size`], but for a window: it is drawn for each frame of a game, and several buffers of it are in memory. The limit
-/// is the area of a window of 800×250 cells.
+/// As [`size`], but for a window. A window is drawn for each frame of a game, and several buffers
+/// of its size are in memory, so the limit is the area of 800×250 cells.
 pub fn window(text: &str) -> Result<Size, Takes> {
     let is_window = |it: &Size| {
         it.width.max(it.height) <= 1000 && u32::from(it.width) * u32::from(it.height) <= 200_000
@@ -147,7 +149,7 @@ pub fn window(text: &str) -> Result<Size, Takes> {
     size.ok_or(Takes("COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40"))
 }
 
-/// Exact colours, or how far they may be off.
+/// Parses a fidelity: exact, high, low, or a tolerance.
 pub fn fidelity(text: &str) -> Result<Fidelity, Takes> {
     within(text, |_| true, "exact, high, low or a number up to 255")
 }
@@ -172,7 +174,7 @@ fn site(text: &str) -> Result<Site, Takes> {
     site.ok_or(Takes("COLUMN,ROW, the cell to start at, such as 1000000,-1000000"))
 }
 
-/// Two numbers with `between` between them.
+/// Parses two numbers with `between` between them.
 fn pair<T: FromStr>(text: &str, between: char) -> Option<(T, T)> {
     let (first, second) = text.split_once(between)?;
     Some((first.trim().parse().ok()?, second.trim().parse().ok()?))

@@ -1,7 +1,8 @@
-//! The output of a command: standard output, and files that are complete, or as they were before.
+//! The output of a command: standard output, and files that are either complete or unchanged.
 //!
-//! A file is written under another name and renamed, as in the store, so that a full disk costs neither
-//! the file before nor leaves a part of the new one. Pipes and devices are written directly.
+//! A file is written under another name and then renamed, as in the store. A full disk therefore
+//! neither damages the old file nor leaves an incomplete new one. Pipes and devices are written
+//! directly.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -14,22 +15,22 @@ pub fn print(text: &[u8]) -> Result<(), Error> {
     io::stdout().write_all(text).map_err(|error| Error::of_output(&error))
 }
 
-/// A file that is not in its place yet, or a pipe or a device.
+/// A file that has not replaced the old one yet, or a pipe or a device.
 pub struct OutputFile {
-    /// The file as the user called it.
+    /// The path as the user wrote it.
     name: PathBuf,
     file: File,
     replacement: Option<Replacement>,
 }
 
-/// The path under which a file is written, and its path at the end.
+/// The temporary path of a file, and its final path.
 struct Replacement {
     new: PathBuf,
     path: PathBuf,
 }
 
 impl OutputFile {
-    /// An empty file that will replace the one at `path`, if there is one.
+    /// Creates an empty file, which will replace the file at `path` if there is one.
     pub fn create(path: &Path) -> Result<Self, Error> {
         let name = path.to_owned();
         let create = || {
@@ -43,7 +44,7 @@ impl OutputFile {
         Ok(Self { name, file, replacement })
     }
 
-    /// Writes the whole file by `write`, and puts it in its place.
+    /// Writes the whole file with `write`, and renames it to its final path.
     pub fn write(
         self,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -58,7 +59,7 @@ impl OutputFile {
 }
 
 impl Replacement {
-    /// The replacement of the file at `path`, or of the file to which a link there leads.
+    /// The replacement for the file at `path`. Symbolic links are followed.
     fn of(path: &Path) -> Self {
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let mut new = path.clone().into_os_string();
@@ -73,7 +74,7 @@ impl Replacement {
 }
 
 impl Drop for Replacement {
-    /// Removes the part that was written, if it has not been renamed.
+    /// Removes the incomplete file, if it has not been renamed.
     fn drop(&mut self) {
         _ = fs::remove_file(&self.new);
     }

@@ -1,7 +1,9 @@
-//! Parsing for programs whose arguments are described by clap's derive macro, with one sentence for each mistake.
+//! Argument parsing for programs that use clap's derive macro, with one sentence for each user
+//! error.
 //!
-//! Options may stand before the command: `cellcaster --colors 256 snapshot` is `cellcaster snapshot --colors 256`. In clap
-//! they would have to be options of the program, which every command would then accept.
+//! Options may precede the command: `cellcaster --colors 256 snapshot` means `cellcaster snapshot
+//! --colors 256`. Plain clap would make them options of the program, which every command would then
+//! accept.
 //!
 //! Rejected: clap's own messages. They include the usage, and omit the valid values of an option.
 
@@ -18,7 +20,8 @@ use crate::fault::nearest;
 
 /// The valid values of an option, as the rest of the sentence `--option takes …`.
 ///
-/// Parsers of values return it, so that the sentence about an invalid value says what to write instead.
+/// Value parsers return it as their error, so the sentence about an invalid value says what to
+/// write instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Takes(pub &'static str);
 
@@ -30,16 +33,16 @@ impl fmt::Display for Takes {
 
 impl std::error::Error for Takes {}
 
-/// Parses `words`, which begin with the program's own name. Writes the help or the version and returns `None`
-/// where these are requested.
+/// Parses `words`, which begin with the name of this program. If the words ask for the help or the
+/// version, writes that and returns `None`.
 ///
 /// # Errors
-/// One sentence about the first mistake.
+/// One sentence about the first error.
 pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Option<P>, Error> {
     let program = lenient(P::command());
     let mut words = command_first(&program, words.into_iter().collect());
     if words.get(1).is_some_and(|word| word == "help") {
-        // clap's command has no help about itself.
+        // clap's `help` command has no help about itself.
         words.retain(|word| word != "--help" && word != "-h");
     }
     let matches = program.clone().try_get_matches_from(&words);
@@ -55,7 +58,8 @@ pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Opt
     }
 }
 
-/// The command, and its subcommands, with options that take values such as `-1`. The last of repeated options counts.
+/// Makes the command and its subcommands accept option values such as `-1`. If an option is
+/// repeated, the last one counts.
 fn lenient(command: Command) -> Command {
     command
         .args_override_self(true)
@@ -67,7 +71,7 @@ fn lenient(command: Command) -> Command {
         .mut_subcommands(lenient)
 }
 
-/// The same words with the command directly after the program's own name, if only options precede it.
+/// Moves the command directly after the program's name, if only options precede it.
 fn command_first(program: &Command, mut words: Vec<OsString>) -> Vec<OsString> {
     let mut index = 1;
     while let Some(word) = words.get(index).and_then(|word| word.to_str()) {
@@ -84,7 +88,7 @@ fn command_first(program: &Command, mut words: Vec<OsString>) -> Vec<OsString> {
     words
 }
 
-/// Whether `word` is an option of any command whose value is the next word.
+/// Returns true if `word` is an option of any command and its value is the next word.
 fn takes_the_next_word(program: &Command, word: &str) -> bool {
     let mut options =
         program.get_arguments().chain(program.get_subcommands().flat_map(Command::get_arguments));
@@ -173,13 +177,14 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
     }
 }
 
-/// The name of an argument, which may stand with its value, as in `--fov <DEG>`, or in brackets, as in `[MAP]`.
+/// The name of an argument without its value, as in `--fov <DEG>`, and without brackets, as in
+/// `[MAP]`.
 fn name_of(argument: &str) -> &str {
     let name = argument.split_once(' ').map_or(argument, |(name, _)| name);
     name.trim_matches(['[', ']', '<', '>'])
 }
 
-/// The choices, as in "a, b or c".
+/// Joins the choices, as in "a, b or c".
 fn one_of(choices: &[String]) -> String {
     match choices {
         [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
@@ -201,7 +206,7 @@ fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
     }
 }
 
-/// clap's own message without the usage, for any other mistake.
+/// The first line of clap's own message, without the usage, for any other error.
 fn first_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();

@@ -78,7 +78,7 @@ Examples:
   ssh -t host cellcaster
   cellcaster --record walk.script && cellcaster replay walk.script > walk.cast";
 
-/// A fidelity; `None` if the link to the terminal decides.
+/// A fidelity; `None` lets the link to the terminal decide.
 type AutoFidelity = Option<Fidelity>;
 
 fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, Takes> {
@@ -90,7 +90,7 @@ fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, Takes> {
     }
 }
 
-/// Plays until the player quits.
+/// Plays until the player leaves.
 pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let opening = opening(&options)?;
     let level = match options.place.generate {
@@ -138,7 +138,7 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     written
 }
 
-/// The origin of a setting that a flag or the configuration file gives. The flag comes first.
+/// The origin of a setting. A flag takes precedence over the configuration file.
 fn origin(by_flag: bool, by_file: bool) -> Option<Origin> {
     match (by_flag, by_file) {
         (true, _) => Some(Origin::Flag),
@@ -147,8 +147,8 @@ fn origin(by_flag: bool, by_file: bool) -> Option<Origin> {
     }
 }
 
-/// The header of a script of what the program begins with. Levels that are not generated have the
-/// seed 0.
+/// The header for a script of the first game in the program. The seed is 0 unless the level is a
+/// descent.
 fn header(opening: &Opening, level: Option<LevelName>, difficulty: Difficulty) -> Header {
     let first_floor = || Some(LevelName::of_floor(1));
     match opening {
@@ -163,9 +163,9 @@ fn header(opening: &Opening, level: Option<LevelName>, difficulty: Difficulty) -
     }
 }
 
-/// Says what was done, and what the player should know about what is kept.
+/// Prints a line about the game, and a sentence about any problem with the stored data.
 fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
-    // The terminal may be gone; then nobody reads it.
+    // The terminal may be gone, and then nobody reads the output.
     if let Some(done) = done {
         _ = writeln!(io::stdout(), "{done}");
     }
@@ -174,7 +174,7 @@ fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
     }
 }
 
-/// The glyphs that the locale can show.
+/// The glyph set that the locale can show.
 fn glyphs_of_locale() -> GlyphSet {
     match locale_without_utf8(|name| env::var(name).ok()) {
         Some(_) => GlyphSet::Ascii,
@@ -182,8 +182,8 @@ fn glyphs_of_locale() -> GlyphSet {
     }
 }
 
-/// The title, unless the options say what to play. A script is about one level, so that recording
-/// one begins with the first level.
+/// The title, unless the options say what to play. A script covers one level, so recording a script
+/// starts with the first level.
 fn opening(options: &Play) -> Result<Opening, Error> {
     if options.daily {
         return Ok(Opening::Daily(offers()));
@@ -200,7 +200,7 @@ fn opening(options: &Play) -> Result<Opening, Error> {
     Ok(Opening::Title(offers()))
 }
 
-/// The offers of the title.
+/// The data for the title's entries.
 fn offers() -> Offers {
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
@@ -213,7 +213,7 @@ fn offers() -> Offers {
     }
 }
 
-/// The levels to play. If the map is on standard input, keys then come from the terminal.
+/// The levels to play. If the map comes from standard input, keys are read from the terminal.
 fn levels(options: &Play) -> Result<Levels, Error> {
     if options.watch {
         if options.record.as_deref().is_some_and(RecordingFile::is_script) {
@@ -239,7 +239,7 @@ fn levels(options: &Play) -> Result<Levels, Error> {
     Ok(levels)
 }
 
-/// The fault of the terminal, with a hint for players who connect by SSH.
+/// The terminal's error, with a hint for players who connect by SSH.
 fn about_the_terminal(error: terminal::Error) -> Error {
     let came_by_ssh = env::var_os("SSH_CONNECTION").is_some();
     if error.is_mistake() && came_by_ssh && !io::stdin().is_terminal() {

@@ -1,9 +1,9 @@
-//! `--record`: a recording of a game in a file, as a script or in the format asciicast v3.
+//! `--record`: records a game in a file, as a script or in asciicast v3 format.
 //!
-//! The first line of an asciicast is a header. Each following line is an event: the seconds since the previous
-//! event, the kind of event, and its data. Each line is written at once and without buffering, so
-//! that the file is valid after each line, even if the program is killed. A file does not contain the time of day: the same
-//! play makes the same file.
+//! The first line of an asciicast is a header. Each later line is an event: the seconds since the
+//! previous event, the kind of event, and its data. Each line is written immediately and without
+//! buffering, so the file is valid after each line, even if the program is killed. A file does not
+//! contain the time of day, so the same play produces the same file.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ use crate::app::store::private;
 use crate::game;
 use crate::terminal;
 
-/// The content of a file, by its extension.
+/// The kind of content in a file, according to its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// The terminal's output.
@@ -40,7 +40,7 @@ pub(crate) struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Creates an empty file. An existing file is replaced only if `overwrites` is set, and when
+    /// Creates an empty file. Replaces an existing file only if `overwrites` is set, and only once
     /// the game starts.
     pub(crate) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
         let kind = Kind::of(path)?;
@@ -50,7 +50,7 @@ impl RecordingFile {
         } else {
             options.create_new(true);
         }
-        // It contains what players say to each other.
+        // A recording may contain chat messages between players.
         private::restrict_file(&mut options);
         let file = options.write(true).open(path).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Error::mistake(format!(
@@ -62,13 +62,12 @@ impl RecordingFile {
         Ok(Self { path: path.to_owned(), kind, output: Output::to(file) })
     }
 
-    /// Whether a file with this name contains intents.
+    /// Returns true if a file with this name contains intents.
     pub(crate) fn is_script(path: &Path) -> bool {
         Kind::of(path).is_ok_and(|kind| kind == Kind::Script)
     }
 
-    /// The recorder that writes the file.
-    /// A script begins with `header`.
+    /// The recorder that writes the file. A script begins with `header`.
     pub(crate) fn recording(&self, header: game::Header) -> app::Recording {
         let output = self.output.clone();
         if self.kind == Kind::Asciicast {
@@ -80,13 +79,13 @@ impl RecordingFile {
         }
     }
 
-    /// Returns the first error of writing, if there was one. A file without content is removed,
-    /// because the game did not start.
+    /// Returns the first write error, if there was one. Removes an empty file, because the game did
+    /// not start.
     pub(crate) fn finish(self) -> Result<(), Error> {
         let mut state = self.output.lock();
         let is_empty = || fs::metadata(&self.path).is_ok_and(|it| it.is_file() && it.len() == 0);
         if is_empty() {
-            // The empty file would prevent the next recording.
+            // An empty file would stand in the way of the next recording.
             _ = fs::remove_file(&self.path);
         }
         match state.fault.take() {
@@ -121,7 +120,7 @@ struct Output(Arc<Mutex<State>>);
 #[derive(Debug)]
 struct State {
     file: File,
-    /// Whether nothing has been written yet, and the file may still have its old content.
+    /// `true` while nothing has been written and the file may still have its old content.
     is_untouched: bool,
     fault: Option<io::Error>,
 }
@@ -160,7 +159,7 @@ impl Write for Output {
     }
 }
 
-/// Records the terminal's output with its times.
+/// Records the terminal's output with the time of each write.
 struct TerminalRecorder {
     output: Output,
     asciicast: Option<Asciicast<Output>>,
@@ -185,16 +184,16 @@ impl terminal::Recorder for TerminalRecorder {
     }
 }
 
-/// A writer of an asciicast.
+/// A writer for asciicasts.
 #[derive(Debug)]
 pub(crate) struct Asciicast<W> {
     output: W,
-    /// The time of the previous event in milliseconds, as in the file.
+    /// The time of the previous event as written to the file, in milliseconds.
     last: u128,
 }
 
 impl<W: Write> Asciicast<W> {
-    /// Starts a recording of a terminal of `size`.
+    /// Starts the recording of a terminal with this size.
     pub(crate) fn begin(output: W, size: Size) -> io::Result<Self> {
         let mut asciicast = Self { output, last: 0 };
         let terminal = json!({ "cols": size.width, "rows": size.height });
@@ -202,7 +201,8 @@ impl<W: Write> Asciicast<W> {
         Ok(asciicast)
     }
 
-    /// Records that `bytes` were sent at `time`, counted from the start. They are whole characters.
+    /// Records that `bytes` were sent at `time`, counted from the start. The bytes must be whole
+    /// characters.
     pub(crate) fn sent(&mut self, time: Duration, bytes: &[u8]) -> io::Result<()> {
         self.write_event(time, "o", &String::from_utf8_lossy(bytes))
     }
@@ -218,7 +218,8 @@ impl<W: Write> Asciicast<W> {
     }
 
     fn write_event(&mut self, time: Duration, code: &str, data: &str) -> io::Result<()> {
-        // Times are rounded, not intervals, whose errors would add up.
+        // The times are rounded, not the intervals, because rounding errors of intervals would add
+        // up.
         let now = time.as_millis().max(self.last);
         let interval = now - self.last;
         self.last = now;

@@ -1,4 +1,5 @@
-//! `cellcaster replay`: plays a script off screen, into a recording or into a report about what it achieves.
+//! `cellcaster replay`: plays a script off screen, and writes a recording or a report about the
+//! result.
 
 use std::fmt::{self, Write as _};
 use std::fs::File;
@@ -31,10 +32,11 @@ use crate::world::World;
 
 /// Play a script off screen, and write it as asciicast, or check what it achieves
 ///
-/// A script is lines such as "2.5 s forward run" or "12 steps turn-left open"; "stand" is nothing, a name in square brackets begins a
-/// section, and # a comment. Lines at its top may name the game: "level cellar", "difficulty hard" and "seed 7"; a level
-/// may also be a map file, or "floor 1" of an endless game, which goes on with the floors below. MAP takes precedence.
-/// play --record writes such a script.
+/// A script is lines such as "2.5 s forward run" or "12 steps turn-left open"; "stand" is nothing,
+/// a name in square brackets begins a section, and # a comment. Lines at its top may name the game:
+/// "level cellar", "difficulty hard" and "seed 7"; a level may also be a map file, or "floor 1" of
+/// an endless game, which goes on with the floors below. MAP takes precedence. play --record writes
+/// such a script.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -66,13 +68,14 @@ pub(crate) struct Replay {
     place: Place,
 }
 
-/// A walk through the built-in level with the most features, for commands without a script.
+/// A walk through the built-in level with the most features, for commands that run without a
+/// script.
 pub const SHOWCASE: Showcase =
     Showcase { level: "citadel", script: include_str!("../../maps/showcase.script") };
 
-/// A compiled-in script, and its built-in level.
+/// A compiled-in script and its built-in level.
 pub struct Showcase {
-    /// The built-in level that it is played in.
+    /// The built-in level of the script.
     pub level: &'static str,
     script: &'static str,
 }
@@ -84,10 +87,10 @@ impl Showcase {
     }
 }
 
-/// The beginning of the recording of a server's room, which its version follows.
+/// The first bytes in the recording of a server's room. The version follows them.
 pub const ROOM_RECORDING: &str = "cellcaster-room ";
 
-/// Writes the recording that `options` request.
+/// Writes the recording or the report that `options` select.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         let words = [Some(options.script.clone().into_os_string()), options.place.map.clone()];
@@ -113,11 +116,11 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     }
 }
 
-/// The largest size of a script in bytes, more than a week of play. A larger file is not read to
-/// its end.
+/// The size limit of a script in bytes: more than a week of play. A larger file is not read to its
+/// end.
 const LONGEST: u64 = 1 << 26;
 
-/// The script in a file.
+/// Reads the script in a file.
 pub fn load(path: &Path) -> Result<Script, Error> {
     let name = path.display().to_string();
     let mut content = Vec::new();
@@ -159,19 +162,19 @@ fn write(
     asciicast.finish()
 }
 
-/// Whether the file is the recording of a server's room, which has the game's rules and more.
+/// Returns true if the file is the recording of a server's room. Only the server can replay it.
 fn is_room_recording(path: &Path) -> bool {
     let mut beginning = [0; ROOM_RECORDING.len()];
-    // A file that cannot be read is reported where scripts are read.
+    // An unreadable file is reported later, when the script is read.
     path.is_file()
         && File::open(path).is_ok_and(|mut file| file.read_exact(&mut beginning).is_ok())
         && beginning == ROOM_RECORDING.as_bytes()
 }
 
-/// Writes what `script` achieves in the level that `options` or its header name.
+/// Reports the result of `script` in the level from `options` or from the script's header.
 ///
 /// # Errors
-/// With exit status 1 if it does not reach an exit.
+/// With exit status 1 if the script does not reach an exit.
 fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
     let (name, world) = verified_level(options, script.header())?;
     let rules = script.header().rules();
@@ -184,7 +187,7 @@ fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
     if wins { Ok(()) } else { Err(Error::failed()) }
 }
 
-/// The level that the options name, or else the header; and its name.
+/// The name and the world of the level in the options or, if there is none, in the header.
 fn verified_level(options: &Replay, header: &Header) -> Result<(String, World), Error> {
     match (&options.place.map, &header.level) {
         (Some(map), _) => Ok((map.display().to_string(), level::load_grid(Some(map))?)),
@@ -199,7 +202,7 @@ fn verified_level(options: &Replay, header: &Header) -> Result<(String, World), 
     }
 }
 
-/// A report about the script in one level, and whether it reaches the exit.
+/// A report about the script in one level, and whether the script reaches the exit.
 fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, bool) {
     let game = replayed(world, rules, script);
     let mut report = Report::about(name, game.world().title(), rules);
@@ -220,7 +223,7 @@ fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, boo
     (report.0, game.is_finished())
 }
 
-/// A report about the script in a descent from `floor` on, and whether it reaches an exit.
+/// A report about the script in a descent from `floor` on, and whether the script reaches an exit.
 fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) -> (String, bool) {
     let DescentRun { game, reached } = DescentRun::replayed(floor, first, rules, script);
     let mut report = Report::about(name, "", rules);
@@ -231,7 +234,7 @@ fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) 
     (report.0, reached.floors > 0)
 }
 
-/// Lines of a name and a value.
+/// A report: lines with a name and a value.
 struct Report(String);
 
 impl Report {

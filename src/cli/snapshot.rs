@@ -1,11 +1,12 @@
-//! `cellcaster snapshot`: one frame on standard output, without a terminal.
+//! `cellcaster snapshot`: writes one frame to standard output, without a terminal.
 //!
-//! With `--watch`, the frame is drawn again whenever the map changes. In a terminal, text is drawn in the same place each
-//! time, with faults over it. In any other output, pictures follow each other, and faults go to standard error. The
-//! terminal's modes are not changed, so that nothing has to be restored when Ctrl-C ends the program.
+//! With `--watch`, the frame is drawn again whenever the map changes. In a terminal, text is drawn
+//! in the same place each time, with faults over it. In any other output, pictures follow each
+//! other, and faults go to standard error. The terminal's modes stay as they are, so nothing has to
+//! be restored when Ctrl-C ends the program.
 //!
-//! The game's widget draws the cells. They are made and written in bands of rows, because 4096×4096
-//! cells at once would take most of a gigabyte.
+//! The game's widget draws the cells. They are created and written in bands of rows, because
+//! 4096×4096 cells at once would take most of a gigabyte.
 
 mod format;
 
@@ -99,10 +100,10 @@ fn pitch(text: &str) -> Result<Pitch, Takes> {
     pitch.ok_or(Takes("degrees from -30, down, to 30, up"))
 }
 
-/// The number of rows of cells made at a time: a multiple of the height of the dither pattern.
+/// The number of rows of cells in a band: a multiple of the height of the dither pattern.
 const BAND: u16 = 64;
 
-/// Writes the frame that `options` request.
+/// Writes the frame that `options` describe.
 pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
     if is_png && options.watch {
@@ -131,7 +132,7 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
 fn draw(level: &Level, options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
-            // Guards are figures of a game, and not yet in the world of a map.
+            // Guards are figures of a game, and not yet part of a map's world.
             let game = (!world.guards().is_empty()).then(|| Game::new((**world).clone()));
             let world = game.as_ref().map_or(&**world, Game::world);
             let camera = camera(world, options.camera, options);
@@ -156,7 +157,8 @@ fn generated_world(generator: Generator, options: &Snapshot) -> Result<(World, C
     let whole = position.floor();
     let site = Site { column: whole.x as i64, row: whole.y as i64 };
     let (window, world) = level::generate(generator, &options.place, Some(site))?;
-    // This is exact: the sum of a cell's corner in the window and the fraction of the coordinate.
+    // This sum is exact, because it adds the corner of a cell in the window and the fraction of the
+    // coordinate.
     let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
     let camera = camera(&world, Some((corner + (position - whole), heading)), options);
     Ok((world, camera))
@@ -175,7 +177,8 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
     camera.with_pitch(options.pitch.unwrap_or_default())
 }
 
-/// Values that are not given, including the height, are as at the start.
+/// The camera in `scene`. Values that the options omit, including the height, are taken from the
+/// start.
 fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
     let start = scene.start_camera(options.field_of_view());
     let (position, heading) =
@@ -188,7 +191,7 @@ fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Erro
     )
 }
 
-/// Draws the view of `camera` into `scene` once, and converts it to cells band by band.
+/// Renders the view of `camera` into `scene` once, and converts it to cells band by band.
 fn output<S: Renderable>(
     scene: &S,
     camera: &S::Camera,
@@ -224,7 +227,9 @@ fn output<S: Renderable>(
     writer.finish()
 }
 
-/// A camera may be anywhere, and its picture is drawn. But a position inside a wall is probably a mistake: a sentence about a `camera` that is off the map or inside a solid cell; `None` elsewhere.
+/// A remark on a `camera` that is off the map or inside a solid cell; `None` for any other camera.
+/// The picture is drawn anyway, because a camera may be anywhere, but a position inside a wall is
+/// probably a mistake.
 fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     let (grid, position) = (world.grid(), camera.position());
     let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
@@ -250,10 +255,10 @@ fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     })
 }
 
-/// The interval between checks for changes.
+/// The interval between two checks for changes.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Draws the frame, and draws it again after each change, until the program is ended.
+/// Draws the frame, and draws it again after each change, until the program is stopped.
 fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let (mut level, mut watch) = level::watch(&options.place)?;
     let output = Output::of(&options);
@@ -274,11 +279,11 @@ fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     }
 }
 
-/// The output of the pictures.
+/// The output for the pictures.
 struct Output {
-    /// Whether the output is a terminal, where all pictures have the same place.
+    /// `true` if the output is a terminal, where every picture is drawn in the same place.
     is_terminal: bool,
-    /// Whether pictures have the size of the window.
+    /// `true` if pictures have the size of the window.
     fits_window: bool,
 }
 
@@ -308,7 +313,7 @@ impl Output {
             Error::from(faults).warn();
             return Ok(());
         }
-        // At the top of the picture. The cursor stays below the picture.
+        // The report goes to the top of the picture. The cursor stays below the picture.
         write("\x1b7\x1b[H")?;
         let report = printable_lines(&faults.to_string());
         let room = window().map_or(10, |size| usize::from(size.height) / 2).max(1);
@@ -322,7 +327,7 @@ impl Output {
     }
 }
 
-/// The size of the window, less one row for the cursor.
+/// The size of the window, minus one row for the cursor.
 fn window() -> Option<Size> {
     let (columns, rows) = crossterm::terminal::size().ok()?;
     Some(Size::new(columns.clamp(1, 4096), rows.clamp(2, 4096) - 1))

@@ -1,9 +1,9 @@
-//! `--watch`: polling a map file, and reloading it when it changes.
+//! `--watch`: polls a map file, and reloads it after a change.
 //!
-//! Two versions of a file differ if their modification time or their length differs. The map and
+//! Two versions of a file differ if their modification times or their lengths differ. The map and
 //! every PNG that it names are compared, including missing ones. Rejected: a library for file
-//! system notifications. It adds a thread and dozens of crates on each platform to save
-//! a few calls per second, and it loses files that an editor replaces.
+//! system notifications. It adds a thread, and dozens of crates on each platform, to save a few
+//! calls per second, and it loses files that an editor replaces.
 
 use std::cell::RefCell;
 use std::fs;
@@ -13,11 +13,11 @@ use std::time::SystemTime;
 use crate::fault::Faults;
 use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
 
-/// A map file, and the versions of it and its textures at the last load.
+/// A map file, and the versions of the map and its textures at the last load.
 pub(crate) struct Watch {
     map: PathBuf,
     watched: Vec<(PathBuf, FileVersion)>,
-    /// The faults of a file that has just changed, and may be incomplete.
+    /// The faults in a file that has just changed and may be incomplete.
     unconfirmed: Option<Faults>,
 }
 
@@ -28,9 +28,9 @@ impl Watch {
         (level, Self { map: map.to_owned(), watched, unconfirmed: None })
     }
 
-    /// The current level or its faults, if it has changed since the last call. Faults are returned
-    /// only if the file has not changed between two calls, because an editor may be writing or
-    /// replacing it.
+    /// The current level or its faults, if the file has changed since the last call. Faults are
+    /// returned only if the file stays the same between two calls, because an editor may be writing
+    /// or replacing it.
     pub(crate) fn change(&mut self) -> Option<Result<Level, Faults>> {
         if self.watched.iter().all(|(path, version)| version_of(path) == *version) {
             return self.unconfirmed.take().map(Err);
@@ -54,15 +54,14 @@ fn load(map: &Path) -> (Result<Level, Faults>, Vec<(PathBuf, FileVersion)>) {
     let files = TrackedFiles {
         files: Folder::of(map),
         folder: map.parent().unwrap_or(Path::new("")),
-        // The version is taken before the file is read, so that a change in between causes a
-        // reload.
+        // The version is taken before the file is read, so a change in between causes a reload.
         watched: RefCell::new(vec![(map.to_owned(), version_of(map))]),
     };
     let level = map::load_level_with(map, &files);
     (level, files.watched.into_inner())
 }
 
-/// The files of a folder. Each read is recorded.
+/// The files in a folder. Each read is recorded.
 struct TrackedFiles<'a> {
     files: Folder,
     folder: &'a Path,
@@ -78,7 +77,8 @@ impl TextureFiles for TrackedFiles<'_> {
     }
 }
 
-/// The modification time and the length, which distinguish two versions of a file; `None` if there is no file.
+/// The modification time and the length, which identify a version of a file; `None` if there is no
+/// file.
 type FileVersion = Option<(Option<SystemTime>, u64)>;
 
 fn version_of(path: &Path) -> FileVersion {
@@ -112,7 +112,7 @@ mod tests {
         assert!(second != first);
         assert!(watch.change().is_none());
 
-        // The file is missing for a moment, as when an editor replaces it.
+        // The file is missing for a moment, as it is while an editor replaces it.
         fs::remove_file(&map).unwrap();
         assert!(watch.change().is_none());
         fs::write(&map, MAP).unwrap();

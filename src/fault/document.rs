@@ -1,10 +1,11 @@
 //! TOML with the place of each key and value.
 //!
-//! Rejected: deserializing into structs with serde. It stops at the first fault, and only the values
-//! that are asked for as `Spanned` have places.
+//! Rejected: deserializing into structs with serde. It stops at the first fault, and only fields of
+//! type `Spanned` have places.
 //!
-//! The parser keeps each token several times, at up to 150 bytes, and a file of 64 MiB can have as
-//! many tokens as bytes. The lexer alone needs no memory, so tokens are counted before they are parsed.
+//! The parser stores each token several times, at up to 150 bytes, and a file of 64 MiB can have as
+//! many tokens as bytes. The lexer alone needs no memory, so tokens are counted before the text is
+//! parsed.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,11 +19,11 @@ use toml_parser::lexer::TokenKind;
 use super::{Fault, nearest_or_all, quoted};
 use crate::sort;
 
-/// The largest number of tokens of a document, white space and line breaks included: some twenty for
-/// each of ten thousand definitions.
+/// The maximum number of tokens in a document, white space and line breaks included: about twenty
+/// for each of ten thousand definitions.
 const MOST_TOKENS: usize = 1 << 18;
-/// Of a text with more tokens that is not TOML, only the first fault is reported: each token may be
-/// one.
+/// The number of tokens above which only the first TOML error is reported, because each token may
+/// be one.
 const MOST_TOKENS_RECOVERED: usize = 1 << 16;
 
 /// The faults of a document, collected while it is read.
@@ -40,23 +41,23 @@ impl FaultList {
         faults.into_iter().for_each(|fault| self.push(fault));
     }
 
-    /// The number of faults so far.
+    /// The number of faults up to now.
     pub(crate) fn len(&self) -> usize {
         self.0.borrow().len()
     }
 
-    /// Whether there is no fault so far.
+    /// Returns true if there are no faults yet.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The faults so far, which are no longer in the list.
+    /// Removes and returns the faults up to now.
     pub fn take(&self) -> Vec<Fault> {
         self.0.take()
     }
 
-    /// Adds `not_toml`, the faults of the TOML of `text`, and removes other faults in the same lines:
-    /// the parser guesses what such lines mean.
+    /// Adds `not_toml`, the TOML errors in `text`, and removes other faults on the same lines,
+    /// because the parser only guesses the meaning of such lines.
     pub(crate) fn extend_by_broken_lines(&self, not_toml: Vec<Fault>, text: &str) {
         let found = self.take();
         let starts: BTreeSet<usize> =
@@ -69,7 +70,7 @@ impl FaultList {
     }
 }
 
-/// The number of the line of each of some places in `text`, in one pass over it.
+/// The line numbers of `places` in `text`, found in one pass.
 fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
     let (mut line, mut counted) = (0, 0);
     let numbered = places.into_iter().map(|place| {
@@ -81,10 +82,10 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
     sort::gathered(numbered)
 }
 
-/// Parses `text` as TOML as far as possible; adds faults to `faults`.
+/// Parses as much of `text` as possible as TOML, and adds faults to `faults`.
 ///
-/// A bracket that is never closed ends the document at its line. The parser takes the rest of the text for the
-/// content of the bracket, and finds a fault in almost every line of it.
+/// If a bracket is never closed, the document ends with the line of the bracket. The parser would
+/// take the rest of the text as the content of the bracket, and find a fault in almost every line.
 pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut tokens = Source::new(text).lex();
     let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
@@ -103,7 +104,7 @@ pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut seen = BTreeSet::new();
     for error in errors {
         let place = error.span().unwrap_or(0..0);
-        // The parser may fail at one place in several ways.
+        // The parser may report several errors at the same place.
         if seen.insert(place.start) {
             faults.push(Fault::new(place, "this is not valid TOML").label(error.message()));
         }
@@ -111,7 +112,8 @@ pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     table.into_inner()
 }
 
-/// The end of the line that opens the outermost bracket without an end, if a value of `text` has one.
+/// The end of the line with the outermost unclosed bracket; `None` if every bracket in the values
+/// of `text` is closed.
 fn end_of_unclosed_line(text: &str) -> Option<usize> {
     let mut open = Vec::new();
     let mut is_value = false;
@@ -146,11 +148,11 @@ pub struct Entry<'a, 't> {
     pub value: &'a DeValue<'t>,
     /// The bytes of the value in the text.
     pub value_place: Range<usize>,
-    /// The faults of its document.
+    /// The faults of the document that contains the entry.
     pub faults: &'a FaultList,
 }
 
-/// The entries of `table`, in the order of their keys. Their faults go to `faults`.
+/// The entries of `table`, ordered by key. Their faults go to `faults`.
 pub fn entries<'a, 't>(
     table: &'a DeTable<'t>,
     faults: &'a FaultList,
@@ -165,12 +167,13 @@ pub fn entries<'a, 't>(
 }
 
 impl<'a, 't> Entry<'a, 't> {
-    /// The entries of a table of the same document, in the order of their keys.
+    /// The entries of another table in the same document, ordered by key.
     pub fn entries(&self, table: &'a DeTable<'t>) -> impl Iterator<Item = Self> + use<'a, 't> {
         entries(table, self.faults)
     }
 
-    /// The value as a string; reports a fault where it is not one. `example` is a whole entry.
+    /// The value as a string; reports a fault if it is not one. `example` is a complete valid
+    /// entry.
     pub fn string(&self, example: &str) -> Option<&'a str> {
         let DeValue::String(string) = self.value else {
             self.faults.push(self.wrong_type("a string", example));
@@ -179,7 +182,7 @@ impl<'a, 't> Entry<'a, 't> {
         Some(string)
     }
 
-    /// The value as a table; faults as in [`Entry::string`].
+    /// The value as a table; reports a fault as [`Entry::string`] does.
     pub fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
         let DeValue::Table(table) = self.value else {
             self.faults.push(self.wrong_type("a table", example));
@@ -199,7 +202,8 @@ impl<'a, 't> Entry<'a, 't> {
         }
     }
 
-    /// The elements of the value, each as an entry with the same key; `None` if it is no list.
+    /// The elements of a list, each as an entry with the same key; `None` if the value is not a
+    /// list.
     pub fn list(&self) -> Option<Vec<Self>> {
         let DeValue::Array(list) = self.value else { return None };
         let entry = |value: &'a Spanned<DeValue<'t>>| Self {
@@ -212,7 +216,8 @@ impl<'a, 't> Entry<'a, 't> {
         Some(list.iter().map(entry).collect())
     }
 
-    /// The value as a list of two, each as in [`Entry::list`]; reports a fault where it is not one.
+    /// The value as a list of two elements, each as in [`Entry::list`]; reports a fault if it is
+    /// not one.
     pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
         let Some(list) = self.list() else {
             self.faults.push(self.wrong_type("a list of two", example));
@@ -225,12 +230,12 @@ impl<'a, 't> Entry<'a, 't> {
         })
     }
 
-    /// The entry `key` of `table`, which has this entry, too.
+    /// The entry `key` in `table`, the table that also contains this entry.
     pub(crate) fn beside(&self, table: &'a DeTable<'t>, key: &str) -> Option<Self> {
         self.entries(table).find(|entry| entry.key == key)
     }
 
-    /// Reports a fault of the value. The label and the help may be empty.
+    /// Reports a fault of the value, and returns `None`. The label and the help may be empty.
     pub fn reject<T>(
         &self,
         message: impl Into<String>,
@@ -241,7 +246,8 @@ impl<'a, 't> Entry<'a, 't> {
         None
     }
 
-    /// The fault that the value is not what is `wanted`; `example` is a whole entry.
+    /// The fault for a value of the wrong type. The message says that it must be `wanted`.
+    /// `example` is a complete valid entry.
     pub fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
         let found = match self.value {
             DeValue::String(_) => "a string",
@@ -257,7 +263,7 @@ impl<'a, 't> Entry<'a, 't> {
             .help(format!("write {example}"))
     }
 
-    /// The fault that the key is not one of `known`, the keys of `owner`.
+    /// The fault for a key that is not in `known`, the keys of `owner`.
     pub fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
         let message = format!("{owner} has no key {}", quoted(self.key));
         let help = nearest_or_all(self.key, known, "the nearest key is", "known keys:");

@@ -1,18 +1,19 @@
-//! Caves: a cellular automaton, tunnels that connect its caverns, and stalagmites.
+//! Caves: a cellular automaton, tunnels that connect the caverns, and stalagmites.
 //!
-//! Each cell is rock at random at first. Then, for several generations, each becomes what most of
-//! the cells around it are. A cell depends on cells as far away as there are generations, so a
-//! chunk is computed with that margin, and fits its neighbours without a seam.
+//! At first, each cell is rock at random. Then, for several generations, each cell takes the state
+//! of the majority around it. A cell depends on cells as far away as there are generations. A chunk
+//! is therefore computed with a margin of that width, and fits its neighbours without a seam.
 //!
-//! The caverns of the automaton are not connected. Each chunk has a hub with winding tunnels to a
-//! gate in each of its sides. The place of a gate depends on the position of the side only, so that
-//! all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be reached.
+//! The caverns of the automaton are not connected. Each chunk therefore has a hub, with winding
+//! tunnels to a gate in each of its sides. The place of a gate depends only on the position of its
+//! side, so all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be
+//! reached.
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain, every_cell};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
-/// The cave of a seed.
+/// The cave that belongs to a seed.
 #[derive(Clone, Debug)]
 pub(crate) struct Cave {
     pub(crate) seed: u64,
@@ -31,20 +32,21 @@ const POOL: u8 = b'~';
 
 /// The number of generations.
 const GENERATIONS: usize = 4;
-/// The cells along each side of the area from which a chunk is computed.
+/// The side in cells of the area from which a chunk is computed.
 const WITH_MARGIN: usize = CHUNK_SIDE + 2 * GENERATIONS;
 /// The percentage of cells that are rock at first.
 const ROCK_IN_100: u64 = 49;
 /// The percentage of cells that are dry.
 const DRY_IN_100: u64 = 60;
-/// A cell with this many cells of rock around it, itself included, becomes rock.
+/// A cell becomes rock if at least this many of the nine cells around it, itself included, are
+/// rock.
 const MOST_OF_NINE: usize = 5;
 
-/// The smallest area with a hub.
+/// The side in cells of the smallest area with a hub.
 const LEAST: usize = 6;
-/// The radius of the floor around a hub.
+/// The radius of the floor around a hub, in cells.
 const HUB_RADIUS: usize = 2;
-/// The steps that a tunnel may wind before it goes straight.
+/// The number of steps for which a tunnel may wind before it goes straight.
 const WINDING: usize = 160;
 
 type Place = (usize, usize);
@@ -92,7 +94,8 @@ impl Terrain for Cave {
 }
 
 impl Cave {
-    /// Random cells of the chunk and its margin, with this percentage, after all generations.
+    /// Random cells of the chunk and its margin with this initial percentage, after all
+    /// generations.
     fn settled(
         &self,
         area: &ChunkArea,
@@ -120,7 +123,8 @@ impl Cave {
         rock
     }
 
-    /// The gates in the north, west, south and east.
+    /// The gates in the north, west, south and east; `None` on a side without a connected
+    /// neighbour.
     fn gates(&self, area: &ChunkArea) -> [Option<Place>; 4] {
         let last = CHUNK_SIDE - 1;
         let (column, row) = (area.chunk.column, area.chunk.row);
@@ -139,7 +143,7 @@ impl Cave {
         ]
     }
 
-    /// Places stalagmites and things where the player can walk around them, but not on the hub.
+    /// Places stalagmites and things where the player can walk around them, except on the hub.
     fn furnish(&self, chunk: &mut Chunk, area: &ChunkArea, hub: Place) {
         let (column, row) = (area.chunk.column, area.chunk.row);
         let mut random = generator(self.seed, Purpose::Furniture, column, row);
@@ -167,7 +171,7 @@ fn is_floor_of(chunk: &Chunk, area: &ChunkArea, column: usize, row: usize) -> bo
     area.contains(column, row) && chunk.get(column, row) == FLOOR
 }
 
-/// Clears rock within `radius` of a cell in the area, except in the corners.
+/// Clears the rock within `radius` of a cell, inside the area and apart from the corners.
 fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): Place, radius: usize) {
     let near = |(x, y): Place| {
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
@@ -180,7 +184,7 @@ fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): Place, radiu
     }
 }
 
-/// Clears a winding tunnel from one cell of the area to another.
+/// Clears a winding tunnel between two cells of the area.
 fn carve_tunnel(
     chunk: &mut Chunk,
     area: &ChunkArea,
@@ -213,7 +217,7 @@ fn carve_tunnel(
     }
 }
 
-/// A position one step nearer to `to`.
+/// The coordinate after one step from `from` towards `to`.
 fn stepped(from: usize, to: usize) -> usize {
     if from < to { from + 1 } else { from - usize::from(from > to) }
 }

@@ -1,13 +1,13 @@
-//! Chunks: squares in which a level is generated.
+//! Chunks: the squares in which a level is generated.
 //!
-//! A chunk is a function of the seed and its own position, so that the level does not depend on the
-//! player's way. Features that two neighbours share, such as a passage between them, are a function
-//! of the position of their common side. Rejected: a function of single cells. A cave of several
-//! generations would be computed again for every cell, and structures larger than a cell, such as
-//! rooms or spanning trees, would not be possible.
+//! A chunk is a function of the seed and its own position, so the level does not depend on the
+//! player's path. A feature that two neighbours share, such as a passage between them, is a
+//! function of the position of their common side. Rejected: a function of single cells. A cave with
+//! several generations would be computed again for every cell, and structures larger than a cell,
+//! such as rooms or spanning trees, would be impossible.
 //!
-//! Positions wrap around: after the last cell that a number can name comes the first one, so that
-//! no arithmetic on them overflows.
+//! Positions wrap around: the first cell follows the last cell that a number can represent.
+//! Arithmetic on positions therefore never overflows.
 
 use std::fmt;
 use std::iter;
@@ -15,26 +15,26 @@ use std::ops::Range;
 
 use crate::world::{Cell, Flood};
 
-/// The cells along each side of a chunk.
+/// The number of cells along each side of a chunk.
 pub const CHUNK_SIDE: usize = 32;
 
-/// A cell of a level without edges: columns from the west, rows from the north. The level's first
-/// corner is at `(0, 0)`.
+/// A cell of an endless level: its column from the west and its row from the north. The level's
+/// first corner is at `(0, 0)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Site {
-    /// The cells to the east of the first corner.
+    /// The number of cells to the east of the first corner.
     pub column: i64,
-    /// The cells to the south of the first corner.
+    /// The number of cells to the south of the first corner.
     pub row: i64,
 }
 
-/// The position of a chunk: columns and rows of chunks, from the one whose north-west cell is the
-/// first corner.
+/// The position of a chunk in columns and rows of chunks. The north-west cell of chunk `(0, 0)` is
+/// the level's first corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct ChunkIndex {
-    /// The chunks to the east of the first one.
+    /// The number of chunks to the east of the first one.
     pub column: i64,
-    /// The chunks to the south of the first one.
+    /// The number of chunks to the south of the first one.
     pub row: i64,
 }
 
@@ -53,13 +53,13 @@ impl ChunkIndex {
     /// The chunk at an offset to the east and to the south.
     #[must_use]
     pub fn offset(self, columns: i64, rows: i64) -> Self {
-        // Indices wrap where cells do.
+        // Indices wrap at the same place as cells.
         const SPARE_BITS: u32 = CHUNK_SIDE.trailing_zeros();
         let wrapped = |index: i64, by: i64| (index.wrapping_add(by) << SPARE_BITS) >> SPARE_BITS;
         Self { column: wrapped(self.column, columns), row: wrapped(self.row, rows) }
     }
 
-    /// A cell of the chunk, at an offset from its north-west cell.
+    /// A cell, at an offset from the north-west cell of the chunk.
     pub fn site(self, column: i64, row: i64) -> Site {
         const SIDE: i64 = CHUNK_SIDE as i64;
         let place = |index: i64, by: i64| index.wrapping_mul(SIDE).wrapping_add(by);
@@ -70,31 +70,32 @@ impl ChunkIndex {
 /// The size of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Extent {
-    /// No end.
+    /// A level without an end.
     #[default]
     Endless,
-    /// This many cells to the east and south of the first corner. The outermost are wall.
+    /// This number of cells to the east and south of the first corner. The outermost cells are
+    /// wall.
     Cells {
-        /// At least [`Extent::LEAST`].
+        /// The width, at least [`Extent::LEAST`].
         columns: u32,
-        /// At least [`Extent::LEAST`].
+        /// The height, at least [`Extent::LEAST`].
         rows: u32,
     },
 }
 
 impl Extent {
-    /// The least number of cells along a side.
+    /// The minimum number of cells along a side.
     pub const LEAST: u32 = 8;
-    /// The largest number of cells along a side.
+    /// The maximum number of cells along a side.
     pub const MOST: u32 = 1_000_000_000;
 
-    /// A level of this size. `None` if a side is out of range.
+    /// A level of this size; `None` if a side is out of range.
     pub fn new(columns: u32, rows: u32) -> Option<Self> {
         let is_in_range = |side: u32| (Self::LEAST..=Self::MOST).contains(&side);
         (is_in_range(columns) && is_in_range(rows)).then_some(Self::Cells { columns, rows })
     }
 
-    /// The part of the level in a chunk.
+    /// The part of a chunk that is inside the level.
     pub fn area(self, chunk: ChunkIndex) -> ChunkArea {
         let (columns, rows) = match self {
             Self::Endless => (0..CHUNK_SIDE, 0..CHUNK_SIDE),
@@ -106,7 +107,8 @@ impl Extent {
     }
 }
 
-/// The cells of the chunk `index` that are inside the outermost wall around `side` cells.
+/// The local coordinates of the cells of chunk `index` that are inside the outermost wall of a
+/// level with `side` cells.
 fn inside(index: i64, side: u32) -> Range<usize> {
     const SIDE: i64 = CHUNK_SIDE as i64;
     let first = index.saturating_mul(SIDE);
@@ -115,15 +117,15 @@ fn inside(index: i64, side: u32) -> Range<usize> {
     start.min(end)..end
 }
 
-/// The part of a chunk that may be filled by a terrain.
+/// The part of a chunk that a terrain may fill.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChunkArea {
     extent: Extent,
     /// The chunk.
     pub chunk: ChunkIndex,
-    /// Its columns; none if the chunk is outside the level.
+    /// The columns of the area; empty if the chunk is outside the level.
     pub columns: Range<usize>,
-    /// Its rows; none if the chunk is outside the level.
+    /// The rows of the area; empty if the chunk is outside the level.
     pub rows: Range<usize>,
 }
 
@@ -134,52 +136,53 @@ impl ChunkArea {
         self.extent.area(self.chunk.offset(columns, rows))
     }
 
-    /// Whether the area has no cells: it is outside the level.
+    /// Returns true if the area has no cells, because the chunk is outside the level.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
     }
 
-    /// Whether the area has at least `side` columns and rows.
+    /// Returns true if the area has at least `side` columns and rows.
     pub fn holds(&self, side: usize) -> bool {
         self.columns.len() >= side && self.rows.len() >= side
     }
 
-    /// Whether a cell is in the area.
+    /// Returns true if the cell is in the area.
     pub fn contains(&self, column: usize, row: usize) -> bool {
         self.columns.contains(&column) && self.rows.contains(&row)
     }
 }
 
-/// The contents of a level, as a function of the position.
+/// The content of a level as a function of the position.
 ///
-/// The same area always has the same chunk, whatever was generated before.
+/// The same area always produces the same chunk, whatever was generated before.
 pub trait Terrain: fmt::Debug + Send + Sync {
-    /// The seed for decisions outside the terrain, such as the place of the exit.
+    /// The seed for decisions outside the terrain, such as the position of the exit.
     fn seed(&self) -> u64;
 
-    /// A map file that defines the characters of the chunks: its grid has each of them at least
-    /// once. It has no keys; its walls include `#`; it has an exit. Patterns of floors and ceilings
-    /// must have a scale that is a power of two up to 16: others would jump when the window moves.
+    /// A map file that defines the characters in the chunks. Its grid contains each of them at
+    /// least once. The map has no keys, `#` is one of its walls, and it has an exit. The scale of
+    /// floor and ceiling patterns must be a power of two up to 16, because any other pattern would
+    /// jump when the window moves.
     fn legend(&self) -> String;
 
-    /// The cells of a chunk. Cells outside `area` do not matter: they become wall.
+    /// The cells of a chunk. Cells outside `area` are ignored and become wall.
     ///
-    /// Doors stand between solid cells, with open floor before and behind them. Chunks whose areas
-    /// have a [hub](Terrain::hub) are connected with their neighbours that have one.
+    /// Doors stand between solid cells, with open floor on both sides. Two neighbouring chunks are
+    /// connected if both areas have a [hub](Terrain::hub).
     fn chunk(&self, area: &ChunkArea) -> Chunk;
 
     /// An open cell of the chunk from which the player can reach the neighbours; `None` if the area
     /// is too small to have one.
     fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)>;
 
-    /// The cell of the chunk at which the player starts by default: its corner, unless the terrain
-    /// knows a better one. If there is no way out of that cell, the hub is used.
+    /// The cell of the chunk at which the player starts by default. This is the corner, unless the
+    /// terrain provides a better cell. If there is no way out of that cell, the hub is used.
     fn start(&self, _plot: &ChunkArea) -> (usize, usize) {
         (0, 0)
     }
 }
 
-/// The cells of a chunk, as the characters of a map.
+/// The cells of a chunk, as map characters.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Chunk {
     cells: [[u8; CHUNK_SIDE]; CHUNK_SIDE],
@@ -194,7 +197,7 @@ impl Chunk {
     /// The character of a cell.
     ///
     /// # Panics
-    /// If the cell is not in the chunk.
+    /// If the cell is outside the chunk.
     pub fn get(&self, column: usize, row: usize) -> u8 {
         self.cells[row][column]
     }
@@ -202,12 +205,12 @@ impl Chunk {
     /// Sets the character of a cell.
     ///
     /// # Panics
-    /// If the cell is not in the chunk.
+    /// If the cell is outside the chunk.
     pub fn set(&mut self, column: usize, row: usize, character: u8) {
         self.cells[row][column] = character;
     }
 
-    /// The cells of a row from the west.
+    /// The cells of a row, from west to east.
     ///
     /// # Panics
     /// If there is no such row.
@@ -215,7 +218,7 @@ impl Chunk {
         &self.cells[row]
     }
 
-    /// Fills what is not in `area` with wall.
+    /// Fills every cell outside `area` with `character`.
     pub(crate) fn clip(&mut self, area: &ChunkArea, character: u8) {
         for (column, row) in every_cell().filter(|&(column, row)| !area.contains(column, row)) {
             self.set(column, row, character);
@@ -223,7 +226,7 @@ impl Chunk {
     }
 
     /// The cells that can be reached from `start` inside the chunk through characters for which
-    /// `is_open` is true, in the order of their distance.
+    /// `is_open` returns true, in order of distance.
     pub(crate) fn reachable(
         &self,
         start: (usize, usize),
@@ -245,7 +248,7 @@ pub(crate) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
     (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
 }
 
-/// The rows as text.
+/// Formats the rows as text.
 impl fmt::Display for Chunk {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.cells.iter().try_for_each(|row| writeln!(f, "{}", String::from_utf8_lossy(row)))

@@ -1,23 +1,24 @@
-//! The descent: floors with guards, treasure and an exit, one below the other without an end.
+//! The descent: an endless series of floors with guards, treasure and an exit.
 //!
-//! A floor is a whole [`World`]: a level of one of the generators, of a size that grows with the depth,
-//! in which things and guards are placed. Rules:
+//! A floor is a complete [`World`]: a level from one of the generators, in which things and guards
+//! are placed. Its size grows with the depth. Rules:
 //!
-//! - All cells that matter are reachable from the start on foot, through doors without locks: the exit,
-//!   the treasure, the guards and their waypoints.
+//! - The exit, the treasure, the guards and their waypoints can all be reached from the start on
+//!   foot, through doors without locks.
 //! - The exit is among the cells farthest from the start, and opens for a third of the treasure.
-//! - Guards begin at least [`GUARD_DISTANCE`](population::GUARD_DISTANCE) cells from the start and out of its sight. Their number,
-//!   and the kinds among them, grow with the depth. Half as many again are there from normal
-//!   difficulty on, and as many more on hard.
-//! - At most [`MOST_OPEN`] percent of an office are open: without an opaque cell around them. A
-//!   hall or a garden as large as the floor, as every fourth small office would be, has no corners
-//!   to hide behind. Caves are open by nature, up to 70 percent, and mazes hardly at all.
-//! - Deeper floors are darker, so that lamps and lit rooms matter more.
-//! - Nothing but the seed and the number of the floor decides: nothing is carried from floor to floor.
+//! - Guards begin at least [`GUARD_DISTANCE`](population::GUARD_DISTANCE) cells from the start and
+//!   out of sight of it. Their number and the variety of their kinds grow with the depth. Normal
+//!   difficulty adds half the number of guards on easy, and hard adds the same number again.
+//! - A reachable cell is open if neither it nor any of its neighbours is opaque. At most
+//!   [`MOST_OPEN`] percent of an office are open. Every fourth small office would otherwise be a
+//!   hall or a garden as large as the floor, without corners to hide behind. Caves are naturally
+//!   open, up to 70 percent, and mazes hardly at all.
+//! - Deeper floors are darker, so lamps and lit rooms matter more.
+//! - A floor depends only on the seed and its number. Nothing is carried from floor to floor.
 //!
-//! Rejected: a window into a level without an end, as the generators have, since guards outside it would
-//! have to be simulated or forgotten; and a map text for each floor, which would need a character for
-//! each waypoint.
+//! Rejected: a window into an endless level, as the generators use. Guards outside the window would
+//! have to be simulated or forgotten. Also rejected: a map text for each floor. It would need a
+//! character for each waypoint.
 
 mod ground;
 mod population;
@@ -36,23 +37,23 @@ use crate::world::{Mission, Start, World};
 use ground::Ground;
 use population::Items;
 
-/// The columns and rows of the first floor, of each further one, and of the largest.
+/// The columns and rows: of the first floor, added by each further floor, and of the largest floor.
 const COLUMNS: (u32, u32, u32) = (24, 4, 64);
 const ROWS: (u32, u32, u32) = (24, 3, 48);
-/// One of this many cells of a floor is reachable, at least.
+/// At least one in this many cells of a floor must be reachable.
 const REACHABLE: u32 = 6;
-/// The share of open cells in an office, in percent of the reachable ones. Offices that are divided
-/// into rooms have 9 to 35.
+/// The maximum percentage of open cells among the reachable cells of an office. Offices that are
+/// divided into rooms have 9 to 35.
 const MOST_OPEN: usize = 40;
-/// The levels that are tried before the last one is taken as it is.
+/// The number of attempts after which a floor is used as it is.
 const ATTEMPTS: i64 = 16;
-/// The share of light that each floor loses, and the floor that is darkest.
+/// The fraction of light that each floor loses, and the number of the darkest floor.
 const DIMMING: f64 = 0.05;
 const DARKEST: u32 = 10;
-/// One of this many walls between two passages is opened.
+/// One in this many walls between two passages is opened.
 const OPENED: usize = 7;
 
-/// A floor of the descent of `seed`. The first one is 1; 0 is the same.
+/// A floor of the descent with this seed. The first floor is 1, and 0 means the same.
 ///
 /// ```
 /// use cellcaster::generate::descent;
@@ -64,7 +65,7 @@ const OPENED: usize = 7;
 /// ```
 ///
 /// # Errors
-/// None in practice: the tests make floors of all generators.
+/// None in practice: the tests create floors with all generators.
 pub fn descent(seed: u64, floor: u32) -> Result<World, Faults> {
     let floor = floor.max(1);
     let (columns, rows) = size(floor);
@@ -82,17 +83,17 @@ pub fn descent(seed: u64, floor: u32) -> Result<World, Faults> {
     }
 }
 
-/// The floors of the descent of `seed` below `floor`, without an end.
+/// All floors below `floor` in the descent with this seed.
 pub fn floors_below(seed: u64, floor: u32) -> impl Iterator<Item = World> {
     (floor.saturating_add(1)..).map_while(move |number| descent(seed, number).ok())
 }
 
-/// The seed of the descent of a day, such as 20261122: all players have the same one.
+/// The seed of the daily descent, such as 20261122. It is the same for all players.
 pub fn daily_seed(year: u32, month: u32, day: u32) -> u32 {
     year * 10_000 + month * 100 + day
 }
 
-/// A level before anything is placed in it.
+/// A level before things and guards are placed in it.
 struct Draft {
     floor: u32,
     generator: Generator,
@@ -102,7 +103,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The level of one attempt. `None` if it has no start.
+    /// The level of one attempt; `None` if it has no start.
     fn new(seed: u64, floor: u32, attempt: i64) -> Result<Option<Self>, Faults> {
         let kind = kind(seed, floor);
         let own_seed = hash(seed, Purpose::Floor, floor.into(), attempt);
@@ -121,7 +122,8 @@ impl Draft {
         Ok(Some(Self { floor, generator: kind, level, ground, random }))
     }
 
-    /// Whether at least that many cells are reachable, and not too many of an office are open.
+    /// Returns true if at least `least` cells are reachable and, in an office, not too many of them
+    /// are open.
     fn is_playable(&self, least: usize) -> bool {
         let reachable = self.ground.reachable().len();
         let is_divided = self.generator != Generator::Office
@@ -129,7 +131,7 @@ impl Draft {
         reachable >= least && is_divided
     }
 
-    /// The world: with an exit, items and guards.
+    /// The world with its exit, items and guards.
     fn finish(mut self) -> Result<World, Faults> {
         let tileset = self.level.tileset();
         let start = self.ground.start();
@@ -152,12 +154,12 @@ impl Draft {
     }
 }
 
-/// The par time in seconds: twice the way at a walk, and a look at each treasure.
+/// The par time in seconds: twice the time to walk to the exit, and a stop at each treasure.
 fn par(way: u32, treasures: usize) -> u32 {
     30 + 2 * way / 3 + 6 * treasures as u32
 }
 
-/// The generator of a floor: each in turn, in an order that the seed decides.
+/// The generator of a floor. The generators take turns, in an order that the seed decides.
 fn kind(seed: u64, floor: u32) -> Generator {
     let mut order = Generator::ALL;
     let mut random = generator(seed, Purpose::Floor, 0, 0);
@@ -166,7 +168,7 @@ fn kind(seed: u64, floor: u32) -> Generator {
     order[(floor % 3) as usize]
 }
 
-/// The columns and rows of a floor.
+/// The number of columns and rows of a floor.
 fn size(floor: u32) -> (NonZeroU32, NonZeroU32) {
     let side = |(first, more, most): (u32, u32, u32)| {
         let side = first.saturating_add(more.saturating_mul(floor - 1)).min(most);
@@ -175,8 +177,8 @@ fn size(floor: u32) -> (NonZeroU32, NonZeroU32) {
     (side(COLUMNS), side(ROWS))
 }
 
-/// Opens walls between the passages of a maze: a player who meets a guard in a passage needs another
-/// way.
+/// Opens some walls between the passages of a maze, because a player who meets a guard in a passage
+/// needs another way.
 fn open_loops(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64) {
     for row in 1..cells.len().saturating_sub(1) {
         for column in 1..cells[row].len().saturating_sub(1) {
@@ -202,7 +204,7 @@ fn open_loops(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64)
     }
 }
 
-/// The terrain of a floor: a generator's, with another title and less light.
+/// The terrain of a floor: a generator's terrain with another title and less light.
 #[derive(Debug)]
 struct FloorTerrain {
     terrain: Arc<dyn Terrain>,
@@ -214,7 +216,7 @@ impl FloorTerrain {
         Arc::new(Self { terrain, floor })
     }
 
-    /// A line of the legend as the floor has it.
+    /// A line of the legend, changed for this floor.
     fn line(&self, line: &str) -> String {
         match line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) {
             Some(("title", _)) => format!("title = \"Floor {}\"\n", self.floor),

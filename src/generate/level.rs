@@ -32,10 +32,10 @@ pub struct Level {
 }
 
 impl Level {
-    /// The level that `terrain` makes of `extent`. A level with an end has an exit.
+    /// The level that `terrain` fills within `extent`. A level that is not endless has an exit.
     ///
     /// # Errors
-    /// All faults of the terrain's legend.
+    /// All faults in the terrain's legend.
     pub fn new(terrain: Arc<dyn Terrain>, extent: Extent) -> Result<Self, Faults> {
         let tileset = Arc::new(Tileset::of(&terrain.legend())?);
         let endless = Self { terrain, tileset, extent, exit: None };
@@ -48,27 +48,28 @@ impl Level {
         self.extent
     }
 
-    /// The start, in the first chunk. `None` if the terrain leaves nowhere to stand there.
+    /// The default start, in the first chunk; `None` if there is no place to stand in that chunk.
     pub fn start(&self) -> Option<Site> {
         let home = ChunkIndex::default();
         let (column, row) = self.terrain.start(&self.extent.area(home));
         self.start_near(home.site(column as i64, row as i64))
     }
 
-    /// The start for a player who wants to start at `site`: that cell if there is a way out of it,
-    /// or else the hub of its chunk. `None` if the chunk has none, as outside the level.
+    /// The start for a player who wants to begin at `site`. This is `site` if there is a way out of
+    /// it, and the hub of its chunk otherwise. `None` if the chunk has no hub, which is the case
+    /// outside the level.
     pub fn start_near(&self, site: Site) -> Option<Site> {
         let (index, place) = site.chunk();
         let hub = self.terrain.hub(&self.extent.area(index))?;
         let chunk = self.chunk(index);
-        // Doors are closed at first.
+        // Doors are closed at the start.
         let is_connected = self.tileset.is_floor(chunk.get(place.0, place.1))
             && self.walk(&chunk, hub).contains(&place);
         let (column, row) = if is_connected { place } else { hub };
         Some(index.site(column as i64, row as i64))
     }
 
-    /// The cell of the exit; `None` for a level without an end.
+    /// The cell of the exit; `None` for an endless level.
     pub fn exit(&self) -> Option<Site> {
         self.exit
     }
@@ -89,7 +90,7 @@ impl Level {
         &self.tileset
     }
 
-    /// The characters of a level with an end, row by row, without its exit.
+    /// The characters of a level that is not endless, row by row, without its exit.
     pub(crate) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
         let (columns, rows) = (columns.get() as usize, rows.get() as usize);
         let mut cells = vec![vec![ROCK; columns]; rows];
@@ -117,12 +118,12 @@ impl Level {
         chunk
     }
 
-    /// The cells of a chunk that can be reached from `start` inside it, the nearest first.
+    /// The cells of a chunk that can be reached from `start` inside the chunk, nearest first.
     fn walk(&self, chunk: &Chunk, start: (usize, usize)) -> Vec<(usize, usize)> {
         chunk.reachable(start, |character| self.tileset.is_walkable(character))
     }
 
-    /// A cell far from the start, as far from the hub of its chunk as possible.
+    /// A cell far from the start, and as far as possible from the hub of its own chunk.
     fn place_for_exit(&self) -> Option<Site> {
         let index = self.chunk_for_exit()?;
         let hub = self.terrain.hub(&self.extent.area(index))?;
@@ -135,7 +136,7 @@ impl Level {
         Some(index.site(column as i64, row as i64))
     }
 
-    /// A chunk with a hub at the eastern or southern end.
+    /// A chunk with a hub near the eastern or southern edge of the level.
     fn chunk_for_exit(&self) -> Option<ChunkIndex> {
         let Extent::Cells { columns, rows } = self.extent else { return None };
         let mut random = generator(self.terrain.seed(), Purpose::Exit, 0, 0);
@@ -159,7 +160,7 @@ impl Level {
     }
 }
 
-/// Two levels are equal if they come from one call of [`Level::new`].
+/// Two levels are equal if they come from the same call of [`Level::new`].
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.tileset, &other.tileset)
@@ -169,7 +170,7 @@ impl PartialEq for Level {
 /// A built-in generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Generator {
-    /// Passages one cell wide, and some halls.
+    /// Passages one cell wide, with some halls.
     Maze,
     /// Caverns and tunnels.
     Cave,
@@ -181,7 +182,7 @@ impl Generator {
     /// All generators.
     pub const ALL: [Self; 3] = [Self::Maze, Self::Cave, Self::Office];
 
-    /// The name on the command line.
+    /// The name of the generator on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Maze => "maze",
@@ -190,12 +191,12 @@ impl Generator {
         }
     }
 
-    /// The generator with that name.
+    /// The generator called `name`.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|generator| generator.name() == name)
     }
 
-    /// The terrain of a seed.
+    /// The generator's terrain for a seed.
     pub fn terrain(self, seed: u64) -> Arc<dyn Terrain> {
         match self {
             Self::Maze => Arc::new(Maze { seed }),
@@ -204,7 +205,7 @@ impl Generator {
         }
     }
 
-    /// The level of that extent and a seed.
+    /// The generator's level with this seed and extent.
     ///
     /// # Errors
     /// None in practice: the tests read the legend of every generator.

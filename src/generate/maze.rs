@@ -1,33 +1,34 @@
-//! Mazes: passages one cell wide between walls one cell thick, halls, and torches.
+//! Mazes: passages one cell wide between walls one cell thick, with halls and torches.
 //!
-//! Cells with an odd column and an odd row in the chunk are nodes. The cell between two nodes is
-//! open or wall. Each chunk has a random spanning tree of its nodes (depth-first search with
-//! backtracking), and passages to its northern and western neighbours. So all nodes are connected
-//! through the chunks between them, and the passages between chunks close loops. Rejected: a
-//! spanning tree of the whole level. A local rule for one gives a comb, with long parallel passages.
+//! The cells with an odd column and an odd row in the chunk are nodes. The cell between two nodes
+//! is open or wall. Each chunk has a random spanning tree of its nodes, found by depth-first search
+//! with backtracking, and passages to its northern and western neighbours. All nodes are therefore
+//! connected through the chunks between them, and the passages between chunks close loops.
+//! Rejected: a spanning tree of the whole level. A local rule for such a tree produces a comb with
+//! long parallel passages.
 //!
-//! No straight view crosses two borders of chunks: passages are in the first half of every other
-//! border, and in the second half of the ones between.
+//! No straight line of sight crosses two chunk borders. The passages are in the first half of every
+//! other border, and in the second half of the borders between.
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
-/// The maze of a seed.
+/// The maze that belongs to a seed.
 #[derive(Clone, Debug)]
 pub(crate) struct Maze {
     pub(crate) seed: u64,
 }
 
-/// The contents of a district.
+/// The look of a district.
 #[derive(Clone, Copy, Debug)]
 struct District {
     wall: u8,
     floor: u8,
-    /// Things at dead ends.
+    /// The things at dead ends.
     torch: u8,
     bones: u8,
-    /// Things in the middle of a hall, and beside it.
+    /// The thing in the middle of a hall. A torch may take its place.
     landmark: u8,
 }
 
@@ -44,7 +45,7 @@ const DISTRICTS: [District; 5] = [
     District { wall: b'B', ..DUNGEON },
     District { wall: b'M', ..DUNGEON },
 ];
-/// The chunks along each side of a district, as a power of two.
+/// The number of chunks along each side of a district, as a power of two.
 const DISTRICT_BITS: u32 = 1;
 /// The number of passages to each neighbour.
 const PASSAGES: usize = 2;
@@ -105,27 +106,27 @@ impl Maze {
     }
 }
 
-/// One of `nodes` nodes along a border: in the first half if `border` is even, in the second half
-/// if it is odd.
+/// Picks one of `nodes` nodes along a border. The node is in the first half if `border` is even,
+/// and in the second half if it is odd.
 fn in_half(nodes: usize, border: i64, random: &mut SplitMix64) -> usize {
     let first = nodes / 2;
     if border % 2 == 0 { random.below(first.max(1)) } else { first + random.below(nodes - first) }
 }
 
-/// A chunk in the making.
+/// A chunk under construction.
 struct Carving {
     chunk: Chunk,
     district: District,
-    /// The number of nodes from west to east and from north to south, both above 0.
+    /// The number of nodes from west to east and from north to south. Both are above 0.
     nodes: (usize, usize),
     random: SplitMix64,
 }
 
-/// The column and row of a node among the nodes of its chunk.
+/// The column and the row of a node among the nodes of its chunk.
 type Node = (usize, usize);
 
 impl Carving {
-    /// Connects all nodes with the first one by depth-first search.
+    /// Connects all nodes with the first one, by depth-first search.
     fn grow_tree(&mut self) {
         let mut way = vec![(0, 0)];
         self.carve((1, 1));
@@ -165,7 +166,8 @@ impl Carving {
         }
     }
 
-    /// Clears halls of three by two or three nodes, with a statue or a torch.
+    /// Clears halls of three by two or three by three nodes, each with a landmark or a torch in the
+    /// middle.
     fn carve_halls(&mut self) {
         for _ in 0..2 {
             let (width, height) = (3, 2 + self.random.below(2));

@@ -1,12 +1,13 @@
 //! Offices: corridors with fire doors, rooms, store rooms, halls of desks, and gardens.
 //!
-//! Each chunk has a corridor along its northern and its western side, with a door to the next chunk
-//! at its end. So all corridors are connected, and no view goes beyond the doors. The rest of the
-//! chunk is a [`Block`], with doors to the corridors.
+//! Each chunk has corridors along its northern and western sides, with a door to the next chunk at
+//! the end of each. All corridors are therefore connected, and no view extends beyond the doors.
+//! The rest of the chunk is a [`Block`] with doors to the corridors.
 //!
-//! Walls are in odd columns and rows, doors in even ones, and furniture where both are odd. So no
-//! wall ends at a door, each door stands between walls, and the even columns and rows connect all
-//! cells of a room: furniture is never in the way, and no check is necessary.
+//! Walls are in odd columns and rows, doors in even ones, and furniture only in cells whose column
+//! and row are both odd. No wall therefore ends at a door, and each door stands between walls. The
+//! even columns and rows connect all cells of a room, so furniture never blocks the way, and no
+//! check is needed.
 
 use std::iter;
 use std::ops::Range;
@@ -15,7 +16,7 @@ use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain, every_cell};
 use super::purpose::{Purpose, generator};
 use crate::rng::SplitMix64;
 
-/// The office of a seed.
+/// The office that belongs to a seed.
 #[derive(Clone, Debug)]
 pub(crate) struct Office {
     pub(crate) seed: u64,
@@ -26,12 +27,12 @@ const CORRIDOR: u8 = b',';
 const CORRIDOR_LAMP: u8 = b'L';
 const FIRE_DOOR: u8 = b'=';
 
-/// The floors of rooms, halls and gardens; store rooms are dark.
+/// The floors of rooms, halls and gardens. Store rooms are left out because they are dark.
 const ROOM_FLOORS: [u8; 3] = [b'.', b'_', b'"'];
 
-/// The place and the width of the corridors.
+/// The position and width of the corridors, along both axes.
 const CORRIDORS: Range<usize> = 1..3;
-/// The cells between two lamps of a corridor.
+/// The distance between two lamps in a corridor, in cells.
 const LAMP_SPACING: usize = 7;
 
 impl Terrain for Office {
@@ -63,13 +64,13 @@ impl Terrain for Office {
         area.contains(corner.0, corner.1).then_some(corner)
     }
 
-    /// In a room, at the one of some cells with the farthest view.
+    /// A cell in a room: the one with the farthest view among several random cells.
     fn start(&self, area: &ChunkArea) -> (usize, usize) {
         /// The number of cells that are compared.
         const PLACES: usize = 6;
         let chunk = self.chunk(area);
         let is_in_room = |&(column, row): &(usize, usize)| {
-            // Furniture is never here or beside it.
+            // There is never furniture in these cells, or beside them along the grid.
             column % 2 == 0 && row % 2 == 0 && ROOM_FLOORS.contains(&chunk.get(column, row))
         };
         let rooms: Vec<_> = every_cell().filter(is_in_room).collect();
@@ -94,7 +95,8 @@ impl Office {
     }
 }
 
-/// The number of cells of floor in a row from a position along the grid.
+/// The number of floor cells in a row from a position, in the direction along the grid with the
+/// most.
 fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
     let is_floor = |&(column, row): &(usize, usize)| {
         column < CHUNK_SIDE && row < CHUNK_SIDE && ROOM_FLOORS.contains(&chunk.get(column, row))
@@ -131,37 +133,37 @@ fn carve_corridors(chunk: &mut Chunk, area: &ChunkArea) {
 /// The area between the corridors of a chunk.
 #[derive(Clone, Debug)]
 struct Block {
-    /// Its inside, from west to east, between walls in odd columns. The last wall may be in any
+    /// The inside from west to east, between walls in odd columns. The last wall may be in any
     /// column.
     columns: Range<usize>,
-    /// The same from north to south.
+    /// The inside from north to south, between walls in odd rows. The last wall may be in any row.
     rows: Range<usize>,
 }
 
 const GLASS: u8 = b'G';
 const DOOR: u8 = b'+';
 
-/// The least inside of a room along each side.
+/// The minimum inside length of a room along each side.
 const LEAST_ROOM: usize = 3;
-/// Longer or wider areas are always divided.
+/// The length above which an area is always divided.
 const LONGEST_ROOM: usize = 11;
-/// The columns and rows between pillars of a hall.
+/// The number of columns or rows from one pillar of a hall to the next.
 const PILLAR_SPACING: usize = 6;
 
 /// The furniture of a room.
 #[derive(Clone, Copy, Debug)]
 struct Furniture {
     floor: u8,
-    /// The furniture, and how many of [`PLACES`] have it.
+    /// Each piece of furniture, and how many of [`PLACES`] contain it.
     pieces: &'static [(u8, usize)],
-    /// A lamp, which hangs from the ceiling where the player can walk.
+    /// A lamp that hangs from the ceiling over a walkable cell.
     lamp: Option<u8>,
-    /// The pillars of a hall.
+    /// The pillar used in a hall.
     pillar: u8,
 }
 
 const PLACES: usize = 32;
-/// The cells between lamps.
+/// The distance between two lamps in a room, in cells.
 const ROOM_LAMP_SPACING: usize = 8;
 
 const CARPETED: Furniture =
@@ -175,14 +177,14 @@ const GARDEN: Furniture =
     Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
 
 impl Block {
-    /// The block of an area whose corridors end before `first`, if there is room for it.
+    /// The block of an area whose corridors end before `first`; `None` if there is no room for it.
     fn of(area: &ChunkArea, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
         let block = Self { columns: inside(&area.columns), rows: inside(&area.rows) };
         (block.columns.len() >= LEAST_ROOM && block.rows.len() >= LEAST_ROOM).then_some(block)
     }
 
-    /// Builds the block.
+    /// Builds the block into `chunk`.
     fn build(self, chunk: &mut Chunk, random: SplitMix64) {
         let mut building = Building { chunk, random };
         match building.random.below(8) {
@@ -193,7 +195,7 @@ impl Block {
         building.open_to_corridors(&self);
     }
 
-    /// The columns where a wall from north to south could divide it.
+    /// The columns in which a north-south wall could divide the block.
     fn cuts_across(&self) -> Vec<usize> {
         cuts(&self.columns)
     }
@@ -215,7 +217,7 @@ struct Building<'c> {
 }
 
 impl Building<'_> {
-    /// One room of any size, with pillars.
+    /// Builds one room of any size, with pillars.
     fn hall(&mut self, block: &Block, furniture: Furniture) {
         self.furnish(block, furniture);
         let is_pillars = |place: usize| place % PILLAR_SPACING == 1;
@@ -226,7 +228,7 @@ impl Building<'_> {
         }
     }
 
-    /// Divides large areas into two, with a door between them, and furnishes the others.
+    /// Divides large areas in two with a door between them, and furnishes the small ones.
     fn divide(&mut self, block: Block) {
         let (across, down) = (block.cuts_across(), block.cuts_down());
         let longest = block.columns.len().max(block.rows.len());
@@ -268,7 +270,8 @@ impl Building<'_> {
         }
     }
 
-    /// Places doors into a wall, beginning where it may have one, and glass elsewhere.
+    /// Places doors into every other cell of a wall, beginning with the first, and glass in some of
+    /// the other such cells.
     fn open_wall(&mut self, wall: &[(usize, usize)], doors: usize) {
         let openings: Vec<_> = wall.iter().copied().step_by(2).collect();
         if self.random.one_in(2) {
@@ -302,7 +305,7 @@ impl Building<'_> {
         }
     }
 
-    /// One of the pieces, or none.
+    /// A random piece of furniture, or none.
     fn piece(&mut self, furniture: Furniture) -> Option<u8> {
         let mut number = self.random.below(PLACES);
         furniture.pieces.iter().find_map(|&(character, count)| {
@@ -313,7 +316,7 @@ impl Building<'_> {
     }
 }
 
-/// The surfaces of an office, as values of a map file.
+/// The surfaces of an office, as values in a map file.
 #[derive(Clone, Copy, Debug)]
 struct Decor {
     wall: &'static str,
@@ -362,12 +365,12 @@ const DECORS: [Decor; 5] = [
 ];
 
 impl Decor {
-    /// The decor of a seed. The next seed has another one.
+    /// The decor that belongs to a seed. The next seed has a different one.
     fn of(seed: u64) -> Self {
         DECORS[(seed % DECORS.len() as u64) as usize]
     }
 
-    /// The map file `legend` with this decor: keys above its grid, and tiles below it.
+    /// The map file `legend` with this decor: its keys above the grid, and its tiles below.
     fn legend(self, legend: &str) -> String {
         let Self { wall, carpet, corridor, ceiling, fog } = self;
         format!(

@@ -1,11 +1,13 @@
-//! Random decisions about a level: a function of its seed, of the purpose of the decision, and of a place.
+//! Random decisions about a level. Each is a function of the seed, the purpose of the decision, and
+//! a position.
 //!
-//! All is integers, so a generated level is the same on every machine and in every later version: tests hold the
-//! numbers.
+//! Everything is computed with integers, so a generated level is the same on every machine and in
+//! every later version. Tests pin the numbers.
 
 use crate::rng::{self, SplitMix64};
 
-/// The purpose of a decision. Each has numbers of its own, so that no decision reveals another.
+/// The purpose of a decision. Each purpose has its own random numbers, so decisions are independent
+/// of each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// The layout of a chunk.
@@ -16,30 +18,30 @@ pub(crate) enum Purpose {
     WestPassage = 3,
     /// The look of a district.
     District = 4,
-    /// The rock in a cell at first.
+    /// The initial rock in a cell.
     Rock = 5,
     /// The furniture.
     Furniture = 6,
-    /// The middle of a chunk.
+    /// The hub of a chunk.
     Hub = 7,
-    /// Dry ground in a cell at first.
+    /// The initial dry ground in a cell.
     Dry = 9,
-    /// The place of the exit.
+    /// The position of the exit.
     Exit = 8,
-    /// The place of the start.
+    /// The position of the start.
     Start = 10,
-    /// The level of a floor.
+    /// The level of a descent's floor.
     Floor = 11,
-    /// The guards and items of a floor.
+    /// The guards and items of a descent's floor.
     Population = 12,
 }
 
-/// A number that looks random, determined by a seed, a purpose and a place.
+/// A hash that looks random, determined by a seed, a purpose and a position.
 pub(crate) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
     rng::hash(seed, [purpose as u64, column as u64, row as u64])
 }
 
-/// The generator that a seed, a purpose and a place determine.
+/// A random number generator, determined by a seed, a purpose and a position.
 pub(crate) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
     SplitMix64::new(hash(seed, purpose, column, row))
 }

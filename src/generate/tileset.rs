@@ -1,7 +1,7 @@
-//! The tileset: the meanings of the characters of chunks, read from a map that draws each of them.
+//! The tileset: the meanings of the characters in chunks, read from a map that draws each of them.
 //!
-//! Tiles, textures, sprites, sky and fog of a level are therefore parsed and checked like those of
-//! any map. The map is read once; chunks refer to its tiles by their number.
+//! The tiles, textures, sprites, sky and fog of a level are therefore parsed and checked as in any
+//! other map. The map is read once, and chunks refer to its tiles by number.
 
 use std::num::NonZeroU32;
 
@@ -9,15 +9,15 @@ use crate::fault::Faults;
 use crate::map::{self, NoFiles};
 use crate::world::{Cell, Grid, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World};
 
-/// The character of cells outside the areas.
+/// The character of cells outside the areas that terrains fill.
 pub(crate) const ROCK: u8 = b'#';
 
-/// The meanings of the characters of chunks.
+/// The meanings of the characters in chunks.
 #[derive(Clone, Debug)]
 pub(crate) struct Tileset {
     /// The world of the legend's map.
     world: World,
-    /// By character. Characters without a meaning are rock.
+    /// The meanings, indexed by character. Characters without a meaning are rock.
     meanings: Vec<Meaning>,
     exits: Vec<u8>,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Tileset {
 struct Meaning {
     tile: TileId,
     thing: Option<(ThingKind, SpriteId)>,
-    /// Whether the player can walk there; of a door, when it is open.
+    /// `true` if the player can walk there. For a door, this means the open door.
     is_walkable: bool,
 }
 
@@ -34,7 +34,7 @@ impl Tileset {
     /// The tileset of the map `legend`.
     ///
     /// # Errors
-    /// All faults of the map, or that it has no rock.
+    /// All faults in the map, or a fault if it has no rock.
     pub(crate) fn of(legend: &str) -> Result<Self, Faults> {
         const NAME: &str = "the legend";
         let world = map::parse(legend, NAME, &NoFiles)?;
@@ -55,13 +55,13 @@ impl Tileset {
         Ok(Self { world, meanings, exits })
     }
 
-    /// A world whose cells can be replaced.
+    /// A world whose cells can be replaced with [`Self::draw`].
     pub(crate) fn world(&self) -> World {
         self.world.clone()
     }
 
-    /// The character of an exit that stands on the floor `character`, or else on any other; `None`
-    /// if the legend has no exit.
+    /// The character of an exit on the same floor as `character`, or on any floor if there is no
+    /// such exit; `None` if the legend has no exit.
     pub(crate) fn exit_on(&self, character: u8) -> Option<u8> {
         let floor = self.meaning(character).tile;
         let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;
@@ -73,29 +73,30 @@ impl Tileset {
         self.exits.contains(&character)
     }
 
-    /// Whether the player can walk on a cell with `character`.
+    /// Returns true if the player can walk on a cell with `character`.
     pub(crate) fn is_walkable(&self, character: u8) -> bool {
         self.meaning(character).is_walkable
     }
 
-    /// Whether `character` is floor, with or without a thing on it.
+    /// Returns true if `character` is floor, with or without a thing on it.
     pub(crate) fn is_floor(&self, character: u8) -> bool {
         matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
     }
 
-    /// Whether `character` is floor without a thing on it.
+    /// Returns true if `character` is floor without a thing on it.
     pub(crate) fn is_bare(&self, character: u8) -> bool {
         self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
-    /// Whether nobody sees through `character`: a wall, or a door that is closed.
+    /// Returns true if `character` blocks the view, as a wall or a closed door does.
     pub(crate) fn is_opaque(&self, character: u8) -> bool {
         let kind = self.world.tile(self.meaning(character).tile).kind;
         matches!(kind, TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Door(_))
     }
 
-    /// Replaces the cells of `world`, a world of this tileset, by `rows`, which all have the length
-    /// `width`, with further `items` that neither block nor shine. All its doors are closed.
+    /// Replaces the cells of `world`, which must be a world of this tileset, by `rows`, and closes
+    /// all doors. Every row has the length `width`. Also adds `items`, which must neither block the
+    /// way nor give light.
     pub(crate) fn draw<'a>(
         &self,
         world: &mut World,
@@ -134,7 +135,7 @@ impl Tileset {
     }
 }
 
-/// The characters in the grid of `legend`, whose world is `world`.
+/// The characters in the grid of `legend` with their meanings. `world` is the world of `legend`.
 fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
     let rows = map::rows_of_grid(legend);
     let cells = rows.iter().zip(0..).flat_map(|(line, row)| {

@@ -1,14 +1,14 @@
 //! The window: the part of a level around the player, as a world.
 //!
-//! It has [`CHUNKS`] chunks along each side, and moves by whole chunks when the player leaves its
-//! middle. The player is always between columns 64 and 128 and rows 64 and 128 of it, where
-//! neighbouring doubles have one spacing. So adding a whole number of cells to a position is exact,
-//! and moving the window does not change the picture.
+//! A window has [`CHUNKS`] chunks along each side, and moves by whole chunks when the player leaves
+//! its middle. In the window, the player is always between columns 64 and 128 and between rows 64
+//! and 128. Doubles in this range are evenly spaced, so adding a whole number of cells to a
+//! position is exact, and moving the window does not change the picture.
 //!
-//! The outermost cells are wall. They are at least 72 cells away, farther than the player can see:
-//! every generator blocks the view before that, or hides it in fog.
+//! The outermost cells are wall. They are at least 72 cells away from the player, which is out of
+//! sight, because every generator blocks the view before that distance or hides it in fog.
 //!
-//! Doors close behind the player, and are closed when they come back into the window. Nothing else
+//! A door closes behind the player, and is closed when it enters the window again. Nothing else
 //! changes in a generated level.
 
 use std::num::NonZeroU32;
@@ -20,27 +20,28 @@ use super::level::Level;
 use super::tileset::ROCK;
 use crate::world::{Cell, Grid, Heading, Start, World};
 
-/// The chunks along each side of a window.
+/// The number of chunks along each side of a window.
 const CHUNKS: usize = 6;
-/// The cells along each side of a window.
+/// The number of cells along each side of a window.
 const SIDE: usize = CHUNKS * CHUNK_SIDE;
-/// The range of positions along each side for which the window need not move.
+/// The range of player positions, along each side, in which the window does not move.
 const MIDDLE: std::ops::Range<u32> = 72..120;
-/// The chunk of the window that the player is in, if they are in its eastern or southern half.
+/// The index in the window of the player's chunk, if the player is in the eastern or southern half
+/// of that chunk.
 const PLAYERS_CHUNK: usize = 2;
 
-/// The current part of a level.
+/// The part of a level that is around the player now.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
     level: Level,
-    /// The north-west chunk.
+    /// The index of the north-west chunk.
     first: ChunkIndex,
-    /// Row by row from the north.
+    /// The chunks, row by row from the north.
     chunks: Vec<Chunk>,
 }
 
-/// The cells by which a window has moved: everything is this much farther to the east and to the
-/// south in it.
+/// The shift caused by a move of the window: the number of cells to the east and to the south by
+/// which everything in it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shift {
     columns: i64,
@@ -48,7 +49,8 @@ pub(crate) struct Shift {
 }
 
 impl Shift {
-    /// The cell that was `cell` before, if it is in the window.
+    /// The new coordinates of a cell that was at `cell` before the shift; `None` if it is outside
+    /// the window now.
     pub(crate) fn cell(self, cell: Cell) -> Option<Cell> {
         let along = |place: u32, by: i64| {
             let place = u32::try_from(i64::from(place) + by).ok()?;
@@ -57,12 +59,12 @@ impl Shift {
         Some(Cell { column: along(cell.column, self.columns)?, row: along(cell.row, self.rows)? })
     }
 
-    /// Returns whether `cell` has just come into the window.
+    /// Returns true if `cell` has just entered the window.
     pub(crate) fn is_new(self, cell: Cell) -> bool {
         Self { columns: -self.columns, rows: -self.rows }.cell(cell).is_none()
     }
 
-    /// The position that was `position` before.
+    /// The new coordinates of the point that was at `position` before the shift.
     pub(crate) fn position(self, position: DVec2) -> DVec2 {
         position + DVec2::new(self.columns as f64, self.rows as f64)
     }
@@ -70,13 +72,13 @@ impl Shift {
 
 impl Window {
     /// A window around `site`, and its world. The player starts at `site`, or near it if there is
-    /// no way out of it, and looks where they see farthest. `None` if there is nowhere to start, as
-    /// outside the level.
+    /// no way out of `site`, and faces the direction with the farthest view. `None` if there is no
+    /// place to start, which is the case outside the level.
     pub fn open(level: Level, site: Site) -> Option<(Self, World)> {
         let site = level.start_near(site)?;
         let (index, (column, row)) = site.chunk();
-        // A player in the western half of their chunk is in the window's next one, which is the
-        // middle, too.
+        // A player in the western half of their chunk is one chunk further along in the window,
+        // which is also in the middle.
         let before = |place: usize| PLAYERS_CHUNK + usize::from(place < CHUNK_SIDE / 2);
         let first = index.offset(-(before(column) as i64), -(before(row) as i64));
         let places = every_chunk(first);
@@ -90,17 +92,18 @@ impl Window {
         Some((window, world))
     }
 
-    /// The level.
+    /// The level that the window shows.
     pub fn level(&self) -> &Level {
         &self.level
     }
 
-    /// The cell of the level that is a cell of the window's world.
+    /// Converts a cell of the window's world to a cell of the level.
     pub fn site(&self, cell: Cell) -> Site {
         self.first.site(cell.column.into(), cell.row.into())
     }
 
-    /// The cell of the window's world that is a cell of the level, if it is in the window.
+    /// Converts a cell of the level to a cell of the window's world; `None` if it is outside the
+    /// window.
     pub fn cell(&self, site: Site) -> Option<Cell> {
         let first = self.first.site(0, 0);
         let along = |place: i64, first: i64| {
@@ -109,8 +112,8 @@ impl Window {
         Some(Cell { column: along(site.column, first.column)?, row: along(site.row, first.row)? })
     }
 
-    /// Moves the window so that `cell`, the player's, is in its middle, and shows that part of the
-    /// level in `world`, with all doors closed. `None` if it need not move.
+    /// Moves the window so that `cell`, the player's cell, is in the middle, and draws that part of
+    /// the level in `world` with all doors closed. Returns `None` if no move is needed.
     pub(crate) fn follow(&mut self, world: &mut World, cell: Cell) -> Option<Shift> {
         let (columns, rows) = (chunks_off(cell.column), chunks_off(cell.row));
         if (columns, rows) == (0, 0) {
@@ -142,7 +145,7 @@ impl Window {
         self.level.tileset().draw(world, WIDTH, rows, &[], start);
     }
 
-    /// The characters of a row.
+    /// The characters of a row, with wall at the edges.
     fn row(&self, row: usize) -> Vec<u8> {
         if row == 0 || row == SIDE - 1 {
             return vec![ROCK; SIDE];
@@ -157,13 +160,14 @@ impl Window {
 
 const CENTER: Cell = Cell { column: SIDE as u32 / 2, row: SIDE as u32 / 2 };
 
-/// The chunks of a window, row by row from the north; `first` is the one in the north-west.
+/// The chunks of a window, row by row from the north. `first` is the north-west chunk.
 fn every_chunk(first: ChunkIndex) -> impl Iterator<Item = ((usize, usize), ChunkIndex)> {
     let places = (0..CHUNKS).flat_map(|row| (0..CHUNKS).map(move |column| (column, row)));
     places.map(move |(column, row)| ((column, row), first.offset(column as i64, row as i64)))
 }
 
-/// The chunks by which a window must move so that `place`, along one side, is in its middle.
+/// The number of chunks by which a window must move, along one axis, so that `place` is in its
+/// middle.
 fn chunks_off(place: u32) -> i64 {
     if MIDDLE.contains(&place) {
         0
@@ -174,7 +178,7 @@ fn chunks_off(place: u32) -> i64 {
     }
 }
 
-/// The direction, of the four along the grid, with the farthest view from `cell`.
+/// The direction along the grid with the farthest view from `cell`.
 pub(crate) fn best_heading(grid: &Grid, cell: Cell) -> Heading {
     let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
     let is_open =

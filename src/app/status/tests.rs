@@ -108,7 +108,7 @@ fn pauses_do_not_count() {
     let mut meter = Meter::default();
     let figures: Vec<_> = (0..40_u64)
         .filter_map(|frame| {
-            // Two times two seconds with ten frames per second, a minute apart.
+            // Two periods of two seconds with ten frames per second, a minute apart.
             let time = frame * 100 + if frame < 20 { 1_000 } else { 61_000 };
             meter.frame(Duration::from_millis(time), frame * 500)
         })

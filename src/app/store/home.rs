@@ -1,6 +1,6 @@
-//! The store's folder: reading, and replacing files under a lock.
+//! The store's folder: reading files, and replacing them under a lock.
 //!
-//! File operations are behind a trait, so that tests can let each of them fail.
+//! File operations go through a trait, so tests can make each of them fail.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -16,27 +16,28 @@ use crate::app::store::text;
 use crate::fault::printable_path;
 use crate::sort;
 
-/// A folder of a store.
+/// The folder of a store.
 #[derive(Debug)]
 pub(crate) struct Home {
     folder: PathBuf,
     disk: Box<dyn Disk>,
-    /// The attempts to get the lock; one after another process did not return it.
+    /// The number of attempts to take the lock. It is one after another process has failed to
+    /// release the lock in time.
     attempts: u32,
 }
 
 /// The result of a change.
 #[derive(Debug)]
 pub(crate) struct Written {
-    /// The state of the file before.
+    /// The state of the file before the change.
     pub(crate) before: Progress,
-    /// The state of the file now.
+    /// The state of the file after the change.
     pub(crate) progress: Progress,
-    /// A sentence about a damaged file.
+    /// A sentence about a damaged file, if the file was damaged.
     pub(crate) sentence: Option<String>,
 }
 
-/// The readable content of the progress file, and what is wrong with it.
+/// The readable part of the progress file, and the damage to the rest.
 #[derive(Default)]
 struct Found {
     progress: Progress,
@@ -44,22 +45,22 @@ struct Found {
 }
 
 enum Damage {
-    /// Parts can't be read. The bytes are kept.
+    /// Parts are unreadable. Contains the bytes of the file.
     Parts(Vec<u8>),
-    /// Nothing is read.
+    /// The file is too large to be read at all.
     TooLarge,
 }
 
 const PROGRESS: &str = "progress.toml";
 const LOCK: &str = "progress.lock";
 const RUNS: &str = "runs";
-/// In bytes.
+/// The size limit of the progress file, in bytes.
 const LARGEST_PROGRESS: u64 = 4 << 20;
-/// In bytes: that is more than a day of play.
+/// The size limit of a script, in bytes: more than a day of play.
 pub(crate) const LARGEST_SCRIPT: u64 = 4 << 20;
-/// The number of damaged files that are kept, the newest ones.
+/// The number of damaged files that are kept. The newest stay.
 const MOST_DAMAGED: usize = 3;
-/// They take two seconds.
+/// All attempts together take two seconds.
 const ATTEMPTS: u32 = 1000;
 
 impl Home {
@@ -67,8 +68,8 @@ impl Home {
         Self { folder, disk, attempts: ATTEMPTS }
     }
 
-    /// The progress in the file, and a sentence if it is damaged or can't be used. A damaged file is
-    /// put aside.
+    /// Reads the progress from the file. Also returns a sentence if the file is damaged or
+    /// unusable. A damaged file is renamed.
     pub(crate) fn open(&mut self) -> (Progress, Option<String>) {
         let readable = match self.find() {
             Ok(Found { progress, damage: None }) => return (progress, None),
@@ -81,22 +82,22 @@ impl Home {
         }
     }
 
-    /// The progress in the file, unless it is missing or damaged.
+    /// The progress in the file; `None` if the file is damaged or unreadable.
     pub(crate) fn read_again(&self) -> Option<Progress> {
         self.find().ok().filter(|found| found.damage.is_none()).map(|found| found.progress)
     }
 
-    /// The text of a script.
+    /// The text of the script in the file `name`; `None` if it is unreadable.
     pub(crate) fn script(&self, name: &str) -> Option<String> {
         let content = self.disk.read(&self.folder.join(RUNS).join(name), LARGEST_SCRIPT).ok()?;
         String::from_utf8(content).ok()
     }
 
-    /// Applies `changes` to the file. A damaged file is completed from `known`, the state in
-    /// memory.
+    /// Applies `changes` to the file. If the file is damaged, it is completed from `known`, the
+    /// state in memory.
     ///
     /// # Errors
-    /// A sentence why nothing was written.
+    /// A sentence that says why nothing was written.
     pub(crate) fn write(
         &mut self,
         changes: &[Change],
@@ -160,7 +161,7 @@ impl Home {
         }
         self.write_whole(Path::new(PROGRESS), progress.to_string().as_bytes())?;
         for name in before.scripts().filter(|name| !after.contains(name)) {
-            // The progress is written; a script too many does no harm.
+            // The progress is already written, and a leftover script does no harm.
             _ = self.disk.remove(&self.folder.join(RUNS).join(name));
         }
         Ok(Written { before, progress, sentence })
@@ -190,14 +191,15 @@ impl Home {
         };
         numbers.retain(|&known| known != number);
         for &old in numbers.iter().rev().skip(MOST_DAMAGED - 1) {
-            // One too many does no harm.
+            // A leftover file does no harm.
             _ = self.disk.remove(&self.folder.join(aside(old)));
         }
         let file = printable_path(&self.folder.join(PROGRESS));
         Ok(format!("{file} was damaged and is kept as {name}; {kept}"))
     }
 
-    /// Writes a file in the folder so that it has either its old or its new content at any time.
+    /// Writes a file in the folder so that the file has either its old or its new content at all
+    /// times.
     fn write_whole(&self, name: &Path, content: &[u8]) -> io::Result<()> {
         let file = self.folder.join(name);
         let mut new = file.clone().into_os_string();
@@ -205,7 +207,7 @@ impl Home {
         let written = self.disk.write(Path::new(&new), content);
         let renamed = written.and_then(|()| self.disk.rename(Path::new(&new), &file));
         if renamed.is_err() {
-            // On a full disk, the part that was written would take the last room.
+            // On a full disk, the incomplete file would take up the last space.
             _ = self.disk.remove(Path::new(&new));
         }
         renamed
@@ -214,7 +216,7 @@ impl Home {
 
 /// File operations.
 pub trait Disk: fmt::Debug + Send {
-    /// Creates a folder and its parents, unless it exists.
+    /// Creates a folder and its parents, unless the folder exists.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
 
     /// The content of a file.
@@ -223,10 +225,11 @@ pub trait Disk: fmt::Debug + Send {
     /// [`io::ErrorKind::FileTooLarge`] if it has more than `most` bytes.
     fn read(&self, file: &Path, most: u64) -> io::Result<Vec<u8>>;
 
-    /// Writes a file and waits until it is on the disk.
+    /// Writes a file, and waits until the content is on the disk.
     fn write(&self, file: &Path, content: &[u8]) -> io::Result<()>;
 
-    /// Renames a file, in place of another one, and waits until that is on the disk.
+    /// Renames a file, replacing any file at the new path, and waits until the change is on the
+    /// disk.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
 
     /// Removes a file.
@@ -235,14 +238,16 @@ pub trait Disk: fmt::Debug + Send {
     /// The names in a folder.
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>>;
 
-    /// Locks a file until the returned one is closed; `None` if the file system has no locks.
+    /// Locks a file until the returned handle is closed. Returns `None` if the file system does not
+    /// support locks.
     ///
     /// # Errors
-    /// [`io::ErrorKind::WouldBlock`] if another process still has it after `attempts`.
+    /// [`io::ErrorKind::WouldBlock`] if another process still holds the lock after `attempts`
+    /// attempts.
     fn lock(&self, file: &Path, attempts: u32) -> io::Result<Option<File>>;
 }
 
-/// The operating system's files.
+/// The files of the operating system.
 #[derive(Clone, Copy, Debug)]
 pub struct Real;
 
@@ -267,7 +272,8 @@ impl Disk for Real {
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         fs::rename(from, to)?;
-        // Not every system can synchronise a folder. The file is complete under one of the names.
+        // Not every system can synchronise a folder. The file is complete under one of the two
+        // names.
         let folder = to.parent().and_then(|folder| File::open(folder).ok());
         folder.map(|folder| folder.sync_all());
         Ok(())

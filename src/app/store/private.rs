@@ -1,4 +1,5 @@
-//! Files of the program's own: it reads regular ones only, and nobody else on the machine reads them.
+//! The program's private files. Only their owner can read them, and the program opens only regular
+//! files.
 
 use std::fs::{self, DirBuilder, File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -6,13 +7,13 @@ use std::io::{self, Read};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, OpenOptionsExt, PermissionsExt};
 use std::path::Path;
 
-/// A path at which there is no regular file.
+/// An error for a path that is not a regular file.
 #[derive(Debug, thiserror::Error)]
 #[error("it is {0}, and must be a file: move it away")]
 struct NoFile(&'static str);
 
-/// Opens a file to read it. Never waits: a named pipe, on which a reader waits for a writer, is an error
-/// as all are that are no regular files.
+/// Opens a file to read it, without ever waiting. Anything but a regular file is an error. In
+/// particular, a named pipe is an error, because its reader would wait for a writer.
 pub fn open(file: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -39,7 +40,7 @@ pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// The text in a regular file.
 ///
 /// # Errors
-/// As for [`read`]; [`io::ErrorKind::InvalidData`] if it is no UTF-8.
+/// As for [`read`]; also [`io::ErrorKind::InvalidData`] if the file is not UTF-8.
 #[cfg(feature = "cli")]
 pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
     let content = read(file, most)?;
@@ -47,7 +48,7 @@ pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
 }
 
-/// Creates a folder and its parents, unless it exists. Only its owner can look into it.
+/// Creates a folder and its parents, unless the folder exists. Only the owner can look into it.
 pub fn create_folder(folder: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);
@@ -56,8 +57,8 @@ pub fn create_folder(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Opens a file to write to it, and creates it unless it exists. Only its owner can read it, then and
-/// from now on.
+/// Opens a file to write to it, and creates it if it does not exist. Sets its permissions so that
+/// only the owner can read it.
 pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.create(true).truncate(false).write(true);
@@ -65,7 +66,7 @@ pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
     #[cfg(unix)]
     options.custom_flags(DO_NOT_WAIT);
     let opened = options.open(file).or_else(|error| {
-        // A named pipe that nobody reads can't be opened.
+        // A named pipe without a reader cannot be opened.
         fs::metadata(file).map_or(Ok(()), |metadata| refuse_others(&metadata)).and(Err(error))
     })?;
     refuse_others(&opened.metadata()?)?;
@@ -74,17 +75,18 @@ pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
     Ok(opened)
 }
 
-/// Creates an empty file unless it exists. Only its owner can read it, then and from now on.
+/// Creates an empty file, unless the file exists. Sets its permissions so that only the owner can
+/// read it.
 pub fn create_file(file: &Path) -> io::Result<()> {
     open_to_write(file).map(drop)
 }
 
-/// An error unless `file` is a regular file.
+/// Returns an error unless `file` is a regular file.
 pub fn check_is_file(file: &Path) -> io::Result<()> {
     refuse_others(&fs::metadata(file)?)
 }
 
-/// Lets only the owner read the file that is created with `options`.
+/// Makes a file that is created with `options` readable by its owner only.
 #[cfg_attr(not(unix), expect(unused_variables, reason = "only Unix files have modes"))]
 pub fn restrict_file(options: &mut OpenOptions) {
     #[cfg(unix)]
@@ -105,6 +107,6 @@ fn refuse_others(metadata: &Metadata) -> io::Result<()> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, NoFile(name)))
 }
 
-/// The flag with which opening a file never waits.
+/// The flag that makes opening a file never wait.
 #[cfg(unix)]
 const DO_NOT_WAIT: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();

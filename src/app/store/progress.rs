@@ -1,10 +1,11 @@
-//! Progress: the content of the store's file, and changes of it, which are applied to whatever the file
-//! holds at that time.
+//! Progress: the content of the store's file, and changes to it. A change is applied to the content
+//! that the file has at that time.
 //!
-//! The name of a script's file has only lower-case letters, digits, `-` and `_` of the level's key; every other byte
-//! is `%` and its two hexadecimal digits. So different keys have different names where upper and
-//! lower case are the same, and no name leaves the folder. Device names of Windows, such as `con`,
-//! are not reserved with `%` in them, so their first letter is written that way.
+//! The file name of a script contains the level's key in escaped form. Lower-case letters, digits,
+//! `-` and `_` stay; every other byte becomes `%` and two hexadecimal digits. Different keys
+//! therefore have different names even on a file system that ignores case, and no name points
+//! outside the folder. Windows reserves device names such as `con`, but not with a `%` in them, so
+//! the first letter of such a name is escaped too.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -19,12 +20,12 @@ use crate::world::{Difficulty, World};
 /// The content of `progress.toml`.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub(crate) struct Progress {
-    /// By the key of the level.
+    /// The best results, by level key and difficulty.
     pub(crate) bests: BTreeMap<(String, Difficulty), Best>,
-    /// The saved games, the newest last. No two have the same [`SaveId`].
+    /// The saved games, newest last. No two have the same [`SaveId`].
     pub(crate) saves: Vec<SavedEntry>,
     pub(crate) preferences: Preferences,
-    /// How far the daily runs of the dates came.
+    /// The result of the daily run, by date.
     pub(crate) dailies: BTreeMap<u32, Reached>,
     pub(crate) descent: Option<Reached>,
 }
@@ -32,65 +33,67 @@ pub(crate) struct Progress {
 /// A saved game without its script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
-    /// The level, as in the header of a script.
+    /// The level, as named in the header of a script.
     pub level: String,
-    /// The absolute path of the map file; `None` if the level is not in one, and in old files.
+    /// The absolute path of the map file; `None` if the level is not in a file, and for games from
+    /// old files.
     pub file: Option<String>,
-    /// The rules that it began with.
+    /// The rules with which the game began.
     pub rules: Rules,
-    /// The kind of the descent; `None` for a level.
+    /// The kind of descent; `None` for a level.
     pub descent: Option<Descent>,
-    /// The steps that were played. Old files have none.
+    /// The number of steps played; `None` for games from old files.
     pub steps: Option<u64>,
-    /// The checksum of the game at the end of the script. Where it differs, the level or the rules have
-    /// changed since. Old files have none.
+    /// The checksum of the game at the end of the script. If a replay ends with a different
+    /// checksum, then the level or the rules have changed since. `None` for games from old files.
     pub checksum: Option<u64>,
 }
 
-/// A game to be continued: its script is played again up to its end.
+/// A saved game. To continue it, the program replays its script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SavedGame {
-    /// Its description.
+    /// The description of the game.
     pub save: Save,
-    /// The script so far.
+    /// The script up to the point where the player left.
     pub script: String,
 }
 
-/// Identifies a saved game by what it takes the place of: the game in the same level or map file at
-/// the same difficulty, or the descent of the same kind and seed.
+/// Identifies a saved game. A saved game replaces an earlier one with the same identity: the same
+/// level or map file at the same difficulty, or a descent of the same kind and seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SaveId(u64);
 
 /// The reason why a game is not saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSaved {
-    /// [`MOST_SAVES`] other games are saved.
+    /// There are already [`MOST_SAVES`] other saved games.
     #[error("{MOST_SAVES} other games are saved, and no more are kept")]
     Full,
-    /// Its script is longer than the longest script that is read.
+    /// The script is longer than the longest script that the store reads.
     #[error("it is longer than a game that can be kept")]
     TooLong,
 }
 
-/// The most games that are saved.
+/// The maximum number of saved games.
 pub const MOST_SAVES: usize = 100;
 
-/// The kind of a descent. It begins on its first floor, with its date as the seed if it has one.
+/// The kind of a descent. A descent begins on its first floor. The seed of a daily run or a
+/// practice run is its date.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Descent {
-    /// A descent without an end.
+    /// An endless descent.
     Endless,
-    /// The try of a day that counts.
+    /// The daily try that counts.
     Daily,
-    /// A later try of a day.
+    /// A later try on the same day.
     Practice,
 }
 
-/// The saved game as the file has it.
+/// A saved game as the file stores it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SavedEntry {
     pub(crate) save: Save,
-    /// The name of the script's file.
+    /// The file name of the script.
     pub(crate) script: String,
 }
 
@@ -103,7 +106,7 @@ impl Progress {
         self.saves.iter().find(|entry| entry.save.id() == id)
     }
 
-    /// Adds a saved game as the newest one, in place of the one with the same identity.
+    /// Adds a saved game as the newest one. It replaces the saved game with the same identity.
     pub(crate) fn add_save(&mut self, entry: SavedEntry) {
         self.remove_save(entry.save.id());
         self.saves.push(entry);
@@ -113,7 +116,7 @@ impl Progress {
         self.saves.retain(|entry| entry.save.id() != id);
     }
 
-    /// The names of all scripts that it refers to.
+    /// The file names of all scripts that the progress refers to.
     pub(crate) fn scripts(&self) -> impl Iterator<Item = String> {
         let runs = self
             .bests
@@ -126,7 +129,7 @@ impl Progress {
 }
 
 impl Save {
-    /// Its identity.
+    /// The identity of the saved game.
     pub fn id(&self) -> SaveId {
         let place = self.file.as_deref().unwrap_or(&self.level);
         let kind = self.descent.map_or("level", Descent::name);
@@ -148,7 +151,7 @@ impl Descent {
     }
 }
 
-/// A change.
+/// A change to the progress.
 #[derive(Clone, Debug)]
 pub(crate) enum Change {
     /// A run reached the exit.
@@ -157,16 +160,16 @@ pub(crate) enum Change {
     Saved(SavedGame),
     /// A saved game was removed.
     Removed(SaveId),
-    /// The player has chosen what differs.
+    /// The player changed the preferences that differ between the two.
     Preferences { before: Preferences, after: Preferences },
-    /// The daily run of a date has come this far.
+    /// The daily run of a date reached this point.
     Daily { date: u32, reached: Reached, script: String },
-    /// A descent has come this far.
+    /// A descent reached this point.
     Descent { reached: Reached, script: String },
 }
 
 impl Change {
-    /// The name and the text of the script that belongs to the change.
+    /// The file name and the text of the script that belongs to the change.
     pub(crate) fn written(&self) -> Option<(String, &str)> {
         match self {
             Self::Won { level, difficulty, run } => {
@@ -179,14 +182,14 @@ impl Change {
         }
     }
 
-    /// The text of the script `name`, if it belongs to the change.
+    /// The text of the script in the file `name`, if it belongs to the change.
     pub(crate) fn script(&self, name: &str) -> Option<&str> {
         self.written().filter(|(own, _)| own == name).map(|(_, text)| text)
     }
 }
 
 impl Progress {
-    /// Applies a change. The better result wins, whichever came first.
+    /// Applies a change. The better of two results wins, in whichever order they come.
     pub(crate) fn apply(&mut self, change: &Change) {
         match change {
             Change::Won { level, difficulty, run } => {
@@ -202,7 +205,7 @@ impl Progress {
         }
     }
 
-    /// Adds from `known` what a damaged file has lost.
+    /// Restores from `known` the data that a damaged file has lost.
     pub(crate) fn complete(&mut self, known: &Self) {
         known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
         known.dailies.iter().for_each(|(date, reached)| self.add_daily(*date, *reached));
@@ -229,11 +232,11 @@ impl Progress {
 /// A run that reached the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Its tally.
+    /// The tally of the run.
     pub tally: Tally,
-    /// Its rank.
+    /// The rank of the run.
     pub rank: Rank,
-    /// Its script, with a header that names the level.
+    /// The script of the run, with a header that names the level.
     pub script: String,
 }
 
@@ -246,28 +249,28 @@ pub struct Best {
     pub rank: Rank,
 }
 
-/// The improvement by a run.
+/// The improvements that a run made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Improved {
-    /// Whether it is the fastest run.
+    /// `true` if the run is the fastest one.
     pub time: bool,
-    /// Whether it has a higher rank than all others.
+    /// `true` if its rank is higher than any rank before.
     pub rank: bool,
 }
 
-/// How far a descent came. More floors are better, then more treasure, then fewer steps.
+/// The result of a descent. More floors are better, then more treasure, then fewer steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Reached {
-    /// The floors whose exit was reached.
+    /// The number of floors whose exit the player reached.
     pub floors: u32,
-    /// The treasure of these floors.
+    /// The treasure found on these floors.
     pub treasure: u32,
-    /// The steps that these floors took.
+    /// The number of steps that these floors took.
     pub steps: u64,
 }
 
 impl Reached {
-    /// One floor further, with the tally of that floor.
+    /// The result after one more floor with this tally.
     #[must_use]
     pub fn and(self, tally: &Tally) -> Self {
         Self {
@@ -297,22 +300,22 @@ impl Best {
         Self { tally: run.tally, rank: run.rank }
     }
 
-    /// The best of both. Of equally fast runs it is the first.
+    /// The better value of each. If both runs are equally fast, the tally of `self` stays.
     pub fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
     }
 }
 
-/// The end of a descent.
+/// A descent after a replay of its script.
 pub struct DescentRun {
     /// The game on the last floor.
     pub game: Game,
-    /// How far it came.
+    /// The result of the descent.
     pub reached: Reached,
 }
 
-/// The game at the end of `script`, or at its first exit.
+/// The game at the end of `script`, or at the first exit that the script reaches.
 pub fn replayed(world: World, rules: Rules, script: &Script) -> Game {
     let mut game = Game::with_rules(world, rules);
     for (_section, intents) in script.iter() {
@@ -325,8 +328,9 @@ pub fn replayed(world: World, rules: Rules, script: &Script) -> Game {
 }
 
 impl DescentRun {
-    /// The descent of `script` from `floor` on, whose world is `first`. As in a game, a descent ends
-    /// with the first death, and what is found counts once the exit is reached.
+    /// Replays `script` from `floor` on; `first` is the world of that floor. As during play, the
+    /// descent ends with the first death, and finds count only after the exit of their floor is
+    /// reached.
     pub fn replayed(floor: u32, first: World, rules: Rules, script: &Script) -> Self {
         let mut game = Game::with_rules(first, rules);
         let mut later = floors_below(rules.seed, floor);
@@ -345,19 +349,19 @@ impl DescentRun {
     }
 }
 
-/// In bytes. Of a longer name the rest is replaced by a hash.
+/// The length limit of an escaped key, in bytes. The rest of a longer key is replaced by a hash.
 const LONGEST: usize = 80;
-/// Names of devices, with a digit after the last two.
+/// The reserved names of devices. The last two are followed by a digit.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
-/// The key of a map file in the store: its name without the folder, and a hash of its text. The
-/// results of a map that has changed do not count for it.
+/// The key of a map file in the store: the file's name without its folder, and a hash of its text.
+/// Results do not carry over to a changed map.
 pub fn map_key(file_name: &str, text: &str) -> String {
     let stem = file_name.strip_suffix(".toml").unwrap_or(file_name);
     format!("{stem}-{:016x}", hash(text))
 }
 
-/// The name of the map in a [`map_key`]; `None` if `key` is none.
+/// The map's name in a [`map_key`]; `None` if `key` is not such a key.
 pub fn name_in_map_key(key: &str) -> Option<&str> {
     let (name, hash) = key.rsplit_once('-')?;
     let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
@@ -365,22 +369,22 @@ pub fn name_in_map_key(key: &str) -> Option<&str> {
     (is_hash && !name.is_empty()).then_some(name)
 }
 
-/// The file of the script of a run.
+/// The file name for the script of a run.
 pub(crate) fn of_run(level: &str, difficulty: Difficulty, steps: u64) -> String {
     format!("{}.{}.{steps}.script", escaped(level), difficulty.name())
 }
 
-/// The file of the script of a saved game.
+/// The file name for the script of a saved game.
 fn of_saved(script: &str) -> String {
     format!("{SAVED}.{:016x}.script", hash(script))
 }
 
-/// The file of the script of a daily run, once it has reached an exit.
+/// The file name for the script of a daily run; `None` before its first exit.
 fn of_daily(date: u32, reached: Reached) -> Option<String> {
     Some(format!("daily.{date}.{}.script", figures(reached)?))
 }
 
-/// The file of the script of a descent, once it has reached an exit.
+/// The file name for the script of a descent; `None` before its first exit.
 pub(crate) fn of_descent(reached: Reached) -> Option<String> {
     Some(format!("descent.{}.script", figures(reached)?))
 }
@@ -389,7 +393,8 @@ fn figures(Reached { floors, treasure, steps }: Reached) -> Option<String> {
     (floors > 0).then(|| format!("{floors}-{treasure}-{steps}"))
 }
 
-/// No level has this name or a descent's: the names of levels end in a difficulty and a number.
+/// The first part of a saved game's file name. It differs from all other names, because the names
+/// of levels end in a difficulty and a number, and the names of descents begin differently.
 const SAVED: &str = "saved";
 
 fn escaped(key: &str) -> String {

@@ -1,4 +1,4 @@
-//! Properties of the store: on a real disk, with two games, and with a disk that fails.
+//! Properties of the store on a real disk, with two games at once, and on a disk that fails.
 
 mod damage;
 mod failing;
@@ -82,18 +82,18 @@ fn saved(script: &str) -> SavedGame {
     SavedGame { save, script: script.to_owned() }
 }
 
-/// A game in the level with that number.
+/// A saved game in level number `level`.
 fn saved_in(level: usize) -> SavedGame {
     let game = saved(&format!("{level} s forward\n"));
     SavedGame { save: Save { level: format!("level {level}"), ..game.save }, ..game }
 }
 
-/// `game` as that of a descent.
+/// `game` as a descent of this kind.
 fn of_descent(kind: Descent, game: SavedGame) -> SavedGame {
     SavedGame { save: Save { descent: Some(kind), ..game.save }, ..game }
 }
 
-/// The saved games with their scripts, the newest first.
+/// The saved games with their scripts, newest first.
 fn all_saved(store: &Store) -> Vec<SavedGame> {
     store.saves().map(|save| store.saved(save.id()).unwrap()).collect()
 }
@@ -119,7 +119,7 @@ fn fill(store: &mut Store) {
     store.record_descent(Reached { floors: 9, treasure: 1, steps: 9000 }, script());
 }
 
-/// Everything that a store shows.
+/// Everything that a store returns, as text.
 fn shown(store: &Store) -> String {
     let scripts = [("cellar", Normal), ("museum", Hard), ("a b\\\"ä\n", Easy)];
     let scripts =
@@ -255,7 +255,7 @@ fn a_saved_game_takes_the_place_of_its_own_one_only() {
     let newest_first = |games: &[SavedGame]| games.iter().rev().cloned().collect::<Vec<_>>();
     assert_eq!(all_saved(&sound(&folder.0)), newest_first(&all));
 
-    // The map in a file is the same one after a change of its text.
+    // A map file keeps its identity after a change of its text.
     let mut later = all[3].clone();
     (later.save.level, later.script) = ("changed".to_owned(), "2 s forward\n".to_owned());
     store.save(&later).unwrap();
@@ -283,7 +283,7 @@ fn where_there_is_no_room_a_game_is_not_saved_and_none_is_lost() {
     assert!(!store.has_room_for(one_more.save.id()));
     assert_eq!(store.save(&one_more), Err(NotSaved::Full));
     assert_eq!(all_saved(&store), before);
-    // In its own place there is room.
+    // A saved game can always replace its own earlier version.
     let again = SavedGame { script: "again\n".to_owned(), ..saved_in(7) };
     store.save(&again).unwrap();
     assert_eq!(all_saved(&store)[0], again);

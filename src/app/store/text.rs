@@ -1,11 +1,11 @@
 //! The text of `progress.toml`: reading and writing a [`Progress`].
 //!
-//! Whatever can be read of a damaged text is read. A result counts only as a whole: if one of its values
-//! is damaged, the result is left out. A last line without an end is dropped, because a number that was
-//! cut short would be a better result.
+//! All readable parts of a damaged text are read. A result counts only as a whole: if one of its
+//! values is damaged, the result is left out. A last line without a line end is dropped, because a
+//! truncated number would look like a better result.
 //!
-//! Rejected: serde. It gives up a section with its first damaged value, and its writer escapes characters
-//! in another way, which would change every file.
+//! Rejected: serde. It gives up a section at the first damaged value. Its writer escapes characters
+//! differently, which would change every existing file.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -22,24 +22,25 @@ use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};
 use crate::world::Difficulty;
 
-/// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
-/// preferences about the terminal. Version 3 has any number of saved games.
+/// The version of the format. Version 2 added the saved descent, the checksum of saved games, and
+/// the preferences about the terminal. Version 3 allows any number of saved games.
 const VERSION: u64 = 3;
-/// The oldest version that is read.
+/// The oldest version that can still be read.
 const OLDEST: u64 = 1;
-/// The preferences of version 1. They are always written, and later ones if they differ from the default.
+/// The number of preferences in version 1. They are always written. Later preferences are written
+/// if they differ from the default.
 const OLDEST_PREFERENCES: usize = 5;
 
-/// The sections of saved games, which have numbers: the newest has the largest one.
+/// The table of saved games. Its sections have numbers, and the newest game has the largest one.
 const SAVES: &str = "saves";
-/// The one saved level and the one saved descent of older versions.
+/// The sections for the only saved level and the only saved descent in older versions.
 const SAVED: &str = "saved";
 const SAVED_DESCENT: &str = "saved-descent";
 
-/// Reads the content of the file: its readable part, and whether that is all of it.
+/// Reads the content of the file. Returns the readable part, and whether that is all of it.
 ///
 /// # Errors
-/// The version of the format, if this program does not know it yet.
+/// The version of the format, if it is newer than this program.
 pub(crate) fn read(content: &[u8]) -> Result<(Progress, bool), u64> {
     let text = String::from_utf8_lossy(content);
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
@@ -121,7 +122,7 @@ fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
         }
         let level = values.take("level", |entry| text(entry).map(str::to_owned))?;
         let difficulty = values.take("difficulty", |entry| Difficulty::named(text(entry)?))?;
-        // TOML's own numbers have one bit less.
+        // TOML integers have one bit less.
         let seed = values.take("seed", |entry| text(entry)?.parse().ok())?;
         let script = values.take("script", |entry| file_name(text(entry)?))?;
         let rules = Rules { difficulty, seed };
@@ -153,7 +154,7 @@ fn reached(section: &Entry<'_, '_>) -> Option<Reached> {
     })
 }
 
-/// The values of a section that are not read yet.
+/// The values of a section that have not been read yet.
 struct Values<'a, 't>(Vec<Entry<'a, 't>>);
 
 impl Values<'_, '_> {
@@ -165,8 +166,8 @@ impl Values<'_, '_> {
     }
 }
 
-/// The content that `read` makes of a section. Values that it does not take are damaged, and so is the section
-/// if it makes nothing.
+/// The content of a section according to `read`. Every value that `read` does not take is damaged.
+/// If `read` returns `None`, the section is damaged.
 fn whole<T>(
     section: &Entry<'_, '_>,
     read: impl FnOnce(&mut Values<'_, '_>) -> Option<T>,
@@ -177,7 +178,7 @@ fn whole<T>(
     checked(section, content)
 }
 
-/// The entries of a section; none if it is no section.
+/// The entries of a section; empty if the entry is not a section.
 fn inner<'a, 't>(section: &Entry<'a, 't>) -> impl Iterator<Item = Entry<'a, 't>> {
     section.table(EXAMPLE).into_iter().flat_map(|table| document::entries(table, section.faults))
 }
@@ -186,7 +187,7 @@ fn text<'a>(entry: &Entry<'a, '_>) -> Option<&'a str> {
     entry.string(EXAMPLE)
 }
 
-/// `name`, unless it leaves the folder.
+/// `name`, unless it could point outside the folder.
 fn file_name(name: &str) -> Option<String> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '.';
     (name.ends_with(".script") && name.chars().all(is_plain)).then(|| name.to_owned())
@@ -202,7 +203,7 @@ fn number<T: TryFrom<u64>>(entry: &Entry<'_, '_>) -> Option<T> {
     u64::from_str_radix(digits.as_str(), digits.radix()).ok()?.try_into().ok()
 }
 
-/// `value`; reports the entry as damaged if there is none.
+/// Returns `value`, and reports the entry as damaged if it is `None`.
 fn checked<T>(entry: &Entry<'_, '_>, value: Option<T>) -> Option<T> {
     if value.is_none() {
         damaged(entry);
@@ -214,7 +215,7 @@ fn damaged(entry: &Entry<'_, '_>) {
     entry.faults.push(Fault::new(entry.value_place.clone(), "this is damaged"));
 }
 
-/// Faults of this file are counted, not shown.
+/// The faults of this file are counted and never shown, so they need no example.
 const EXAMPLE: &str = "";
 
 impl fmt::Display for Progress {
@@ -270,8 +271,8 @@ fn write_saved(f: &mut fmt::Formatter<'_>, number: u64, saved: &SavedEntry) -> f
     if let Some(checksum) = checksum {
         writeln!(f, "checksum = \"{checksum:016x}\"")?;
     }
-    // The last line is one without which there is no saved game, so that a file that was cut short has
-    // none without a checksum.
+    // The script comes last, because a saved game without it does not count. A truncated file
+    // therefore never contains a saved game that has lost its checksum.
     writeln!(f, "script = {}", toml_string(script))
 }
 

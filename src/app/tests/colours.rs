@@ -1,4 +1,5 @@
-//! Screens in all their colours, kept as the bytes that draw them: `cat` shows them in a terminal.
+//! Screens in full colour. The snapshots contain the bytes that draw them, so `cat` shows them in a
+//! terminal.
 
 use std::fmt::Write;
 
@@ -12,7 +13,8 @@ use super::*;
 use crate::app::Offers;
 use crate::game::FlashKind;
 
-/// A warden strikes the player, a bearer of a lantern rings behind them, and treasure lies between.
+/// A warden strikes the player, a lantern bearer raises the alarm behind them, and treasure lies
+/// beyond.
 const AMBUSH: &str = r##"
 title = "Ambush"
 par = 30
@@ -37,7 +39,7 @@ grid = '''
 "X" = { exit = true }
 "##;
 
-/// A player who has just been struck, with everything on the picture that can be switched on.
+/// A player who has just been struck, with everything on that can be shown over the picture.
 pub(crate) fn struck() -> Rig {
     let mut rig = playing_own(AMBUSH, Store::in_memory());
     for key in [Key::Char('.'), Key::Char(',')] {
@@ -75,7 +77,7 @@ fn bytes(buffer: &Buffer) -> String {
     text
 }
 
-/// The sequence that sets the looks of `cell`.
+/// The escape sequence that sets the colours and attributes of `cell`.
 fn looks(cell: &Cell) -> String {
     let mut text = "\x1b[0".to_owned();
     let modifiers = [

@@ -1,4 +1,4 @@
-//! Gestures: what a player does with keys and means by it, with timings, on every keyboard.
+//! Gestures: combinations of keys with their timing and their meaning, on every keyboard.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use super::*;
 use crate::game::{Intent, Intents, Script};
 use crate::tui::tap_steps;
 
-/// The times of a tap, in milliseconds.
+/// The duration of a tap, in milliseconds.
 const TAP: u64 = 60;
-/// The longest time of a step.
+/// The longest duration of a step, in milliseconds.
 const STEP: u64 = 20;
-/// The times for which a key may count as held after its release: that in which a repetition is awaited; and the
-/// same with a newer key that was held meanwhile, or tapped.
+/// The times for which a key may still count as held after its release, in milliseconds: while a
+/// repeat may yet come, after a newer key was held meanwhile, and after a newer key was tapped.
 const RELEASED: u64 = 200;
 const AFTER_HOLD: u64 = 520;
 const AFTER_TAP: u64 = 1400;
@@ -33,34 +33,35 @@ const E: Key = Key::Char('e');
 const LEFT: Key = Key::Left;
 const RIGHT: Key = Key::Right;
 
-/// The keyboards: all delays and rates, and a terminal that reports releases.
+/// All keyboards: every combination of delay and rate, and a terminal that reports releases.
 fn keyboards() -> impl Iterator<Item = Option<Rate>> {
     let delays = [250, 400, 500, 660].into_iter();
     delays.flat_map(|delay| [15, 25, 30, 40].map(|rate| Some((delay, rate)))).chain([None])
 }
 
-/// What a key does.
+/// The expected effect of a key.
 #[derive(Clone, Debug)]
 enum Effect {
-    /// That many taps, to the step.
+    /// This number of taps, exact to the step.
     Taps(u32),
-    /// It is held without a gap in these milliseconds, and not later than `coasts` after them. A keyboard that repeats
-    /// begins later by its delay and two intervals.
+    /// The key counts as held throughout `times`, in milliseconds, and no longer than `coasts`
+    /// after the end. With a repeating keyboard, the start is later by the keyboard's delay and two
+    /// intervals.
     Held { times: Range<u64>, coasts: u64 },
-    /// The same, whenever the keyboard begins to repeat.
+    /// As `Held`, but the start does not depend on the time at which the keyboard begins to repeat.
     HeldAtOnce { times: Range<u64>, coasts: u64 },
 }
 use Effect::{Held, HeldAtOnce, Taps};
 
-/// A key that is down during these milliseconds.
+/// A key that is down during a range of milliseconds.
 type Stroke = (Key, Range<u64>);
 
-/// What the player wants in each step.
+/// The player's intents in each step.
 fn wanted(rate: Option<Rate>, strokes: &[Stroke]) -> Vec<Intents> {
     let mut rig = Rig::new(floor(), rate);
     let ends = strokes.iter().map(|(_, times)| times.end).max().unwrap_or(0);
     for milliseconds in 0..=ends {
-        // A key is released before another one is pressed at the same time.
+        // If one key is released and another pressed at the same time, the release comes first.
         for (key, _) in strokes.iter().filter(|(_, times)| times.end == milliseconds) {
             rig.release(*key);
         }
@@ -74,14 +75,15 @@ fn wanted(rate: Option<Rate>, strokes: &[Stroke]) -> Vec<Intents> {
     script.iter().map(|(_, intents)| intents).collect()
 }
 
-/// Whether `intent` is wanted at a time after the first key of a gesture.
+/// Returns true if the player has `intent` at this time after the first key of a gesture.
 fn is_wanted(steps: &[Intents], intent: Intent, milliseconds: u64) -> bool {
-    // The rig waits for 20 ms before it is used.
+    // The rig waits for 20 ms before its first use.
     let step = (20 + milliseconds) * 60 / 1000;
     steps.get(step as usize).is_some_and(|intents| intents.contains(intent))
 }
 
-/// Checks what a gesture does with every keyboard. Keys that are not mentioned do not move the player.
+/// Checks the effects of a gesture on every keyboard. Keys that are not mentioned must not move the
+/// player.
 #[track_caller]
 fn check(name: &str, strokes: &[Stroke], effects: &[(Key, Effect)]) {
     for rate in keyboards() {
@@ -100,7 +102,7 @@ fn check(name: &str, strokes: &[Stroke], effects: &[(Key, Effect)]) {
                 Held { times, coasts } => (times.start + begins..times.end, coasts),
                 HeldAtOnce { times, coasts } => (times, coasts),
             };
-            // A step that ends after the release sees the key up.
+            // A step that ends after the release counts the key as up.
             let mut held = (times.start..times.end - STEP).step_by(10);
             let gap = held.find(|&time| !is_wanted(&steps, intent, time));
             assert_eq!(gap, None, "{case}");
@@ -114,7 +116,7 @@ fn held(times: Range<u64>) -> Effect {
     Held { times, coasts: RELEASED }
 }
 
-/// All pairs of different keys that move the player.
+/// All pairs of different keys that move the player, and whether the two cancel each other.
 fn pairs() -> impl Iterator<Item = (Key, Key, bool)> {
     MOVES.into_iter().flat_map(|(one, wants)| {
         let others = MOVES.into_iter().filter(move |&(other, _)| other != one);
@@ -126,7 +128,7 @@ fn pairs() -> impl Iterator<Item = (Key, Key, bool)> {
 fn adjust_then_go() {
     for (adjusts, goes, _) in pairs() {
         for apart in (60..=300).step_by(40) {
-            // A finger may leave the first key after another one has pressed the second.
+            // A finger may leave the first key only after another finger has pressed the second.
             let tap = if apart == 60 { 80 } else { TAP };
             check(
                 &format!("{adjusts} tapped for {tap} ms, {goes} after {apart} ms"),
@@ -164,7 +166,7 @@ fn adjust_twice_then_go_then_adjust_again() {
     }
 }
 
-/// Fingers overlap, or leave a short gap.
+/// The two key presses overlap, or leave a short gap.
 #[test]
 fn turn_then_go_or_strike() {
     for next in [1410, 1460, 1499, 1520, 1560, 1600] {

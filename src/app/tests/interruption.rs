@@ -1,4 +1,5 @@
-//! Pictures that take long, and the keys that arrive meanwhile. Work is counted, not timed.
+//! Slow pictures, and the keys that arrive while they are rendered. The tests count work instead of
+//! measuring time.
 
 use std::cell::Cell;
 use std::iter;
@@ -14,7 +15,7 @@ use crate::terminal::{Event, QuitReason};
 /// The largest window.
 const WINDOW: Size = Size { width: 1000, height: 200 };
 
-/// As many spheres in one place as a map can have: the whole picture takes thousands of bands.
+/// As many spheres as a map allows, all in one place. The whole picture takes thousands of bands.
 fn spheres() -> Rig {
     let sphere = "{ center = [9, 0, 0], radius = 8, color = '#fff000' },".repeat(141);
     let text = format!("start = {{ at = [0, 0, 0], heading = 0 }}\nsphere = [{sphere}]\n");
@@ -27,7 +28,7 @@ fn press(key: Key) -> Event {
     Event::Key(KeyEvent { key, base: None, modifiers, phase: Phase::Press })
 }
 
-/// Renders while `event` arrives before the band of this number. Returns the number of bands.
+/// Renders while `event` arrives after `band` bands. Returns the result and the number of bands.
 fn render(app: &mut App, event: Event, band: usize) -> (Rendered, usize) {
     let mut bands = 0;
     let rendered = app.render_unless(WINDOW, &mut |comes_first| {
@@ -49,10 +50,10 @@ fn q_is_answered_between_two_bands() {
     let q = press(Key::Char('q'));
     assert_eq!(render(&mut rig.app, q, 3), (Rendered::Interrupted, 4));
     assert!(rig.app.is_stale());
-    // Until it is handled, nothing is painted.
+    // Nothing is painted until the key is handled.
     assert_eq!(render(&mut rig.app, q, 0), (Rendered::Interrupted, 1));
     rig.tap(Key::Char('q'), 20);
-    // The question is shown over what there is of the picture.
+    // The question is shown over the unfinished picture.
     assert_eq!(render(&mut rig.app, q, 1), (Rendered::Partial, 1));
     assert!(text(&mut rig.app).contains("any other key goes on"));
     // Then the picture is rendered again, and any key interrupts it.
@@ -73,7 +74,7 @@ fn what_ends_the_program_or_changes_the_window_comes_first_and_other_keys_wait()
         let rendered = rig.app.render_unless(WINDOW, &mut |comes_first| {
             bands += 1;
             assert!(!comes_first(&event), "{event:?}");
-            // Ends the test, not the picture.
+            // This ends the test, not the picture.
             bands > 9
         });
         assert_eq!(rendered, Rendered::Interrupted);
@@ -88,7 +89,7 @@ fn after_a_new_size_nothing_partial_is_shown() {
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
 }
 
-/// A clock by which every step takes 30 ms.
+/// A clock on which every step takes 30 ms.
 fn slow() -> Duration {
     thread_local!(static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) });
     NOW.set(NOW.get() + Duration::from_millis(30));
@@ -105,7 +106,7 @@ fn steps_that_take_long_slow_the_game_down_and_leave_room_for_keys() {
         rig.now += Duration::from_secs(1);
         rig.app.advance(rig.now);
         let steps = rig.game().steps() - before;
-        // A late key is not behind more than one step either.
+        // A late key also waits for one step at most.
         rig.now += Duration::from_secs(1);
         rig.send(Key::Char('q'), Phase::Press);
         (steps, rig.game().steps() - before - steps)

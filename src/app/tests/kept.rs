@@ -1,4 +1,5 @@
-//! What is kept from one game to the next: the saved game, results, and the ghost of the best run.
+//! Data that is kept from one game to the next: the saved game, results, and the ghost of the best
+//! run.
 
 use std::fs;
 use std::path::PathBuf;
@@ -32,7 +33,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A test that failed before the first change has none.
+        // A test that failed before the first change has no folder.
         _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -45,7 +46,8 @@ fn playing_builtin(store: Store) -> Rig {
     rig
 }
 
-/// Walks, turns, throws a pebble and knocks about, so that chance and guards have their part in the state.
+/// Walks, turns, throws a pebble and uses the lamp, so the state also depends on chance and on the
+/// guards.
 fn play_about(rig: &mut Rig) {
     rig.press(W);
     rig.wait(1500);
@@ -57,8 +59,8 @@ fn play_about(rig: &mut Rig) {
     rig.wait(400);
 }
 
-/// Leaves by the pause, and goes on in another program with the same folder. Returns the game that was left
-/// and the one that goes on, after as many steps.
+/// Leaves the game from the pause page, and continues it in a second program on the same folder.
+/// Returns the original game and the continued one, after the same number of steps.
 fn left_and_continued(rig: Rig, folder: &Folder, offers: Offers) -> (Game, Rig) {
     let mut rig = rig;
     rig.tap(Key::Char('p'), 30);
@@ -184,7 +186,7 @@ fn switching_the_ghost_says_so_and_the_map_shows_it() {
     rig.wait(300);
     let shown = text(&mut rig.app, 120, 24);
     assert!(shown.contains('▹') && shown.contains("The ghost of your best run is on"), "{shown}");
-    // As a goal, it goes after some time of play.
+    // Like a goal, the notice disappears after some time of play.
     rig.tap(Key::Char('g'), 30);
     rig.wait(800);
     rig.app.notice.as_mut().unwrap().moved(4 * 60);
@@ -227,6 +229,6 @@ grid = '''
         .filter(|&place| with[place] != without[place])
         .collect();
     assert!((8..400).contains(&changed.len()), "{}", changed.len());
-    // It stands three cells ahead, in the middle of the picture.
+    // The ghost stands three cells ahead, in the middle of the picture.
     assert!(changed.iter().all(|&(x, _)| (30..50).contains(&x)), "{changed:?}");
 }

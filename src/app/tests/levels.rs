@@ -1,10 +1,10 @@
-//! Maps played to their exits by bytes that a keyboard could send to a terminal without key
-//! releases.
+//! Maps that are played to their exits by bytes that a keyboard could send to a terminal without
+//! key releases.
 //!
-//! A simulated player looks at their position, and presses and releases keys. The keyboard converts
-//! that to bytes, with one key repeating at a time, and the game gets nothing else. The player
-//! follows the way of the level's script, segment by segment. The script's own intents cannot be
-//! used, because no keyboard can send them.
+//! A simulated player observes their own position, and presses and releases keys. The keyboard
+//! converts the keys to bytes, with at most one key repeating at a time, and the game receives
+//! nothing else. The player follows the path of the level's script, segment by segment. The
+//! script's own intents cannot be used, because no keyboard can produce them.
 
 use std::f64::consts::PI;
 
@@ -12,32 +12,32 @@ use super::*;
 use crate::game::{Intent, Script};
 use crate::world::Cell;
 
-/// Two levels without their guards, which a player who stops to look around does not outwit.
+/// Two levels without their guards. A player who stops to look around cannot evade the guards.
 pub(crate) const CISTERN: &str = include_str!("../../../tests/maps/cistern.toml");
 pub(crate) const OBSERVATORY: &str = include_str!("../../../tests/maps/observatory.toml");
 const CISTERN_SCRIPT: &str = include_str!("../../../maps/cistern.script");
 const OBSERVATORY_SCRIPT: &str = include_str!("../../../maps/observatory.script");
 
-/// The default of most systems.
+/// The default on most systems.
 const RATE: Rate = (500, 30);
-/// The tolerances of position, in cells, and of heading, in radians.
+/// The tolerances: the position in cells, and the heading in radians.
 const NEAR: f64 = 0.14;
 const AIMED: f64 = PI / 72.0;
 /// The distance after which the player aims again, in cells.
 const FAR: f64 = 3.0;
-/// Shorter distances are walked by taps, in cells.
+/// The distance below which the player walks by taps, in cells.
 const BY_TAPS: f64 = 1.2;
-/// The distance from the middle of a pillar to its edge, with some reserve, in cells.
+/// The distance from the middle of a pillar to its edge, with a margin, in cells.
 const ON_PILLAR: f64 = 0.35;
-/// Longer jumps are running jumps, in cells.
+/// The distance above which a jump needs a run, in cells.
 const FAR_JUMP: f64 = 2.4;
 
-/// A straight part of the way, from standstill to standstill.
+/// A straight part of the path, from standstill to standstill.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     from: DVec2,
     to: DVec2,
-    /// The distance after which the player jumps.
+    /// The distance after which the player jumps, in cells.
     jumps_after: Option<f64>,
     ducks: bool,
 }
@@ -86,7 +86,7 @@ impl Rig {
         self.game().camera(FieldOfView::default()).heading.direction()
     }
 
-    /// The distances to `target` ahead and to the right.
+    /// The distances to `target`: ahead, and to the right.
     fn way_to(&self, target: DVec2) -> DVec2 {
         let (direction, way) = (self.direction(), target - self.position());
         DVec2::new(direction.dot(way), direction.perp().dot(way))
@@ -106,14 +106,15 @@ impl Rig {
         }
     }
 
-    /// Stops at once: a tap in the other direction leads back to where the key was released.
+    /// Stops at once. A tap in the opposite direction leads back to the place where the key was
+    /// released.
     fn brake(&mut self) {
         self.release(W);
         self.tap(Key::Char('s'), 60);
         self.settle();
     }
 
-    /// Waits until `target` is at most `left` cells ahead, or nothing moves any more.
+    /// Waits until `target` is at most `left` cells ahead, or until the player no longer moves.
     fn wait_until_near(&mut self, target: DVec2, left: f64) {
         let (mut last, mut still) = (self.position(), 0);
         while self.way_to(target).x > left && still < 1500 && !self.game().is_finished() {
@@ -123,7 +124,7 @@ impl Rig {
         }
     }
 
-    /// Approaches `target` by taps, in any direction.
+    /// Approaches `target` by taps in any direction.
     fn shuffle(&mut self, target: DVec2) {
         for _ in 0..4 {
             let way = self.way_to(target);
@@ -156,8 +157,8 @@ impl Rig {
         self.shuffle(target);
     }
 
-    /// The distance to the edge of the floor ahead, if it is below `most` cells. On a pillar, the
-    /// edge is all around.
+    /// The distance to the edge of the floor ahead, if it is less than `most` cells. On a pillar,
+    /// the edge is on all sides.
     fn edge(&self, most: f64) -> Option<f64> {
         let (world, feet) = (self.game().world(), self.game().feet());
         let places = (0..).map(|index| f64::from(index) * 0.01).take_while(|&ahead| ahead < most);
@@ -169,7 +170,7 @@ impl Rig {
         Some(if edge > 0.0 { edge } else { ON_PILLAR })
     }
 
-    /// Taps quickly until `target` is reached, which is as fast as walking.
+    /// Taps quickly until `target` is reached. This is as fast as walking.
     fn run_up(&mut self, target: DVec2) {
         for millisecond in 0..1500 {
             if self.way_to(target).x <= 0.0 {
@@ -184,10 +185,10 @@ impl Rig {
         }
     }
 
-    /// Jumps to `target` after `after` cells.
+    /// Walks `after` cells, then jumps to `target`.
     fn jump(&mut self, after: f64, target: DVec2) {
         let after = self.edge(after + 1.0).map_or(after, |edge| edge + 0.16);
-        // A key has effect from the next step on.
+        // A key takes effect in the next step.
         let takes_off = self.position() + self.direction() * (after - 0.06);
         let runs = takes_off.distance(target) > FAR_JUMP;
         if runs {
@@ -247,7 +248,7 @@ fn cistern_and_observatory_are_played_to_the_exit() {
                 rig.now
             );
         }
-        // The script ends in the exit's cell; the player may stand a tap before it.
+        // The script ends in the exit's cell, but the player may stop a tap short of it.
         rig.taps(W, 1);
         rig.settle();
         assert!(rig.game().is_finished(), "{name}: at {}", rig.position());

@@ -1,4 +1,4 @@
-//! Levels that hurt: dying, going on, results, ghosts, and what is kept.
+//! Levels that hurt: death, continuation, results, ghosts, and stored data.
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -11,7 +11,8 @@ use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
 use crate::tui::GlyphSet;
 
-/// Spikes that come out at once, a treasure, a note, and the exit behind them.
+/// Spikes that come out immediately, with a note before them, and a treasure and the exit behind
+/// them.
 pub(crate) const DANGER: &str = r##"
 title = "Danger"
 par = 30
@@ -30,7 +31,7 @@ grid = '''
 "X" = { exit = true }
 "##;
 
-/// A map of that name with that text.
+/// A map called `name` with this text.
 pub(crate) fn own_map(name: &str, text: &'static str) -> OwnMap {
     let key = map_key(name, text);
     let read = || parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary());
@@ -41,13 +42,13 @@ pub(crate) fn own_map(name: &str, text: &'static str) -> OwnMap {
     OwnMap { name: name.to_owned(), key, load: Box::new(load) }
 }
 
-/// What a title with that map offers.
+/// The offers of a title, with this map among the player's own.
 pub(crate) fn offering(name: &'static str, text: &'static str) -> Offers {
     let maps = move || vec![own_map(name, text)];
     Offers { maps: Some(Box::new(maps)), ..Offers::default() }
 }
 
-/// A game in the map `text`, chosen from a title.
+/// A game in the map `text`, chosen on the title screen.
 pub(crate) fn playing_own(text: &'static str, store: Store) -> Rig {
     let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
@@ -61,7 +62,7 @@ pub(crate) fn danger() -> Rig {
     playing_own(DANGER, Store::in_memory())
 }
 
-/// A player who stands on the spikes until they are dead.
+/// A player who stood on the spikes until they died.
 pub(crate) fn dead() -> Rig {
     let mut rig = danger();
     rig.tap(Key::Char('g'), 30);
@@ -115,10 +116,10 @@ fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
 }
 
-/// A player who has run to the exit of that map.
+/// A player who has run to the exit of the map with the spikes.
 pub(crate) fn won() -> Rig {
     let mut rig = danger();
-    // Before the spikes come out, by running.
+    // The player runs, to pass before the spikes come out.
     rig.tap(Key::Char('r'), 30);
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
@@ -245,7 +246,7 @@ fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
     assert!(!text(&mut rig.app, 80, 24).contains("Restart"));
-    // The try is over, as by a death.
+    // The try is over, as after a death.
     rig.app.log = RunLog::default();
     rig.choose("Leave to the title");
     rig.choose("Daily run");

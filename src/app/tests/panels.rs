@@ -12,7 +12,7 @@ use crate::app::page::{framed, leaving, message};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
-/// All screens, each with the game behind it.
+/// All screens, each with a game behind it.
 fn screens() -> Vec<(&'static str, Rig)> {
     let opened = |label: &'static str| {
         let mut rig = titled(Offers::default(), Store::in_memory());
@@ -71,8 +71,7 @@ fn every_screen_can_be_drawn_in_any_window_and_mode() {
     }
 }
 
-/// The windows of 0 to 3 columns and rows, those about the smallest in which the game is played, and a
-/// large one.
+/// Windows of 0 to 3 columns and rows, windows around the smallest playable size, and a large one.
 fn windows() -> impl Iterator<Item = Rect> {
     let small = (0..4).flat_map(|width| (0..4).map(move |height| (width, height)));
     let sizes = small.chain([(19, 6), (20, 5), (20, 6), (21, 7), (36, 12), (80, 24)]);

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The exit is a few cells ahead.
+/// A level whose exit is a few cells ahead.
 const WAY_OUT: &str = r##"
 grid = '''
 #########
@@ -22,11 +22,11 @@ fn start(rate: Option<Rate>) -> Rig {
     Rig::new(parse_str(WAY_OUT).unwrap(), rate)
 }
 
-/// A game at the exit, with `key` held for `milliseconds` before the panel appears.
+/// A game at the exit. `key` is held for the last `milliseconds` before the panel appears.
 fn at_the_exit(rate: Option<Rate>, key: Key, milliseconds: u64) -> Rig {
     let mut rig = start(rate);
     rig.tap(Key::Char('g'), 10);
-    // The exit is reached after 1570 ms.
+    // The player reaches the exit after 1570 ms.
     rig.wait(1590 - milliseconds);
     rig.press(key);
     while rig.app.screen() == Screen::Playing {
@@ -61,7 +61,7 @@ fn nothing_confirms_in_the_first_half_second() {
         rig.wait(300);
         rig.tap(ENTER, 50);
         assert_eq!(rig.app.screen(), Screen::LevelDone);
-        // The time to the second press could be the keyboard's delay.
+        // The time until the second press could be the keyboard's delay.
         rig.wait(400);
         rig.tap(ENTER, 50);
         rig.wait(200);
@@ -89,7 +89,7 @@ grid = '''
 "^" = { spikes = 1.0 }
 "##;
 
-/// A game whose player walks over spikes until a key to walk is pressed.
+/// A game whose player walks over spikes until a walking key is pressed.
 fn on_spikes(rate: Option<Rate>) -> Rig {
     let mut rig = Rig::new(parse_str(DEADLY).unwrap(), rate);
     rig.tap(Key::Char('g'), 10);
@@ -97,7 +97,7 @@ fn on_spikes(rate: Option<Rate>) -> Rig {
     rig
 }
 
-/// Waits until the player is dead; returns how long that took.
+/// Waits until the player is dead. Returns the time in milliseconds.
 fn wait_for_death(rig: &mut Rig) -> u64 {
     for milliseconds in 0..20_000 {
         if rig.app.screen() == Screen::Dead {
@@ -159,8 +159,8 @@ fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
         let case = format!("released after {released:?} ms, answered after {answered}");
         assert_eq!(rig.app.screen() == Screen::Playing, is_answered, "{case}");
     }
-    // Without releases: a key that repeats is up once it stops, and a key that was tapped may be down for as long as
-    // the first repetition may take.
+    // Without release reports, a repeating key is up once it stops repeating. A tapped key may be
+    // down for as long as the first repeat may take.
     for (key_lasts, answered, is_answered) in
         [(300, 550, true), (3000, 900, false), (3000, 1050, true)]
     {
@@ -247,7 +247,7 @@ fn escape_closes_help_and_pause_and_leaving_is_asked_once() {
             assert_eq!((rig.app.screen(), rig.app.has_left), (Screen::Playing, false));
             rig.wait(2000);
         }
-        // A held key does not confirm its own question.
+        // A held key must not confirm the question that it opened.
         rig.press(Key::Char('q'));
         rig.wait(3000);
         assert_eq!((rig.app.screen(), rig.app.has_left), (Screen::Leaving, false));

@@ -1,4 +1,4 @@
-//! When the screen is drawn anew while guards move.
+//! Redraws while guards move.
 
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
@@ -16,7 +16,8 @@ fn picture(rig: &mut Rig) -> Vec<Cell> {
     buffer.content()[..cells].to_vec()
 }
 
-/// Plays for that many steps and draws when the screen is out of date. Returns the number of frames.
+/// Plays for `steps` steps, and draws whenever the screen is out of date. Returns the number of
+/// frames.
 fn frames(rig: &mut Rig, steps: u32) -> usize {
     let drawn = (0..steps).filter(|_| {
         rig.wait(17);
@@ -88,7 +89,8 @@ fn a_guard_who_stands_in_view_costs_a_frame_only_when_they_turn() {
     assert!((2..200).contains(&turns), "{turns}");
 }
 
-/// Rooms, of which the player is in the first; a lamp-bearer and a warden go through all others.
+/// Several rooms. The player is in the first one; a lantern bearer and a warden patrol all the
+/// others.
 const ROOMS: &str = "
 ######################
 #....#1......#......2#

@@ -1,4 +1,4 @@
-//! Saved games: levels that have changed, descents, and the settings that are kept.
+//! Saved games: changed levels, descents, and the settings that the store keeps.
 
 use super::missions::text;
 use super::titles::titled;
@@ -10,7 +10,7 @@ use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
 use crate::tui::GlyphSet;
 
-/// Leaves a game to the title, which keeps its store.
+/// Leaves a game for the title, which keeps the same store.
 fn leave(rig: &mut Rig) -> Game {
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
@@ -40,13 +40,13 @@ fn walk(rig: &mut Rig) {
     rig.wait(700);
 }
 
-/// The game that was saved last.
+/// The newest saved game.
 fn newest(rig: &Rig) -> Option<SavedGame> {
     let id = rig.app.store.saves().next()?.id();
     rig.app.store.saved(id)
 }
 
-/// The names in the list of saved games.
+/// The level names and difficulties in the list of saved games.
 fn saved_levels(rig: &Rig) -> Vec<(&str, Difficulty)> {
     let saves = rig.app.store.saves();
     saves.map(|save| (save.level.as_str(), save.rules.difficulty)).collect()
@@ -58,7 +58,7 @@ fn a_game_in_a_level_that_has_changed_can_begin_anew() {
     leave(&mut rig);
     let saved = newest(&rig).unwrap();
     let id = saved.save.id();
-    // In the level as it was, the script led to another state.
+    // Simulates a change of the level: the script now leads to a different state.
     let with_checksum = |checksum| {
         let save = Save { checksum, ..saved.save.clone() };
         SavedGame { save, script: saved.script.clone() }
@@ -104,7 +104,7 @@ fn a_descent_that_is_left_goes_on_once() {
         }
         assert_eq!(left, *rig.game());
         assert_eq!(newest(&rig), None);
-        // It can be left again, with the script from its beginning on.
+        // The descent can be saved again, with the script from its beginning.
         let steps = leave(&mut rig).tally().steps;
         let saved = newest(&rig).unwrap();
         assert_eq!(Script::parse(&saved.script, "it").unwrap().steps(), steps);
@@ -142,14 +142,14 @@ fn each_level_and_difficulty_has_a_saved_game_and_the_newest_is_the_first() {
     assert!(since < 60, "it has gone on for the time of this test: {since} steps");
 }
 
-/// The program as started with a built-in level.
+/// The program, started with a built-in level.
 fn started(level: &str, store: Store) -> Rig {
     let index = builtin::LEVELS.iter().position(|it| it.name == level).unwrap();
     let levels = Opening::Levels(Box::new(Levels::builtin(index).unwrap()));
     Rig::of(App::opened(levels, Settings::default(), store), Some((500, 30)))
 }
 
-/// Ends the program, and takes what it keeps.
+/// Ends the program, and returns its store.
 fn quit(mut rig: Rig) -> Store {
     rig.app.leave();
     std::mem::replace(&mut rig.app.store, Store::in_memory())
@@ -162,7 +162,7 @@ fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
     walk(&mut rig);
     let left = rig.game().clone();
     let store = quit(rig);
-    // Another level is not asked about, and takes the place of nothing.
+    // The other level has no saved game, so nothing is asked and nothing is replaced.
     let mut rig = started("citadel", store);
     walk(&mut rig);
     let rig = started("cellar", quit(rig));
@@ -174,7 +174,7 @@ fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
     let first = saved(&rig).unwrap();
     assert_eq!(first.save.checksum, Some(left.checksum()));
 
-    // Leaving at the question, or before the first step, loses nothing.
+    // Nothing is lost by leaving at the question, or before the first step.
     let mut rig = started("cellar", quit(rig));
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("Cellar on normal: 0:02 played"), "{shown}");
@@ -260,7 +260,7 @@ fn a_saved_game_is_removed_from_the_list_after_a_question() {
     assert!(!text(&mut rig.app, 80, 24).contains("Continue"));
 }
 
-/// A store in which there is no room for another game.
+/// A store without room for another game.
 fn full() -> Store {
     let mut store = Store::in_memory();
     let rules = crate::game::Rules::default();
@@ -299,7 +299,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
     let store = quit(rig);
     assert_eq!(store.saves().next().unwrap().level, "cellar");
 
-    // The try of a day does not begin where it could not be left.
+    // The daily try does not begin if it could not be saved.
     let offers = Offers { today: Some(20_261_122), ..Offers::default() };
     let mut rig = titled(offers, store);
     rig.choose("Daily run");
@@ -312,7 +312,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
 #[test]
 fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
-    // From the shell, it is asked as from the title.
+    // A start from the shell asks the same question as the title does.
     let opening = Opening::Daily(offers());
     let mut rig = Rig::of(App::opened(opening, Settings::default(), Store::in_memory()), None);
     assert_eq!(rig.app.screen(), Screen::Daily);
@@ -347,7 +347,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, Screen::Playing));
     assert!(rig.game().elapsed() > 1.5);
     assert_eq!(newest(&rig), None);
-    // The program is killed: the try is over.
+    // The program is killed, so the try is over.
     rig.app.log = RunLog::default();
     rig.app.return_to_title();
     rig.choose("Daily run");
@@ -356,7 +356,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     assert_eq!(rig.app.levels.descent, Some(Descent::Practice));
     walk(&mut rig);
     leave(&mut rig);
-    // Practice has a saved game of its own.
+    // Practice has its own saved game.
     rig.choose("Daily run");
     rig.choose("Practise");
     assert_eq!(rig.app.screen(), Screen::HasSaved);
@@ -395,7 +395,7 @@ fn a_map_in_a_file_goes_on_wherever_it_lies() {
     rig.choose("Continue");
     assert!(rig.game().tally().steps >= left.tally().steps);
     leave(&mut rig);
-    // A change that leads elsewhere.
+    // A change of the map that makes the script lead elsewhere.
     let text = PIT.replace("start = 0", "start = 180").leak();
     rig.app.offers = Some(offering(text));
     rig.choose("Continue");

@@ -15,7 +15,7 @@ fn app(level: &str, settings: Settings) -> App {
     app_in(level.world().unwrap(), settings)
 }
 
-/// The second of three levels.
+/// A game in the second of three levels.
 fn app_in(world: World, settings: Settings) -> App {
     let levels = Levels::new(Level::from(world), std::iter::empty());
     App::new(levels.numbered(2, 3), settings)

@@ -1,4 +1,4 @@
-//! The effect of keys by keyboard: the table that docs/keys.md shows.
+//! The effect of keys on each keyboard: the table in docs/keys.md.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::*;
 
 const DELAYS: [u64; 4] = [250, 400, 500, 660];
 const RATES: [u32; 4] = [15, 25, 30, 40];
-/// The duration of a tap.
+/// The duration of a tap, in milliseconds.
 const TAP: u64 = 80;
 
 fn rates() -> impl Iterator<Item = Option<Rate>> {
@@ -14,7 +14,7 @@ fn rates() -> impl Iterator<Item = Option<Rate>> {
     legacy.chain([None])
 }
 
-/// The degrees and the cells by which `plays` turns and walks.
+/// The angle in degrees and the distance in cells by which `plays` moves the player.
 fn measured(rate: Option<Rate>, plays: impl Fn(&mut Rig)) -> (f64, f64) {
     let mut rig = Rig::new(floor(), rate);
     let (start, degrees) = (rig.position(), rig.degrees());
@@ -36,7 +36,8 @@ fn held(rate: Option<Rate>, key: Key) -> (f64, f64) {
     measured(rate, |rig| rig.tap(key, 1000))
 }
 
-/// The degrees and the cells in 2 seconds of walking and turning at the same time.
+/// The angle in degrees and the distance in cells after 2 seconds of walking and turning at the
+/// same time.
 fn chord(rate: Option<Rate>) -> (f64, f64) {
     let mut rig = Rig::new(floor(), rate);
     rig.press(W);
@@ -52,7 +53,7 @@ fn chord(rate: Option<Rate>) -> (f64, f64) {
     (turned, walked)
 }
 
-/// The number of running jumps, of six from different positions, that cross a pit of one cell.
+/// The number of running jumps, out of six from different positions, that cross a pit of one cell.
 fn jumps(rate: Option<Rate>) -> usize {
     let places = [5.1, 5.3, 5.5, 5.7, 5.9, 6.1];
     let clears = places.into_iter().filter(|&place| {

@@ -1,4 +1,4 @@
-//! The title and its menus, by keys.
+//! The title and its menus, controlled by keys.
 
 use super::missions::own_map;
 use super::*;
@@ -22,7 +22,7 @@ pub(crate) fn titled(offers: Offers, store: Store) -> Rig {
 }
 
 impl Rig {
-    /// Selects the entry with that label and chooses it.
+    /// Selects the entry called `label`, and chooses it.
     #[track_caller]
     pub(crate) fn choose(&mut self, label: &str) {
         let choice = |rig: &Rig| rig.app.pages.menu.label();
@@ -45,7 +45,7 @@ fn a_level_plays_itself_behind_the_title() {
     rig.wait(1000);
     assert!((rig.app.game.elapsed() - before - 1.0).abs() < 0.05);
     assert!(rig.app.is_stale());
-    // Keys of the game do not reach it.
+    // Game keys do not reach the level behind the title.
     let mut other = title();
     other.wait(1000);
     for key in [Key::Left, Key::Char('d'), Key::Char('e'), Key::Char('g'), Key::Char('m')] {
@@ -178,7 +178,7 @@ fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
     missions::text(&mut rig.app, 80, 24);
     assert_eq!(searches.get(), 0);
     assert!(rig.app.own_maps.is_empty() && rig.app.ghost.is_none());
-    // No level but that behind the title exists.
+    // Only the level behind the title has been created.
     assert!(
         rig.app.levels.stage.begin(Difficulty::Normal).is_some_and(|game| game.grid().is_none())
     );

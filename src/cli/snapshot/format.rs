@@ -1,4 +1,4 @@
-//! The formats of a snapshot: text, ANSI, JSON, PNG. They take cells row by row.
+//! The formats of a snapshot: text, ANSI, JSON and PNG. Each receives the cells row by row.
 
 use std::io::{self, BufWriter, Write};
 
@@ -24,16 +24,16 @@ pub(crate) enum Format {
     Png,
 }
 
-/// A writer of cells, row by row from the top.
+/// Writes cells row by row, from the top.
 pub(crate) trait Writer {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()>;
 
-    /// Writes the part after the last row.
+    /// Writes the end of the output, after the last row.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
 impl Format {
-    /// The writer of a picture of `size` with cells of this shape.
+    /// A writer for a picture of `size` whose cells have this shape.
     pub(crate) fn writer(
         self,
         size: Size,
@@ -44,21 +44,21 @@ impl Format {
             Self::Text => Box::new(Text { output: BufWriter::new(output) }),
             Self::Ansi => Box::new(Ansi { output: BufWriter::new(output), line: Bytes::default() }),
             Self::Json => Box::new(Json::new(BufWriter::new(output), size)?),
-            // It has a buffer of its own, and reports no error of one behind it.
+            // PNG has its own buffer, and would not report an error from a second buffer behind it.
             Self::Png => Box::new(Png::new(output, size, aspect)?),
         })
     }
 }
 
-/// The width and height of a glyph in pixels, before it is scaled to the cell.
+/// The side of a glyph in pixels, before the glyph is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;
-/// The largest number of pixels. For a larger picture, cells become smaller.
+/// The maximum number of pixels. Cells become smaller in a larger picture.
 const MOST_PIXELS: u64 = 1 << 26;
-/// The terminal's default colours, for cells without a colour.
+/// The terminal's default colours, for cells that have none.
 const FOREGROUND: Rgb = Rgb::WHITE;
 const BACKGROUND: Rgb = Rgb::BLACK;
 
-/// Writes the characters of cells.
+/// Writes the characters of cells, without colours.
 struct Text<W> {
     output: W,
 }
@@ -76,8 +76,8 @@ impl<W: Write> Writer for Text<W> {
     }
 }
 
-/// Writes cells as text with the escape sequences of their colours. Every line ends in the
-/// terminal's default colours, so that pagers and scrolling can cut between lines.
+/// Writes cells as text with escape sequences for their colours. Every line ends in the terminal's
+/// default colours, so pagers and scrolling can cut between lines.
 struct Ansi<W> {
     output: W,
     line: Bytes,
@@ -107,7 +107,8 @@ impl<W: Write> Writer for Ansi<W> {
     }
 }
 
-/// Writes cells as one JSON object: `{"cols": 80, "rows": 24, "cells": [[{"ch": "▀", "fg": "#rrggbb", "bg": "#rrggbb"}, …], …]}`.
+/// Writes cells as one JSON object:
+/// `{"cols": 80, "rows": 24, "cells": [[{"ch": "▀", "fg": "#rrggbb", "bg": "#rrggbb"}, …], …]}`.
 struct Json<W> {
     output: W,
     is_first: bool,
@@ -148,7 +149,7 @@ impl<W: Write> Writer for Json<W> {
     }
 }
 
-/// Writes cells as pixels, with their glyphs, as in a terminal.
+/// Writes cells as pixels with their glyphs, as a terminal shows them.
 struct Png<W: Write + 'static> {
     stream: StreamWriter<'static, W>,
     cell_width: u32,
@@ -206,9 +207,9 @@ impl<W: Write + 'static> Writer for Png<W> {
 
 /// The picture of a character.
 enum Glyph {
-    /// Dots that fill the cell whatever its size, as terminals draw them.
+    /// Dots that fill a cell of any size, as terminals draw them.
     Mosaic(Mosaic),
-    /// Rows from the top. The lowest bit of each is the leftmost dot.
+    /// Rows from the top. The lowest bit of a row is the leftmost dot.
     Bitmap([u8; GLYPH_SIDE as usize]),
 }
 
@@ -222,7 +223,7 @@ impl Glyph {
         Self::Bitmap(bitmap.unwrap_or_default())
     }
 
-    /// Whether a pixel of a cell of this size has the text colour.
+    /// Returns true if this pixel of a cell of this size has the text colour.
     fn covers(&self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> bool {
         match self {
             Self::Mosaic(mosaic) => mosaic.has(x * 2 / width, y * 12 / height),

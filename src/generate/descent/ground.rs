@@ -1,4 +1,4 @@
-//! The ground of a floor: its cells, the ways from the start, and what is in sight.
+//! The ground of a floor: its cells, the paths from the start, and visibility between cells.
 
 use std::iter;
 use std::num::NonZeroU32;
@@ -9,27 +9,27 @@ use crate::world::{Cell, Flood};
 
 /// The cells of a floor before things and guards are placed.
 pub(crate) struct Ground {
-    /// The characters, row by row.
+    /// The map characters, row by row.
     cells: Vec<Vec<u8>>,
-    /// The kind of each cell, row by row.
+    /// The properties of each cell, row by row.
     kinds: Vec<Kind>,
     start: Cell,
-    /// The steps from the start to each cell, row by row; `None` if there is no way.
+    /// The number of steps from the start to each cell, row by row; `None` if there is no path.
     distances: Vec<Option<u32>>,
-    /// The cells that can be reached, the nearest first.
+    /// The reachable cells, nearest first.
     reachable: Vec<Cell>,
 }
 
-/// The properties of a cell that matter for ways and for sight.
+/// The properties of a cell that affect paths and visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 struct Kind {
-    /// Whether one can walk there, once doors are open.
+    /// `true` if a player can walk there once doors are open.
     is_walkable: bool,
     is_door: bool,
-    /// Whether nothing stands on its floor.
+    /// `true` if the cell is floor with nothing on it.
     is_bare: bool,
-    /// Whether nobody sees through it.
+    /// `true` if the cell blocks the view.
     is_opaque: bool,
 }
 
@@ -58,37 +58,38 @@ impl Ground {
         self.start
     }
 
-    /// The cells that can be reached from the start, the nearest first.
+    /// The cells that can be reached from the start, nearest first.
     pub(crate) fn reachable(&self) -> &[Cell] {
         &self.reachable
     }
 
-    /// The number of cells that can be reached and have nothing opaque around them.
+    /// The number of reachable cells that have nothing opaque around them.
     pub(crate) fn open_count(&self) -> usize {
         self.reachable.iter().filter(|&&cell| self.is_open(cell)).count()
     }
 
-    /// The steps from the start to a cell that can be reached; 0 for another one.
+    /// The number of steps from the start to a reachable cell; 0 for any other cell.
     pub(crate) fn distance(&self, cell: Cell) -> u32 {
         self.distances[self.index(cell)].unwrap_or(0)
     }
 
-    /// Whether a cell is floor on which nothing stands.
+    /// Returns true if a cell is floor with nothing on it.
     pub(crate) fn is_bare(&self, cell: Cell) -> bool {
         self.kind(cell).is_bare
     }
 
-    /// The number of cells on which one can walk beside a cell that is not on the edge.
+    /// The number of walkable cells beside a cell that is not on the edge.
     pub(crate) fn exits_of(&self, cell: Cell) -> usize {
         cell.beside().filter(|&cell| self.kind(cell).is_walkable).count()
     }
 
-    /// The cells within a number of steps on open floor, and the steps to them, the nearest first.
+    /// The cells within `most` steps over open floor, nearest first, with the number of steps to
+    /// each.
     pub(crate) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
         self.ways_from(cell, most, |kind| kind.is_walkable && !kind.is_door)
     }
 
-    /// Draws the exit into one of the cells that are farthest from the start.
+    /// Draws the exit into one of the cells farthest from the start.
     pub(crate) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
         let bare = self.reachable.iter().filter(|&&cell| cell != self.start && self.is_bare(cell));
         let bare: Vec<Cell> = bare.copied().collect();
@@ -101,10 +102,11 @@ impl Ground {
         exit
     }
 
-    /// Whether something that stands in one cell could be seen from another: whether a line from the
-    /// middle of one to the middle or the edge of the other meets nothing opaque.
+    /// Returns true if something in the cell `to` could be seen from the cell `from`: a line from
+    /// the middle of `from` to the middle of `to`, or to a point near its edge, meets nothing
+    /// opaque.
     pub(crate) fn sees(&self, from: Cell, to: Cell) -> bool {
-        /// In hundredths of a cell from the middle.
+        /// The targets, in hundredths of a cell from the middle.
         const BODY: [(i64, i64); 9] = [
             (0, 0),
             (-40, 0),
@@ -116,7 +118,7 @@ impl Ground {
             (-30, 30),
             (30, 30),
         ];
-        /// The points of a line for each cell of its length.
+        /// The number of points tested for each cell of a line's length.
         const POINTS: i64 = 16;
         let middle = |place: u32| i64::from(place) * 100 + 50;
         let (x, y) = (middle(from.column), middle(from.row));
@@ -126,7 +128,7 @@ impl Ground {
             let side = 100 * count;
             (1..count).all(|point| {
                 let (x, y) = (x * count + dx * point, y * count + dy * point);
-                // On the line between two cells, a point says nothing about either.
+                // A point on the border of two cells says nothing about either.
                 let is_between = x % side == 0 || y % side == 0;
                 let cell = || Cell { column: (x / side) as u32, row: (y / side) as u32 };
                 is_between || !self.kind(cell()).is_opaque
@@ -140,19 +142,20 @@ impl Ground {
         NonZeroU32::new(width as u32).unwrap_or(NonZeroU32::MIN)
     }
 
-    /// The characters, row by row.
+    /// The map characters, row by row.
     pub(crate) fn rows(&self) -> Vec<Vec<u8>> {
         self.cells.clone()
     }
 
-    /// The cells within `most` steps of one for which `is_open` is true, the nearest first.
+    /// The cells within `most` steps of `from` through cells for which `is_open` returns true,
+    /// nearest first, with the number of steps to each.
     fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(Kind) -> bool) -> Vec<(Cell, u32)> {
         let mut flood = Flood::new((self.width().get(), self.cells.len() as u32), from);
         let next = || flood.next(|cell| is_open(self.kind(cell)));
         iter::from_fn(next).take_while(|&(_, distance)| distance <= most).collect()
     }
 
-    /// Whether none of the cell and its eight neighbours is opaque.
+    /// Returns true if neither the cell nor any of its eight neighbours is opaque.
     fn is_open(&self, Cell { column, row }: Cell) -> bool {
         (row - 1..=row + 1).all(|row| {
             (column - 1..=column + 1).all(|column| !self.kind(Cell { column, row }).is_opaque)

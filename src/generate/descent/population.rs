@@ -1,4 +1,4 @@
-//! The population of a floor: its treasure, healing and supplies, its guards, and where they walk.
+//! The population of a floor: treasure, healing, supplies and guards with their patrols.
 
 use std::ops::RangeInclusive;
 
@@ -12,26 +12,26 @@ use crate::world::{
     World,
 };
 
-/// The steps between the start and an item, at least.
+/// The minimum number of steps between the start and an item.
 const FROM_START: u32 = 4;
-/// The steps along the grid between two items, if there is room.
+/// The number of steps along the grid between two items, if there is room.
 const ITEMS_APART: u32 = 5;
-/// The cells that are compared for the place of an item.
+/// The number of cells compared for the place of an item.
 const ITEM_PLACES: usize = 12;
-/// The distance of guards from the start at first, in cells.
+/// The minimum distance between a guard's post and the start, in cells.
 pub(crate) const GUARD_DISTANCE: u32 = 8;
-/// The guards on the first floor at the least difficulty, and on the deepest ones.
+/// The number of guards at the lowest difficulty: on the first floor, and on the deepest floors.
 const FEWEST_GUARDS: u32 = 2;
 const MOST_GUARDS: u32 = 12;
-/// Reachable cells for each guard, at least.
+/// The minimum number of reachable cells for each guard.
 const CELLS_EACH: usize = 24;
-/// The distance of two guards along the grid, if there is room.
+/// The distance between two guards along the grid, if there is room.
 const GUARDS_APART: u32 = 6;
-/// The cells that are compared for the place of a guard.
+/// The number of cells compared for the place of a guard.
 const GUARD_PLACES: usize = 16;
-/// The longest way between two waypoints, and the shortest, in steps.
+/// The range of path lengths between two waypoints, in steps.
 const LEG: RangeInclusive<u32> = 5..=14;
-/// The kinds in the order of the floors on which they come first.
+/// The kinds of guard, in the order of the floors on which they first appear.
 const KINDS: [GuardKind; 5] = [
     GuardKind::Warden,
     GuardKind::Listener,
@@ -40,10 +40,10 @@ const KINDS: [GuardKind; 5] = [
     GuardKind::Archer,
 ];
 
-/// The items, in the cells where they lie.
+/// The items, each with its cell.
 pub(crate) struct Items {
     things: Vec<Thing>,
-    /// The exit, where nothing else may be.
+    /// The cell of the exit, which must stay free of items.
     exit: Cell,
 }
 
@@ -75,12 +75,12 @@ impl Items {
         &self.things
     }
 
-    /// Whether an item or the exit is in a cell.
+    /// Returns true if an item or the exit is in the cell.
     pub(crate) fn is_in(&self, cell: Cell) -> bool {
         cell == self.exit || self.things.iter().any(|thing| thing.cell == cell)
     }
 
-    /// The worth of all treasure.
+    /// The total worth of the treasure.
     pub(crate) fn treasure(&self) -> u32 {
         self.treasures().sum()
     }
@@ -96,8 +96,8 @@ impl Items {
         })
     }
 
-    /// The best of some random cells: apart from other items; if the item is hidden, in a dead end or
-    /// far from the start.
+    /// The best of some random cells. A cell is better if it is farther from other items. For a
+    /// hidden item, a dead end or a long way from the start decides between equally good cells.
     fn place_for(
         &self,
         is_hidden: bool,
@@ -118,7 +118,7 @@ impl Items {
     }
 }
 
-/// The items of a floor, and whether each is hidden.
+/// The items of a floor, and whether each one is hidden.
 fn list(floor: u32) -> impl Iterator<Item = (ThingKind, bool)> {
     let floor = floor.min(20) as usize;
     let every =
@@ -140,17 +140,17 @@ fn list(floor: u32) -> impl Iterator<Item = (ThingKind, bool)> {
     treasure.chain(supplies.into_iter().flatten())
 }
 
-/// So many random cells of `free`.
+/// Up to `count` random cells from `free`.
 fn some_of(count: usize, free: &[Cell], random: &mut SplitMix64) -> Vec<Cell> {
     (0..count).filter_map(|_| free.get(random.below(free.len())).copied()).collect()
 }
 
-/// The distance of two cells along the grid.
+/// The distance between two cells along the grid.
 fn apart(one: Cell, other: Cell) -> u32 {
     one.column.abs_diff(other.column) + one.row.abs_diff(other.row)
 }
 
-/// A world with one item of each kind, as a map describes them.
+/// A world with one item of each kind, described by a map file.
 struct Models(World);
 
 impl Models {
@@ -158,7 +158,8 @@ impl Models {
         map::parse(include_str!("items.toml"), "the items", &NoFiles).map(Self)
     }
 
-    /// The sprite of a kind in `world`, to which it is added once. `known` are the sprites added before.
+    /// The sprite of a kind in `world`. It is added once; `known` are the sprites that were added
+    /// before.
     fn sprite(
         &self,
         kind: ThingKind,
@@ -175,7 +176,7 @@ impl Models {
     }
 }
 
-/// Places the guards of a floor, in reading order.
+/// Places the guards of a floor. They are sorted by row, then by column.
 pub(crate) fn guards(
     floor: u32,
     ground: &Ground,
@@ -203,7 +204,7 @@ pub(crate) fn guards(
     posts
 }
 
-/// The difficulty from which on each guard is there.
+/// The lowest difficulty at which each guard appears.
 fn from_difficulties(floor: u32, ground: &Ground) -> impl Iterator<Item = Difficulty> {
     let room = ground.reachable().len() / CELLS_EACH;
     let wanted = (FEWEST_GUARDS + floor / 2).min(MOST_GUARDS) as usize;
@@ -213,7 +214,7 @@ fn from_difficulties(floor: u32, ground: &Ground) -> impl Iterator<Item = Diffic
     counts.into_iter().flat_map(|(from, count)| (0..count).map(move |_| from))
 }
 
-/// The best of some random cells: the farthest from other guards.
+/// The best of some random cells: the one farthest from other guards.
 fn place_for(posts: &[GuardPost], free: &[Cell], random: &mut SplitMix64) -> Option<Cell> {
     let nearest = |cell: Cell| posts.iter().map(|post| apart(post.cell, cell)).min();
     let places =
@@ -221,7 +222,7 @@ fn place_for(posts: &[GuardPost], free: &[Cell], random: &mut SplitMix64) -> Opt
     places.max_by_key(|&cell| nearest(cell).unwrap_or(GUARDS_APART).min(GUARDS_APART))
 }
 
-/// The kind of a guard. The first guard is of the kind that is new on the floor.
+/// The kind of a guard. The first guard on a floor has the kind that is new there.
 fn kind(floor: u32, number: usize, random: &mut SplitMix64) -> GuardKind {
     let known = (floor as usize).min(KINDS.len());
     let any = random.below(known);
@@ -241,7 +242,7 @@ fn duty(kind: GuardKind, cell: Cell, ground: &Ground, random: &mut SplitMix64) -
     }
 }
 
-/// A round of up to four waypoints on open floor, the last of which is `post`.
+/// A patrol of up to four waypoints over open floor. The last waypoint is `post`.
 fn patrol(post: Cell, ground: &Ground, random: &mut SplitMix64) -> Vec<Cell> {
     let mut round = vec![post];
     let mut from = post;
@@ -263,7 +264,8 @@ fn patrol(post: Cell, ground: &Ground, random: &mut SplitMix64) -> Vec<Cell> {
     round
 }
 
-/// Towards the first waypoint, or any of the four directions of the grid.
+/// The direction along the grid to the first waypoint. Without a patrol, a random direction along
+/// the grid.
 fn heading(duty: &Duty, cell: Cell, random: &mut SplitMix64) -> Heading {
     let any = random.below(4);
     let quarter = match duty {

@@ -11,7 +11,7 @@ use crate::cast::{Caster, Exact, Ray};
 use crate::game::is_exit_out_of_reach;
 use crate::world::{Cell, Difficulty, Duty, GuardKind, ThingKind, TileKind};
 
-/// The cells that can be reached from the start by steps along the grid, through doors.
+/// The cells that can be reached from the start by steps along the grid, including through doors.
 fn reachable(world: &World) -> BTreeSet<(u32, u32)> {
     let is_open = |column: u32, row: u32| {
         let (column, row) = (i64::from(column), i64::from(row));
@@ -33,7 +33,7 @@ fn reachable(world: &World) -> BTreeSet<(u32, u32)> {
     seen
 }
 
-/// The cells that matter in a world: of items, of the exit, of guards and their waypoints.
+/// The cells of the items, the exit, the guards and their waypoints.
 fn places(world: &World) -> Vec<Cell> {
     let items = world.things().iter().filter(|thing| thing.kind != ThingKind::Ornament);
     let guards = world.guards().iter().flat_map(|post| {
@@ -99,7 +99,7 @@ proptest! {
 }
 
 proptest! {
-    // Lines along corners are rare.
+    // Lines along corners are rare, so this needs many cases.
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
@@ -137,7 +137,7 @@ fn floors_grow_harder() {
     });
     insta::assert_debug_snapshot!(figures);
     assert!(figures.windows(2).all(|pair| pair[0].2 <= pair[1].2 && pair[0].4 <= pair[1].4));
-    // Each of the first floors has a kind of its own.
+    // Each of the first floors introduces its own kind of guard.
     for (floor, kind) in (1..).zip([
         GuardKind::Warden,
         GuardKind::Listener,
@@ -149,8 +149,8 @@ fn floors_grow_harder() {
     }
 }
 
-/// Scripts that were recorded on a floor stay valid: this changes only with a new version of the
-/// descent.
+/// Scripts recorded on a floor must stay valid, so this snapshot may change only with a new version
+/// of the descent.
 #[test]
 fn floors_stay_as_they_are() {
     let drawn = [(20_261_122, 1), (20_261_122, 2), (20_261_122, 3), (7, 9)]
@@ -159,7 +159,7 @@ fn floors_stay_as_they_are() {
 }
 
 /// The floor as text: `@` start, `X` exit, `$` treasure, `i` other items, `1` to `9` guards, `'`
-/// waypoints, `+` doors, `#` what cannot be walked on.
+/// waypoints, `+` doors, `#` cells that block the way.
 fn drawing(world: &World) -> String {
     let grid = world.grid();
     let mut rows: Vec<Vec<char>> = (0..grid.height())

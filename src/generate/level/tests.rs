@@ -1,4 +1,4 @@
-//! Properties of every level: exits, connections, doors.
+//! Properties of every level: exits, connections and doors.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -10,7 +10,7 @@ fn generator() -> impl Strategy<Value = Generator> {
     prop::sample::select(&Generator::ALL)
 }
 
-/// A square of chunks, as one drawing.
+/// A square of chunks, seen as one grid of cells.
 struct Drawing {
     level: Level,
     chunks: Vec<Chunk>,

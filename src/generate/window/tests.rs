@@ -1,4 +1,4 @@
-//! Windows that move, and their pictures.
+//! Moving windows, and the pictures of them.
 
 use proptest::prelude::*;
 
@@ -88,7 +88,7 @@ proptest! {
             camera.with_eye(floor + Camera::STANDING).unwrap()
         };
         let before = picture(&world, &camera(position, &world));
-        // As if the middle were elsewhere: a player in another cell makes it move.
+        // A player in this other cell makes the window move.
         let elsewhere = Cell {
             column: if cell.column < CENTER.column { MIDDLE.start - 1 } else { MIDDLE.end },
             row: cell.row,

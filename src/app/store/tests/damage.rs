@@ -1,10 +1,10 @@
-//! Damaged files, files of other versions, and folders that can't be used.
+//! Damaged files, files of other versions, and unusable folders.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// A folder in which everything is kept.
+/// A folder with a filled store.
 fn filled() -> Folder {
     let folder = Folder::new();
     fill(&mut sound(&folder.0));
@@ -25,7 +25,7 @@ fn a_damaged_value_costs_its_result_only() {
     assert!(store.best("museum", Hard).is_some());
     assert_eq!(all_saved(&store).len(), 2);
     assert_eq!(fs::read_to_string(folder.0.join("progress.toml.damaged-1")).unwrap(), damaged);
-    // Its script is not removed.
+    // The script of the damaged result is not removed.
     assert_eq!(folder.names("cellar"), ["cellar.normal.300.script"]);
     assert_eq!(shown(&sound(&folder.0)), shown(&store));
 }
@@ -107,14 +107,14 @@ fn a_folder_that_is_a_file_stops_no_game() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A number that was cut short would be a better result.
+    /// A truncated number would look like a better result.
     #[test]
     fn a_truncated_file_shows_nothing_that_was_not_there(index: prop::sample::Index) {
         let mut store = Store::in_memory();
         fill(&mut store);
         let text = store.progress.to_string();
         let length = index.index(text.len());
-        // It is sound where whole sections at the end are missing.
+        // A text from which only whole sections at the end are missing is sound.
         let (read, _) = text::read(&text.as_bytes()[..length]).unwrap();
         for (key, best) in &read.bests {
             prop_assert_eq!(Some(best), store.progress.bests.get(key));

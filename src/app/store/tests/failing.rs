@@ -1,5 +1,5 @@
-//! A disk that fails: at one operation, as when it is full; or at one and all that follow, as when
-//! the power is cut.
+//! A disk on which one operation fails, as on a full disk, or on which an operation and all later
+//! ones fail, as in a power cut.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -10,14 +10,14 @@ use std::sync::atomic::AtomicUsize;
 use super::*;
 use crate::app::store::home::{Disk, Real};
 
-/// The real disk, up to an operation.
+/// The real disk with a range of failing operations.
 #[derive(Clone, Debug)]
 struct Failing {
-    /// The operations so far.
+    /// The number of operations up to now.
     count: Arc<AtomicUsize>,
-    /// The first one that fails.
+    /// The first operation that fails.
     from: usize,
-    /// The first one that succeeds again.
+    /// The first operation that succeeds again.
     to: usize,
 }
 
@@ -68,14 +68,14 @@ impl Disk for Failing {
     }
 }
 
-/// Opens a store whose disk fails in a range of operations.
+/// Opens a store on a disk where operations `from` to `to` fail.
 fn failing(folder: &Folder, from: usize, to: usize) -> (Store, Arc<AtomicUsize>) {
     let count = Arc::new(AtomicUsize::new(0));
     let disk = Failing { count: count.clone(), from, to };
     (Store::at(Home::new(folder.0.clone(), Box::new(disk))).0, count)
 }
 
-/// Changes of each kind; after each of them `observe` sees the state.
+/// Makes one change of each kind, and calls `observe` after each of them.
 fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
     let changes: [fn(&mut Store); 6] = [
         |store| _ = store.record("cellar", Normal, run(200, Rank::Thief)),
@@ -94,7 +94,7 @@ fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
     }
 }
 
-/// The states before and after each change of [`play`], and the number of operations.
+/// The states before and after each change in [`play`], and the number of disk operations.
 fn states() -> (Vec<String>, usize) {
     let folder = Folder::new();
     fill(&mut sound(&folder.0));

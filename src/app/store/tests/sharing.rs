@@ -19,7 +19,7 @@ fn games_at_once_lose_nothing() {
                     store.record(&format!("level {game} {number}"), Normal, run(9, Rank::Thief));
                     let steps = 1000 - (number * GAMES + game);
                     store.record("same", Normal, run(steps, Rank::Thief));
-                    // Locks are not fair: without a pause, a game could keep the others from their turn.
+                    // Locks are not fair. Without a pause, one game could starve the others.
                     thread::sleep(Duration::from_millis(4));
                 }
                 assert_eq!(store.trouble(), None);
@@ -44,7 +44,7 @@ fn a_game_sees_what_another_one_has_changed() {
     other.set_preferences(Preferences { compass: true, ..other.preferences() });
     assert!(other.preferences().bell && other.preferences().compass);
     assert_eq!(other.best("cellar", Normal).unwrap().tally.steps, 300);
-    // The script that `other` knows of is gone.
+    // The next record removes the script that `other` knows.
     one.record("cellar", Normal, run(200, Rank::Thief));
     assert_eq!(other.script("cellar", Normal).unwrap(), "200 steps forward\n");
 }
