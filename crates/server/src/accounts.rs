@@ -1,23 +1,23 @@
 //! The store of a host: accounts, their names and settings, bans, and results.
 //!
-//! [`HostStore`] keeps them in one file, `host.db`, or in a PostgreSQL database that several hosts share, with the
-//! same statements.
+//! [`HostStore`] keeps them in one file, `host.db`, or in a PostgreSQL database that several hosts share. Both use
+//! the same statements.
 //!
 //! Rules:
 //!
-//! - **An account is a public key.** Its [`AccountKey`] is the SHA-256 of the key's data, which does not
-//!   contain the comment.
-//! - **A name is a [`Name`]:** readable, printable, and distinct to the eye. It can be
-//!   changed after [`RENAME_WAIT`]. The previous name is held for the account for [`NAME_HELD`].
+//! - **An account is a public key.** Its [`AccountKey`] is the SHA-256 of the key's data, without the comment.
+//! - **A name is a [`Name`]:** readable, printable, and distinct to the eye. A player can change it after
+//!   [`RENAME_WAIT`]. The previous name stays reserved for the account for [`NAME_HELD`].
 //! - **A result is a [`VerifiedRun`]:** a run that [`verify`] has replayed. For each account, level and
-//!   difficulty the fastest run is kept with its script, beside the highest rank. To record a run again changes
-//!   nothing, so a run that may or may not have been recorded is recorded again: see [`WaitingResults`].
-//! - **Methods block** for as long as the disk or the network does. Callers use a worker thread. A method that has
-//!   returned `Ok` is on the disk.
-//! - **Time is an argument**, except for leases, visits and hosts: these go by the database's own clock.
+//!   difficulty, the store keeps the fastest run with its script, and the highest rank. Recording a run twice
+//!   changes nothing. So if it is unknown whether a run was recorded, it is recorded again: see
+//!   [`WaitingResults`].
+//! - **Methods block** on the disk or the network, so callers use a worker thread. When a method returns `Ok`, its
+//!   change is on the disk.
+//! - **Time is an argument**, except for leases, visits and hosts. These use the database's own clock.
 //!
-//! Rejected: files as in the player's own store. A host has thousands of accounts, and a board needs the
-//! best of all of them.
+//! Rejected: files as in the player's own store. A host has thousands of accounts, and a board needs the best
+//! results of all of them.
 
 mod account;
 mod ban;
@@ -53,9 +53,9 @@ pub use results::{
 pub use store::HostStore;
 pub use waiting::{Late, WaitingResult, WaitingResults};
 
-/// The seconds from the choice of a name to the next one.
+/// How long a player must keep a name before changing it, in seconds.
 pub const RENAME_WAIT: u64 = 7 * 24 * 60 * 60;
-/// The seconds for which a name that was changed remains with its account.
+/// How long an account's previous name stays reserved for it, in seconds.
 pub const NAME_HELD: u64 = 30 * 24 * 60 * 60;
 
 #[cfg(test)]

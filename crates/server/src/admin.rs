@@ -1,102 +1,102 @@
-//! What an operator asks a running server, over a socket in its data folder.
+//! The requests of an operator to a running server, over a socket in its data folder.
 //!
-//! A connection carries one [`AdminRequest`] and one [`AdminReply`], each a line of JSON. The socket
-//! is `admin.sock`, for its owner alone, and the server answers that user and root only.
+//! A connection carries one [`AdminRequest`] and one [`AdminReply`], each a line of JSON. The socket is
+//! `admin.sock`. Only its owner can open it, and the server answers only that user and root.
 //!
-//! In a cluster, the server asks all hosts, and the reply says which ones have not answered. To end a host, its own
-//! socket is asked.
+//! In a cluster, the server asks all hosts, and the reply names the hosts that have not answered. To end a host,
+//! the operator asks that host's own socket.
 //!
-//! Bans are no request: the store keeps them, and `cellcaster admin` writes them there, so that they
-//! can be made while no server runs. A request then ends the sessions to which the ban applies.
+//! A ban is not a request. `cellcaster-server admin` writes it to the store, so that an operator can ban somebody
+//! while no server runs. A request then ends the sessions that the ban applies to.
 //!
-//! Rejected: a port of TCP with a password. Every user of the machine could reach it.
+//! Rejected: a TCP port with a password. Every user of the machine could reach it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
 
-/// What an operator asks.
+/// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub enum AdminRequest {
-    /// The visitors: [`AdminReply::Visitors`].
+    /// Lists the visitors: [`AdminReply::Visitors`].
     Who,
-    /// The rooms: [`AdminReply::Rooms`].
+    /// Lists the rooms: [`AdminReply::Rooms`].
     Rooms,
-    /// To end the sessions of some visitors: [`AdminReply::Count`].
+    /// Ends the sessions of some visitors: [`AdminReply::Count`].
     Remove {
-        /// Which ones.
+        /// The visitors.
         target: Target,
-        /// Why, for them to read; may be empty.
+        /// The reason, which they read; may be empty.
         reason: String,
-        /// Whether they are banned.
+        /// `true` if they are banned.
         banned: bool,
     },
-    /// To say a line to all visitors: [`AdminReply::Count`].
+    /// Shows a line to all visitors: [`AdminReply::Count`].
     Say {
         /// The line. Only its printable characters are shown.
         text: String,
     },
-    /// The hosts of the cluster: [`AdminReply::Hosts`].
+    /// Lists the hosts of the cluster: [`AdminReply::Hosts`].
     Hosts,
-    /// To end the server as a signal does: [`AdminReply::Count`], the visitors whom it waits for.
+    /// Ends the server as a signal does: [`AdminReply::Count`] of the visitors that it waits for.
     Drain,
 }
 
-/// Some visitors, as a text.
+/// Some visitors, described by a text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
-    /// Those who are called so, or nearly so.
+    /// The visitors with this name, or one that looks like it.
     Name(String),
-    /// Those with the key of this fingerprint.
+    /// The visitors with the key of this fingerprint.
     Key(String),
-    /// Those with an address in this range.
+    /// The visitors with an address in this range.
     Address(String),
-    /// The one with this session.
+    /// The visitor with this session.
     Session(String),
 }
 
-/// What a server answers.
+/// The reply of a server.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AdminReply {
-    /// Who is on.
+    /// The visitors.
     Visitors(Vec<VisitorRow>),
     /// The rooms.
     Rooms(Vec<RoomRow>),
     /// The hosts of a cluster.
     Hosts(Vec<HostInfo>),
-    /// How many visitors the request concerns.
+    /// The number of visitors that the request affects.
     Count(usize),
-    /// What all hosts of a cluster answer together.
+    /// The combined reply of all hosts of a cluster.
     AllHosts {
-        /// Their answer.
+        /// Their reply.
         reply: Box<AdminReply>,
-        /// What is to be known of it, such as that a host did not answer.
+        /// Remarks on the reply, such as that a host did not answer.
         remarks: Vec<String>,
     },
-    /// Why the request was refused.
+    /// The reason why the request was refused.
     Fault(String),
 }
 
 /// A visitor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisitorRow {
-    /// Their session; empty from a host of a version without.
+    /// The session; empty if the host's version has no sessions.
     #[serde(default)]
     pub session: String,
     /// The name; `None` until it is chosen.
     pub name: Option<String>,
-    /// The address that they connect from.
+    /// The address from which the visitor connects.
     pub address: String,
-    /// The fingerprint of their key; `None` for a guest.
+    /// The fingerprint of the visitor's key; `None` for a guest.
     pub key: Option<String>,
     /// The room; `None` for the lobby.
     pub room: Option<String>,
-    /// For how long they have been here.
+    /// How long the visitor has been connected, in seconds.
     pub seconds: u64,
-    /// The host that they are on, in a cluster.
+    /// The visitor's host, in a cluster.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub host: Option<String>,
 }
@@ -104,19 +104,20 @@ pub struct VisitorRow {
 /// A host of a cluster.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HostInfo {
-    /// The name of its machine, and the port.
+    /// The name of the machine, and the port.
     pub host: String,
-    /// The address that it listens at.
+    /// The address at which the host listens.
     pub address: String,
-    /// The version of its program.
+    /// The version of the program.
     pub version: String,
-    /// The number of its visitors.
+    /// The number of visitors.
     pub visitors: usize,
-    /// The rooms whose logs it writes; `None` if it did not answer.
+    /// The rooms whose logs the host writes; `None` if it did not answer.
     pub rooms: Option<Vec<u32>>,
-    /// How long ago it has announced itself.
+    /// The seconds since the host last announced itself.
     pub seconds: u64,
-    /// The keys of its own maps: the name of each, and a hash of its text; `None` if it did not answer.
+    /// The keys of the host's own maps: the name of each, and a hash of its text; `None` if the host did not
+    /// answer.
     #[serde(default)]
     pub maps: Option<Vec<String>>,
 }
@@ -124,7 +125,7 @@ pub struct HostInfo {
 /// A room.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RoomRow {
-    /// Its number.
+    /// The number.
     pub room: u32,
     /// The name of the mode.
     pub mode: String,
@@ -132,16 +133,17 @@ pub struct RoomRow {
     pub level: String,
     /// The name of the difficulty.
     pub difficulty: String,
-    /// The names of its members.
+    /// The names of the members.
     pub members: Vec<String>,
-    /// The most members.
+    /// The most members that it takes.
     pub most: usize,
-    /// The number of those who watch.
+    /// The number of watchers.
     pub watchers: usize,
 }
 
 impl AdminRequest {
-    /// Whether all hosts of a cluster answer it. All of them have the same list of rooms.
+    /// Returns true if all hosts of a cluster answer the request. For the list of rooms one host is enough, because
+    /// all hosts have the same list.
     pub(crate) fn is_for_all_hosts(&self) -> bool {
         match self {
             Self::Who | Self::Hosts | Self::Say { .. } | Self::Remove { .. } => true,
@@ -151,10 +153,10 @@ impl AdminRequest {
 }
 
 impl Target {
-    /// What a ban of them applies to.
+    /// The target of a ban of these visitors.
     ///
     /// # Errors
-    /// A sentence, if the text is no fingerprint or no range of addresses, or the target is a session.
+    /// A sentence, if the text is not a name, a fingerprint or a range of addresses, or if the target is a session.
     pub fn to_ban(&self) -> Result<BanTarget, String> {
         match self {
             Self::Name(name) => {

@@ -1,23 +1,23 @@
-//! Which connections are admitted: a policy without sockets and clocks.
+//! The policy that admits connections. It has no sockets and no clocks.
 //!
-//! - **Counts.** So many visitors at a time who have logged in, so many connections of one address and with one
-//!   key. A /64 of IPv6 counts as one address: whoever has one address of it has all, and a household has one
-//!   /64 as it has one IPv4 address.
-//! - **The busiest network makes room.** Besides, so many connections may be on their way to a login. One more is
-//!   admitted all the same, and displaces the oldest connection of the busiest network. That is the /16 of IPv4 or
-//!   the /48 of IPv6 that has the most connections of this kind, the new one counted; in it the busiest /24 or
-//!   /56; in that the busiest address or /64. So a flood displaces itself, however it spreads over the addresses
-//!   that it has, and a newcomer alone in a network is displaced only by as many networks as there are places.
-//! - **Penalties.** A failed connection costs its network (/24, /64) tokens of a bucket, which fills
-//!   again with time and with each successful login. A network whose bucket runs low is refused by
-//!   chance, and never always: many people behind one address share their bucket with whoever
-//!   attacks from there. Rejected for that reason: blocking an address outright, as OpenSSH's
-//!   `PerSourcePenalties` does.
+//! - **Counts.** The number of visitors who are logged in at a time is limited, and so are the connections from one
+//!   address and with one key. A /64 of IPv6 counts as one address: a client with one of its addresses has all of
+//!   them, and a household gets one /64 just as it gets one IPv4 address.
+//! - **The busiest network makes room.** The number of connections that have not logged in yet is limited, too. At
+//!   the limit, a new connection is still admitted, and displaces the oldest connection of the busiest network. This
+//!   is the /16 of IPv4 or the /48 of IPv6 with the most such connections, including the new one; within it the
+//!   busiest /24 or /56; within that the busiest address or /64. So a flood displaces itself, however it spreads
+//!   over its addresses. A newcomer who is alone in a network is displaced only if there are as many networks as
+//!   places.
+//! - **Penalties.** A failed connection costs its network (/24, /64) tokens of a bucket. The bucket refills with
+//!   time and with each successful login. If it runs low, connections from the network are refused at random, but
+//!   never all of them, because the people behind one address share the bucket with any attacker there. Rejected for
+//!   that reason: blocking an address outright, as OpenSSH's `PerSourcePenalties` does.
 //!
-//! Rejected: early random drop, as by OpenSSH's `MaxStartups` (`sshd_config(5)`), with a share of 40 connections for
-//! each network. 140 connections that said nothing, from eight /24, had 231 of 238 newcomers refused. Rejected as
-//! well: the busiest /24 or /64 first, and wider networks where these are even. A flood from one /16 that has a /24
-//! for each connection would displace every household of two.
+//! Rejected: early random drop, as in OpenSSH's `MaxStartups` (`sshd_config(5)`), with a share of 40 connections for
+//! each network. With 140 silent connections from eight /24 networks, 231 of 238 newcomers were refused. Also
+//! rejected: displacing from the busiest /24 or /64 first, and from wider networks on a tie. A flood from one /16
+//! with a /24 for each connection would displace every household with two connections.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,84 +27,83 @@ use std::time::Duration;
 use crate::accounts::{AccountKey, AddressPrefix};
 use cellcaster::rng::SplitMix64;
 
-/// The connections of a server, and what is known about where they come from.
+/// The connections of a server, and the counts and penalties of their networks.
 #[derive(Debug)]
 pub struct Admission {
     limits: Limits,
     visits: BTreeMap<VisitId, Visit>,
     next: u64,
-    /// The connections that are not authenticated, the oldest first.
+    /// The unauthenticated connections, oldest first.
     waiting: BTreeMap<VisitId, Networks>,
-    /// The number of those, for each network of each width.
+    /// The number of unauthenticated connections in each network of each width.
     per_network: BTreeMap<AddressPrefix, u32>,
-    /// By [`counted_address`].
+    /// Keyed by [`counted_address`].
     per_address: BTreeMap<AddressPrefix, u32>,
     per_key: BTreeMap<AccountKey, u32>,
     penalties: Penalties,
 }
 
-/// Which connections are admitted.
+/// The limits on connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The most visitors at a time who have logged in.
+    /// The most visitors who are logged in at a time.
     pub connections: u32,
-    /// The most connections of one address, or of one /64 of IPv6.
+    /// The most connections from one address, or from one /64 of IPv6.
     pub per_address: u32,
     /// The most connections with one key.
     pub per_key: u32,
-    /// The most connections at a time that are not authenticated, besides `connections`; 0 counts as 1.
+    /// The most unauthenticated connections at a time, in addition to `connections`; 0 counts as 1.
     pub startups: u32,
-    /// The failures of one network after which nearly all of its connections are refused.
+    /// The number of a network's failures after which nearly all of its connections are refused.
     pub failures: u32,
-    /// The time after which a failure is forgotten.
+    /// The time after which one failure is forgotten.
     pub forget: Duration,
 }
 
-/// The networks of an address by which waiting connections are counted, the widest first.
+/// The networks in which an unauthenticated connection counts, widest first.
 type Networks = [AddressPrefix; WIDTHS.len()];
 
-/// In bits of IPv4 and of IPv6. The last one is that of [`counted_address`].
+/// Prefix lengths of IPv4 and IPv6 in bits. [`counted_address`] uses the last pair.
 const WIDTHS: [[u8; 2]; 3] = [[16, 48], [24, 56], [32, 64]];
 
-/// An admitted connection.
+/// The number of an admitted connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct VisitId(u64);
 
-/// A connection that may go on.
+/// An admitted connection, and the one that it displaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Admitted {
-    /// The connection.
+    /// The new connection.
     pub id: VisitId,
-    /// The connection that makes room for it, and counts no more.
+    /// The connection that was displaced to make room. It no longer counts.
     pub displaced: Option<VisitId>,
 }
 
-/// Why a connection is refused.
+/// The reason why a connection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Refusal {
-    /// There are too many connections.
+    /// Too many visitors are logged in.
     Full,
-    /// There are too many of its address.
+    /// There are too many connections from its address.
     Address,
-    /// There are too many with its key.
+    /// There are too many connections with its key.
     Key,
-    /// It was displaced, since too many connections are not authenticated.
+    /// It was displaced because too many connections are unauthenticated.
     Startups,
-    /// Too many connections of its network have failed.
+    /// Too many connections from its network have failed.
     Penalty,
 }
 
-/// How a connection has ended.
+/// The way in which a connection ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Outcome {
-    /// In order.
+    /// It ended normally.
     Served,
-    /// The client left before it was authenticated, as a scanner does, or somebody who doubts the
-    /// host key.
+    /// The client left before it was authenticated, as a scanner does, or a person who doubts the host key.
     LeftEarly,
-    /// It made room for another one before it was authenticated.
+    /// It made room for another connection before it was authenticated.
     Displaced,
-    /// The client was too slow, or has sent too much, before it was authenticated.
+    /// The client was too slow or sent too much before it was authenticated.
     TimedOut,
     /// The client broke the protocol.
     BrokeProtocol,
@@ -115,7 +114,7 @@ impl Refusal {
     pub const ALL: [Self; 5] =
         [Self::Full, Self::Address, Self::Key, Self::Startups, Self::Penalty];
 
-    /// A word for logs and metrics.
+    /// The name in logs and metrics.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Full => "full",
@@ -126,7 +125,7 @@ impl Refusal {
         }
     }
 
-    /// A sentence for the refused visitor, which names the limit.
+    /// A sentence for the refused visitor, with the limit.
     pub(crate) fn sentence(self, limits: &Limits) -> String {
         let Limits { connections, per_address, per_key, startups, .. } = *limits;
         match self {
@@ -162,20 +161,20 @@ impl Refusal {
     }
 }
 
-/// A number of connections in words.
+/// A number with its unit, such as "1 connection".
 fn counted(connections: u32) -> String {
     let unit = if connections == 1 { "connection" } else { "connections" };
     format!("{connections} {unit}")
 }
 
-/// What counts as one address: an address of IPv4, or a /64 of IPv6.
+/// The prefix that counts as one address: an IPv4 address, or a /64 of IPv6.
 pub(crate) fn counted_address(address: IpAddr) -> AddressPrefix {
     let [.., narrowest] = WIDTHS;
     AddressPrefix::around(address, narrowest)
 }
 
 impl Outcome {
-    /// A few words for logs.
+    /// The name in logs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Served => "served",
@@ -207,7 +206,7 @@ impl Default for Limits {
 }
 
 impl Admission {
-    /// No connections, and no penalties.
+    /// Creates an admission without connections and penalties.
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
@@ -221,7 +220,7 @@ impl Admission {
         }
     }
 
-    /// Changes the limits. Connections that exceed the new ones stay.
+    /// Changes the limits. Connections that exceed the new limits stay.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
         self.penalties.set_limits(limits.failures, limits.forget);
@@ -231,10 +230,11 @@ impl Admission {
         self.visits.len() - self.waiting.len()
     }
 
-    /// Admits a connection from `address`, in the place of another one if there is no room, or refuses it.
+    /// Admits or refuses a connection from `address`. If all startup places are taken, it displaces another
+    /// connection.
     ///
     /// # Errors
-    /// The reason of the refusal.
+    /// The reason for the refusal.
     pub fn arrive(
         &mut self,
         address: IpAddr,
@@ -269,14 +269,14 @@ impl Admission {
         Ok(Admitted { id, displaced })
     }
 
-    /// The waiting connection that makes room. That is a look at each of them: some 10 µs for 200.
+    /// The unauthenticated connection that makes room. The search visits all of them: about 10 µs for 200.
     fn oldest_of_the_busiest(&self) -> Option<VisitId> {
         let busy = |networks: &Networks| networks.map(|network| count(&self.per_network, &network));
         let all = self.waiting.iter();
         all.max_by_key(|&(id, networks)| (busy(networks), Reverse(id))).map(|(id, _)| *id)
     }
 
-    /// The connection waits no more; returns whether it has.
+    /// Removes a connection from the unauthenticated ones. Returns true if it was one of them.
     fn stop_waiting(&mut self, id: VisitId) -> bool {
         let networks = self.waiting.remove(&id);
         for network in networks.iter().flatten() {
@@ -285,13 +285,13 @@ impl Admission {
         networks.is_some()
     }
 
-    /// The connection is authenticated, with `key` or as a guest. That makes up for a failure of its
+    /// Marks a connection as authenticated, with `key` or as a guest. The login makes up for one failure of its
     /// network.
     ///
     /// # Errors
     /// - [`Refusal::Startups`] if it was displaced.
-    /// - [`Refusal::Full`] if there are too many who have logged in, and [`Refusal::Key`] if there are too
-    ///   many with that key; the connection then counts as one without a key until it leaves.
+    /// - [`Refusal::Full`] if too many visitors are logged in, and [`Refusal::Key`] if there are too many
+    ///   connections with that key. The connection then counts as one without a key until it leaves.
     pub fn log_in(
         &mut self,
         id: VisitId,
@@ -316,7 +316,7 @@ impl Admission {
         Ok(())
     }
 
-    /// The connection has ended.
+    /// Removes a connection that has ended.
     pub fn leave(&mut self, id: VisitId, outcome: Outcome, now: Duration) {
         let Some(visit) = self.visits.remove(&id) else { return };
         self.stop_waiting(id);
@@ -345,30 +345,30 @@ fn remove<K: Ord + Clone>(counts: &mut BTreeMap<K, u32>, key: &K) {
     }
 }
 
-/// The failures of networks that are not forgotten: of /24 of IPv4, of /64 of IPv6.
+/// The failures that are not forgotten yet, for each network: a /24 of IPv4 or a /64 of IPv6.
 #[derive(Debug)]
 struct Penalties {
     networks: BTreeMap<AddressPrefix, Failures>,
-    /// The same networks in the order of their last failure or login.
+    /// The same networks, in the order of their last failure or login.
     order: BTreeSet<(Duration, AddressPrefix)>,
     /// The size of a bucket.
     most: f64,
     forget: Duration,
 }
 
-/// The tokens that are missing in a bucket.
+/// The tokens that are missing from a bucket.
 #[derive(Clone, Copy, Debug)]
 struct Failures {
     count: f64,
     since: Duration,
 }
 
-/// The most networks that are remembered; that is about two megabytes.
+/// The most networks that are remembered: about two megabytes.
 const MOST_NETWORKS: usize = 1 << 14;
 /// Failures up to this share of the bucket have no effect.
 const FREE_SHARE: f64 = 0.5;
-/// The share of connections that is refused of a network whose bucket is empty. A person who tries
-/// again a few times gets in.
+/// The share of connections that is refused from a network with an empty bucket. A person who tries again a few
+/// times gets in.
 const REFUSED_SHARE: f64 = 0.9;
 
 impl Penalties {
@@ -381,14 +381,14 @@ impl Penalties {
         (self.most, self.forget) = (f64::from(failures), forget);
     }
 
-    /// The share of a network's connections that is refused.
+    /// The share of a network's connections to refuse.
     fn refused_share(&self, network: AddressPrefix, now: Duration) -> f64 {
         let failures = self.networks.get(&network).map_or(0.0, |known| self.left(*known, now));
         let free = self.most * FREE_SHARE;
         ((failures - free) / (self.most - free)).clamp(0.0, 1.0) * REFUSED_SHARE
     }
 
-    /// Counts a connection that has ended.
+    /// Charges a network for a connection that has ended.
     fn charge(&mut self, network: AddressPrefix, outcome: Outcome, now: Duration) {
         let cost = match outcome {
             Outcome::Served => return,
@@ -399,7 +399,7 @@ impl Penalties {
         self.change(network, cost, now);
     }
 
-    /// Counts a successful login.
+    /// Repays a network for a successful login.
     fn repay(&mut self, network: AddressPrefix, now: Duration) {
         if self.networks.contains_key(&network) {
             self.change(network, -1.0, now);
@@ -428,7 +428,7 @@ impl Penalties {
         }
     }
 
-    /// What is not forgotten of failures.
+    /// The part of the failures that is not forgotten yet.
     fn left(&self, failures: Failures, now: Duration) -> f64 {
         let time = now.saturating_sub(failures.since).as_secs_f64();
         (failures.count - time / self.forget.as_secs_f64()).max(0.0)

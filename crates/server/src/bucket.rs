@@ -1,8 +1,8 @@
-//! A token bucket: how many of something may come, at once and in the long run.
+//! A token bucket: a limit on a rate that allows bursts.
 
 use std::time::Duration;
 
-/// A token bucket, which is full at first.
+/// A token bucket. It starts full.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bucket {
     per_second: f64,
@@ -12,12 +12,12 @@ pub(crate) struct Bucket {
 }
 
 impl Bucket {
-    /// `most` tokens may be taken at once, and `per_second` in the long run.
+    /// Creates a bucket that holds `most` tokens and refills at `per_second` tokens per second.
     pub(crate) fn new(per_second: f64, most: f64, now: Duration) -> Self {
         Self { per_second, most, tokens: most, filled: now }
     }
 
-    /// The tokens at `now`.
+    /// Refills the bucket up to `now`, and returns the number of tokens.
     pub(crate) fn fill(&mut self, now: Duration) -> f64 {
         let added = now.saturating_sub(self.filled).as_secs_f64() * self.per_second;
         self.tokens = (self.tokens + added).min(self.most);
@@ -25,17 +25,17 @@ impl Bucket {
         self.tokens
     }
 
-    /// The time until there are so many tokens, if nobody takes any; zero if there are.
+    /// The time until the bucket holds `tokens`, if nobody takes any; zero if it holds them now.
     pub(crate) fn time_until(&self, tokens: f64) -> Duration {
         Duration::from_secs_f64((tokens - self.tokens).max(0.0) / self.per_second)
     }
 
-    /// Takes tokens, of which some may be missing.
+    /// Takes tokens. The number of tokens may become negative.
     pub(crate) fn take(&mut self, tokens: f64) {
         self.tokens -= tokens;
     }
 
-    /// Takes a token, unless none is left.
+    /// Takes one token. Returns false if less than one is left.
     pub(crate) fn takes_one(&mut self, now: Duration) -> bool {
         let takes = self.fill(now) >= 1.0;
         if takes {

@@ -1,24 +1,23 @@
-//! Clusters: several hosts whose players are in the same rooms.
+//! Clusters: several hosts whose players share the same rooms.
 //!
-//! A room is a deterministic state machine with an ordered log (state machine replication, Schneider 1990). Each
-//! host that has players in a room keeps a [`Replica`](replica::Replica) of it and draws for its own players:
-//! drawing costs hundreds of times as much as a step of a room. The log and the list of rooms are on a [`Bus`];
-//! a lease in the database decides which host writes a log.
+//! A room is a deterministic state machine with an ordered log (state machine replication, Schneider 1990). Each host
+//! with players in a room keeps a [`Replica`](replica::Replica) of it. A host draws only for its own players, because
+//! drawing costs hundreds of times as much as a step of a room. The log and the list of rooms are on a [`Bus`]. A lease
+//! in the database decides which host writes a log.
 //!
 //! # Rules
 //!
-//! - **One host writes a room's log**, its sequencer. Each message names the number of the message before it, and the
-//!   bus refuses a message that names another number. So a sequencer that was replaced cannot write, even if it has not
-//!   noticed.
-//! - **An epoch has one sequencer.** An epoch begins with a message, and later messages of an older epoch change
-//!   nothing.
+//! - **One host writes a room's log**, its sequencer. Each message states the number of the message before it, and the
+//!   bus refuses a message that states another number. So a sequencer that was replaced cannot write, even before it
+//!   notices.
+//! - **An epoch has one sequencer.** An epoch begins with a message. Later messages of an older epoch change nothing.
 //! - **All hosts apply the same messages**, and compare a checksum once a second.
 //! - **Any host takes any player.** A room without members runs on no host.
-//! - **Limits of connections hold on all hosts together**, and an operator of one host asks all.
-//! - **Rooms carry the versions of the format and of the rules.** A host of other versions does not list them.
+//! - **Limits on connections hold for all hosts together**, and an operator of one host reaches all hosts.
+//! - **Rooms carry the versions of the format and of the rules.** A host with other versions does not list them.
 //!
-//! Rejected: an election among the hosts, and a log of our own. The database and the bus provide both, and are tested for
-//! it.
+//! Rejected: an election among the hosts, and a log of our own. The database and the bus provide both, and are tested
+//! for it.
 
 mod bus;
 mod directory;
@@ -57,22 +56,22 @@ use crate::rooms::summary::RoomWish;
 use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
 
-/// A place in a cluster, for one host.
+/// The membership of one host in a cluster.
 pub struct Cluster {
     bus: Box<dyn Bus>,
     leases: Leases,
     visits: Visits,
     notice: HostNotice,
-    /// The seed of join tokens, and of the rooms that this host opens.
+    /// The seed for join tokens, and for the rooms that this host opens.
     seed: u64,
 }
 
 impl Cluster {
-    /// The cluster at an address such as `nats://host:4222`. The host of `notice` gets its leases from `leases`, and
-    /// is counted in `presence` with its visitors.
+    /// Joins the cluster at an address such as `nats://host:4222`. The host of `notice` takes its leases from `leases`.
+    /// `presence` stores the host and its visits.
     ///
     /// # Errors
-    /// A sentence, if the server does not answer, or has no `JetStream`.
+    /// A sentence, if the server does not answer or has no `JetStream`.
     pub async fn join(
         address: &str,
         leases: HostStore,
@@ -80,19 +79,19 @@ impl Cluster {
         notice: HostNotice,
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
-        // Before anything that may fail: dropping a database blocks, too.
+        // Start the threads before anything can fail, because dropping a database blocks, too.
         let leases = StoreWorker::start("leases", MOST_CALLS, leases).map_err(no_thread);
         let presence = StoreWorker::start("visits", MOST_CALLS, presence).map_err(no_thread);
         let (host, gathered) = (notice.name.clone(), GATHERED);
         let leases = Leases { store: leases?, host, gathered, renewals: Arc::default() };
         let visits = Visits::new(presence?, notice.clone());
         let bus = Box::new(NatsBus::connect(address).await?);
-        // Without random numbers from the system there would be no keys, either.
+        // If the system had no random numbers, there would be no keys, either.
         let seed = getrandom::u64().unwrap_or_default();
         Ok(Self { bus, leases, visits, notice, seed })
     }
 
-    /// The rooms of the cluster, which lobbies see in `rooms`.
+    /// Starts the rooms of the cluster, which lobbies see in `rooms`.
     pub(crate) fn rooms(
         self,
         rooms: &Rooms,
@@ -101,7 +100,7 @@ impl Cluster {
         visitors: Visitors,
     ) -> SharedRooms {
         let Self { bus, leases, visits, notice, seed } = self;
-        // A host has one name at most.
+        // A host has at most one name.
         _ = load.metrics.host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
             begun: Instant::now(),

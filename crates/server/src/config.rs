@@ -16,8 +16,9 @@
 //! level = "cellar"
 //! ```
 //!
-//! All faults of a file are reported in one run, each with its place. Only whether a level exists is
-//! checked after the maps were read, by [`Config::check_levels`]: the file says where they are.
+//! All faults of a file are reported in one run, each with its place. Levels are the exception:
+//! [`Config::check_levels`] checks whether they exist after the maps are read, because the file says where
+//! the maps are.
 
 use std::fmt;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -46,53 +47,53 @@ use cellcaster::world::Difficulty;
 /// Its `Display` output is a complete file with comments, which parses to the same configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The address and port to listen at.
+    /// The address and port at which the server listens.
     pub listen: SocketAddr,
-    /// The name of the host: one line, which the lobby shows.
+    /// The name of the host: one line, shown in the lobby.
     pub name: String,
-    /// The message of the day: one line, which the lobby shows; may be empty.
+    /// The message of the day: one line, shown in the lobby; may be empty.
     pub message: String,
-    /// What is logged.
+    /// The events that are logged.
     pub log: LogFilter,
     /// The folder of the host's own maps, if there is one.
     pub maps: Option<PathBuf>,
-    /// Where metrics are read by HTTP; nowhere if `None`.
+    /// The address at which metrics are served over HTTP; `None` for none.
     pub metrics: Option<SocketAddr>,
-    /// Which connections are admitted.
+    /// The limits on connections.
     pub admission: Limits,
-    /// How many accounts a network may make.
+    /// The number of accounts that a network may create.
     pub accounts: AccountRate,
-    /// The time in which a client sends its half of the key exchange. Its version has to arrive within three
-    /// seconds.
+    /// The time limit for the client's half of the key exchange. The client's version must arrive within
+    /// three seconds.
     pub handshake: Duration,
-    /// The time in which a session begins. Its user may have to check the host key and to type a
+    /// The time limit for the start of a session. The user may have to check the host key and type a
     /// passphrase.
     pub login: Duration,
-    /// The most bytes that a client sends before authentication.
+    /// The most bytes that a client may send before authentication.
     pub login_bytes: u32,
-    /// The most bytes that a client sends in a second after it.
+    /// The most bytes that a client may send in a second after authentication.
     pub bytes_per_second: u32,
-    /// A client from which nothing comes for this time, not even an answer, has gone.
+    /// A client that sends nothing for this time, not even an answer, counts as gone.
     pub silence: Duration,
-    /// A client that takes no bytes for this time is disconnected, even if it answers.
+    /// A client that accepts no bytes for this time is disconnected, even if it answers.
     pub stall: Duration,
-    /// The most columns of a window; further ones are left blank.
+    /// The most columns of a window. Further columns stay blank.
     pub columns: u16,
     /// The most rows of a window.
     pub rows: u16,
-    /// The time that sessions have for their end when the server ends.
+    /// How long sessions may take to end when the server ends.
     pub drain: Duration,
     /// The most rooms.
     pub rooms: u32,
-    /// The most who watch one room.
+    /// The most watchers of one room.
     pub watchers: u32,
     /// The time after which a room without members is closed.
     pub empty_room: Duration,
-    /// The most frames that a session gets in a second.
+    /// The most frames that a session receives in a second.
     pub frames_per_second: u32,
-    /// The rooms that are always there.
+    /// The rooms that always exist.
     pub standing: Vec<RoomWish>,
-    /// The folder in which rooms are recorded, if they are.
+    /// The folder for recordings of rooms; `None` if rooms are not recorded.
     pub recordings: Option<PathBuf>,
 }
 
@@ -120,7 +121,7 @@ impl Default for Config {
             watchers: 32,
             empty_room: Duration::from_mins(1),
             frames_per_second: 30,
-            // One to walk about in, and one to play in.
+            // One room to walk around in, and one to play in.
             standing: [Mode::Roam, Mode::Tag].map(in_mode).into(),
             recordings: None,
         }
@@ -128,7 +129,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Parses a configuration file, which faults refer to as `name`.
+    /// Parses a configuration file. Faults refer to the file as `name`.
     ///
     /// # Errors
     /// All faults of the file.
@@ -230,23 +231,23 @@ impl fmt::Display for Config {
 pub struct LiveConfig(Arc<watch::Sender<Arc<Config>>>);
 
 impl LiveConfig {
-    /// The configuration of a server that starts.
+    /// The configuration of a server at its start.
     pub fn new(config: Config) -> Self {
         Self(Arc::new(watch::Sender::new(Arc::new(config))))
     }
 
-    /// The configuration now.
+    /// The current configuration.
     pub fn get(&self) -> Arc<Config> {
         self.0.borrow().clone()
     }
 
-    /// Tells changes.
+    /// A receiver of changes.
     pub fn subscribe(&self) -> watch::Receiver<Arc<Config>> {
         self.0.subscribe()
     }
 
-    /// Replaces the configuration, except for addresses that the server listens at and the folder of
-    /// maps. Returns the names of settings that `wanted` would change and that stay until the next
+    /// Replaces the configuration, except for the addresses at which the server listens and the folder of
+    /// maps. Returns the names of the settings that `wanted` would change but that stay until the next
     /// start.
     pub fn replace(&self, mut wanted: Config) -> Vec<&'static str> {
         let now = self.get();
@@ -257,7 +258,7 @@ impl LiveConfig {
             differs.then_some(name)
         });
         let fixed = fixed.collect();
-        // Of the command line alone.
+        // Only the command line sets this.
         wanted.recordings.clone_from(&now.recordings);
         self.0.send_replace(Arc::new(wanted));
         fixed
@@ -268,8 +269,8 @@ impl LiveConfig {
 const MOST_ROOMS: usize = 32;
 
 impl Config {
-    /// Checks that there are the levels of the standing rooms in `text`, a configuration that was parsed
-    /// without a fault. `levels` are all names of levels.
+    /// Checks that the levels of the standing rooms in `text` exist. `text` is a configuration that parses
+    /// without a fault. `levels` are the names of all levels.
     ///
     /// # Errors
     /// A fault for each unknown level.
@@ -290,7 +291,7 @@ impl Config {
     }
 }
 
-/// The levels of the standing rooms, with their places.
+/// The levels of the standing rooms, with their places in the text.
 fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
     let Some(DeValue::Array(rooms)) = document.get("room").map(Spanned::get_ref) else {
         return Vec::new();
@@ -307,7 +308,7 @@ fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
     levels.collect()
 }
 
-/// The standing rooms of an entry `room`; `None` after a fault of the whole list.
+/// The standing rooms of an entry `room`; `None` if the list as a whole has a fault.
 fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
     const EXAMPLE: &str = "[[room]]";
     let Some(list) = entry.list() else {
@@ -363,12 +364,11 @@ fn in_mode(mode: Mode) -> RoomWish {
     RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
-/// In characters: the longest message of the day.
+/// The longest message of the day, in characters.
 const LONGEST_MESSAGE: usize = 200;
-/// In characters: the longest name of a host.
+/// The longest name of a host, in characters.
 const LONGEST_NAME: usize = 40;
 
-/// Examples of entries.
 const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
 const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
 const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
@@ -384,7 +384,7 @@ const LISTEN: Setting<Config> = Setting {
     },
 };
 
-/// Without a value, nothing is written.
+/// Writes an empty string if there is no value.
 const MAPS: Setting<Config> = Setting {
     key: "maps",
     about: "the folder of the host's own maps; none without this line",
@@ -397,7 +397,7 @@ const MAPS: Setting<Config> = Setting {
     },
 };
 
-/// The only setting in the table `[metrics]`. Without a value, nothing is written.
+/// The only setting in the table `[metrics]`. Writes an empty string if there is no value.
 const METRICS_LISTEN: Setting<Config> = Setting {
     key: "listen",
     about: "where Prometheus reads metrics; nowhere without this line",
@@ -408,7 +408,7 @@ const METRICS_LISTEN: Setting<Config> = Setting {
     },
 };
 
-/// The settings that are texts, in the order of a file.
+/// The text settings, in the order of a file.
 const TEXTS: [Setting<Config>; 5] = [
     LISTEN,
     Setting {
@@ -430,7 +430,7 @@ const TEXTS: [Setting<Config>; 5] = [
     MAPS,
 ];
 
-/// The settings that are numbers, in the order of a file. They follow the texts.
+/// The number settings, in the order of a file. They follow the texts.
 const NUMBERS: [Setting<Config>; 21] = [
     Setting {
         key: "connections",
@@ -538,7 +538,7 @@ const NUMBERS: [Setting<Config>; 21] = [
     },
 ];
 
-/// A value that is read and written by functions of its own.
+/// A setting with functions of its own to read and write the value.
 struct Text<T> {
     at: fn(&mut Config) -> &mut T,
     read: fn(&Entry<'_, '_>) -> Option<T>,
@@ -577,7 +577,7 @@ impl<T: Clone + PartialEq> Field<Config> for Text<T> {
 /// A whole number in a range.
 struct Number(RangeInclusive<u32>, Place);
 
-/// The place of a number.
+/// The field that stores a number.
 enum Place {
     U16(fn(&mut Config) -> &mut u16),
     U32(fn(&mut Config) -> &mut u32),
@@ -653,7 +653,7 @@ fn name(entry: &Entry<'_, '_>) -> Option<String> {
     line(entry, text, "the name of the host", LONGEST_NAME)
 }
 
-/// `text`, if it is one line of at most `longest` characters. `what` names it in the fault.
+/// Returns `text` if it is one line of at most `longest` characters. `what` names it in the fault.
 fn line(entry: &Entry<'_, '_>, text: &str, what: &str, longest: usize) -> Option<String> {
     if text.chars().count() > longest || text.contains(char::is_control) {
         return entry.reject(format!("{what} is one line of at most {longest} characters"), "", "");
@@ -663,7 +663,7 @@ fn line(entry: &Entry<'_, '_>, text: &str, what: &str, longest: usize) -> Option
 
 fn folder(entry: &Entry<'_, '_>) -> Option<PathBuf> {
     let path = Path::new(entry.string(MAPS_EXAMPLE)?);
-    // A service starts in a folder that nobody thinks of.
+    // A relative path would depend on the folder in which a service starts.
     if !path.is_absolute() {
         let message = format!("{} is not an absolute path", quoted(&path.to_string_lossy()));
         return entry.reject(message, "", format!("write {MAPS_EXAMPLE}"));

@@ -1,5 +1,5 @@
-//! Parts of the server without connections and tasks, for fuzz targets outside of the crate. It is compiled with
-//! the feature `fuzzing` only.
+//! Parts of the server without connections and tasks, for fuzz targets outside of the crate. The module is
+//! compiled only with the feature `fuzzing`.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::pin::pin;
@@ -30,23 +30,23 @@ use cellcaster::rng::SplitMix64;
 use cellcaster::terminal::{Options, WindowSize};
 use cellcaster::world::Difficulty;
 
-/// Read once: it takes longer than most inputs.
+/// Read once, because that takes longer than most inputs.
 static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::builtin()));
 
 const ROOM: RoomId = RoomId(1);
 /// The duration of a step, in microseconds.
 const STEP: u64 = 1_000_000 / 60;
 
-/// The number of checkpoints to change.
+/// The number of checkpoints that a fuzz target can change.
 pub const CHECKPOINTS: usize = 24;
-/// The most steps of a room before its checkpoint.
+/// The most steps that a room takes before its checkpoint.
 const MOST_STEPS: usize = 900;
 
 /// A room and its visitors.
 pub struct Hall {
     catalog: Arc<Catalog>,
     room: Room,
-    /// The recording of the round.
+    /// The recording of the current round.
     recording: String,
     visitors: Vec<Visitor>,
     now: Duration,
@@ -55,7 +55,7 @@ pub struct Hall {
 struct Visitor {
     session: Session,
     member: Option<MemberId>,
-    /// Whether they are in the room, as a member or to watch.
+    /// `true` while the visitor is in the room, as a member or a watcher.
     is_inside: bool,
     name: Line,
 }
@@ -86,7 +86,7 @@ impl Hall {
         Self { catalog, room, recording, visitors: Vec::new(), now: Duration::ZERO }
     }
 
-    /// A visitor comes, with a terminal of which `options` are known.
+    /// Adds a visitor whose terminal has these options.
     pub fn arrive(&mut self, name: &str, options: Options, size: WindowSize) {
         let name = Line::of(name, NAME_COLUMNS).expect("a name");
         let identity = Identity {
@@ -109,24 +109,24 @@ impl Hall {
         self.visitors.push(Visitor { session, member: None, is_inside: false, name });
     }
 
-    /// A visitor's terminal sends `bytes`.
+    /// Handles bytes from a visitor's terminal.
     pub fn receive(&mut self, visitor: usize, bytes: &[u8]) {
         self.visitors[visitor].session.receive(bytes, self.now);
         self.answer(visitor);
     }
 
-    /// As [`receive`](Self::receive), but what the session asks for waits for the next output.
+    /// Like [`receive`](Self::receive), but the session's requests wait until the next output.
     pub fn press(&mut self, visitor: usize, bytes: &[u8]) {
         self.visitors[visitor].session.receive(bytes, self.now);
     }
 
-    /// A visitor's window changes its size.
+    /// Changes the size of a visitor's window.
     pub fn resize(&mut self, visitor: usize, size: WindowSize) {
         self.visitors[visitor].session.resize(size, self.now);
         self.answer(visitor);
     }
 
-    /// The host tells a visitor something.
+    /// Sends a visitor an event from the host. `seconds` chooses the event.
     pub fn notify(&mut self, visitor: usize, seconds: u64) {
         let line = Line::of("The host speaks.", CHAT_COLUMNS).expect("it fits");
         let event = match seconds % 5 {
@@ -146,7 +146,7 @@ impl Hall {
         self.answer(visitor);
     }
 
-    /// Lets that many steps pass, in which the sessions are woken.
+    /// Advances the room by `steps`, and wakes the sessions when they are due.
     pub fn pass(&mut self, steps: u64) {
         for _ in 0..steps {
             self.now += Duration::from_micros(STEP);
@@ -162,7 +162,7 @@ impl Hall {
         }
     }
 
-    /// The bytes for a visitor's terminal, with a frame if one is due. They leave at once.
+    /// The bytes for a visitor's terminal, with a frame if one is due. They count as written at once.
     pub fn output(&mut self, visitor: usize) -> Vec<u8> {
         let Visitor { session, is_inside, .. } = &mut self.visitors[visitor];
         let view = self.room.view();
@@ -176,12 +176,12 @@ impl Hall {
         output
     }
 
-    /// Whether a visitor's session has ended.
+    /// Returns true if a visitor's session has ended.
     pub fn is_over(&self, visitor: usize) -> bool {
         self.visitors[visitor].session.is_over()
     }
 
-    /// The round as its log has it, and the checksum of the room.
+    /// The log of the round, and the checksum of the room.
     pub fn recording(&self) -> (String, u64) {
         (self.recording.clone(), self.room.checksum())
     }
@@ -189,7 +189,7 @@ impl Hall {
     /// Plays the last round of a recording, and returns the checksum of the room.
     ///
     /// # Errors
-    /// Why it cannot be played.
+    /// The reason why it cannot be played.
     pub fn replayed(text: &str) -> Result<Option<u64>, String> {
         let rounds = replayed(text, &CATALOG)?;
         Ok(rounds.last().map(|round| round.checksum))
@@ -208,7 +208,7 @@ impl Hall {
         self.room.advance();
     }
 
-    /// Does what a session asks for.
+    /// Answers the requests of a session.
     fn answer(&mut self, visitor: usize) {
         for _ in 0..8 {
             let requests = self.visitors[visitor].session.requests();
@@ -293,7 +293,7 @@ impl Hall {
     }
 }
 
-/// An operator's host with three visitors.
+/// A host with three visitors, and its operator.
 pub struct Desk {
     operator: Operator,
     _visitors: Vec<Presence>,
@@ -315,7 +315,7 @@ impl Default for Desk {
 }
 
 impl Desk {
-    /// What a connection answers on which `bytes` arrive and then the end.
+    /// The answer on a connection that delivers `bytes` and then ends.
     ///
     /// # Panics
     /// If the answer fails or waits.
@@ -332,18 +332,18 @@ impl Desk {
 
 static MADE: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| (0..CHECKPOINTS).map(made).collect());
 
-/// The checkpoint of a room that was played, by its number below [`CHECKPOINTS`].
+/// The checkpoint of a room after some steps. `number` is below [`CHECKPOINTS`].
 pub fn checkpoint(number: usize) -> &'static [u8] {
     &MADE[number]
 }
 
-/// Restores a room from `bytes` and plays it on for that many steps.
+/// Restores a room from `bytes`, and plays it for `steps` steps.
 ///
 /// # Errors
-/// A sentence, if `bytes` are no checkpoint.
+/// A sentence, if `bytes` are not a checkpoint.
 ///
 /// # Panics
-/// If the restored room has another checkpoint than one that is restored from it.
+/// If restoring the room's own checkpoint changes it.
 pub fn resume(bytes: &[u8], seed: u64, steps: usize) -> Result<(), String> {
     let mut room = Room::restore(&CATALOG, bytes)?;
     let bytes = room.checkpoint();
@@ -366,7 +366,7 @@ fn made(number: usize) -> Vec<u8> {
     room.checkpoint()
 }
 
-/// Lets members come, want anything and go.
+/// Lets members join, act at random and leave.
 fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
     let mut wanted = Intents::new();
     for _ in 0..steps {

@@ -8,17 +8,17 @@
 //!
 //! # Rules
 //!
-//! - A visitor holds one session channel with a terminal, and nothing else: no command, subsystem,
-//!   forwarding, agent or X11.
-//! - A public key is an account, and its comment does not matter. A visitor without a key is a guest.
-//! - Memory for a connection is bounded in both directions. What a client sends waits in its socket
-//!   while the session is busy, and at most one frame waits for a client that does not read.
-//! - A client costs the others nothing: connections, bytes and time before authentication are
-//!   limited, and so are the bytes a second after it.
-//! - Policies take time and chance as arguments; only [`ssh`], [`operator`] and [`metrics`] have sockets.
+//! - A visitor gets one session channel with a terminal, and nothing else: no command, subsystem, forwarding, agent or
+//!   X11.
+//! - A public key identifies an account; the comment of the key is ignored. A visitor without a key is a guest.
+//! - Memory per connection is bounded in both directions. While a session is busy, the client's input waits in the
+//!   socket. At most one frame waits for a client that does not read.
+//! - A client cannot slow down the others. Connections, bytes and time before authentication are limited, and so are
+//!   the bytes per second after it.
+//! - Policies take the time and random numbers as arguments. Only [`ssh`], [`operator`] and [`metrics`] open sockets.
 //!
-//! Rejected: `russh`'s own accept loop. It has no limit of connections, no deadline before
-//! authentication, and its queue to a channel tells nothing about the socket.
+//! Rejected: `russh`'s own accept loop. It has no limit on connections and no deadline before authentication, and its
+//! queue to a channel says nothing about the socket.
 
 #![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
 
@@ -48,7 +48,7 @@ pub mod visitors;
 mod lock {
     use std::sync::{Mutex, PoisonError};
 
-    /// Acts on the value behind a lock, which is never held across an await. A panic elsewhere does not close the lock.
+    /// Runs `act` on the value behind a lock, even if a panic has poisoned it. The lock is never held across an await.
     pub(crate) fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
         act(&mut mutex.lock().unwrap_or_else(PoisonError::into_inner))
     }

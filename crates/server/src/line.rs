@@ -1,7 +1,7 @@
 //! Lines that players type: names and chat.
 //!
-//! Nothing that a player typed reaches the terminal of another one but through a [`Line`]. So an
-//! escape sequence, a direction mark or a pile of accents ends here, whoever forgets to check.
+//! Text that a player typed reaches another player's terminal only through a [`Line`]. It drops escape
+//! sequences, direction marks and piles of accents, even if the caller forgets to check for them.
 
 use std::fmt;
 
@@ -9,30 +9,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::accounts::printable;
 
-/// Printable characters that fit in a number of columns, as [`printable`] leaves them. It is not empty.
+/// Printable text that fits in a number of columns, as [`printable`] returns it. It is not empty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String")]
 pub(crate) struct Line(String);
 
 impl Line {
-    /// The printable characters of `text`, as many as fit in `columns`. `None` if there are none.
+    /// The printable characters of `text` that fit in `columns`. `None` if there are none.
     pub(crate) fn of(text: &str, columns: usize) -> Option<Self> {
         let line = printable(text, columns);
         (!line.is_empty()).then_some(Self(line))
     }
 
-    /// Whether it fits in that many columns.
+    /// Returns true if the line fits in `columns`.
     pub(crate) fn fits(&self, columns: usize) -> bool {
         printable(&self.0, columns) == self.0
     }
 
-    /// The text.
     pub(crate) fn as_str(&self) -> &str {
         &self.0
     }
 }
 
-/// A line that is as it is shown.
+/// Accepts only text that [`printable`] leaves unchanged.
 impl TryFrom<String> for Line {
     type Error = &'static str;
 

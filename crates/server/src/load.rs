@@ -1,12 +1,12 @@
 //! Measurements of how busy the server is, and the frame rate that follows from them.
 //!
-//! The governor: how many frames a second all sessions get when processor time is short.
+//! The governor decides how many frames a second each session gets when processor time is short.
 //!
-//! Frame rates sink evenly before anything else waits: rooms keep their 60 steps a second, and the
-//! answer to a key comes with the next frame. The rate falls by a fifth in a decision and rises by one
-//! frame a second in [`CALM`], so that it does not swing.
+//! Frame rates drop evenly before anything else waits: rooms keep their 60 steps a second, and the
+//! answer to a key comes with the next frame. A decision lowers the rate by a fifth. The rate rises by
+//! one frame a second after [`CALM`] decisions with time to spare, so that it does not oscillate.
 //!
-//! Rejected: a rate for each session. The latest visitor would have the worst picture.
+//! Rejected: a rate for each session. The latest visitor would get the worst picture.
 
 #[cfg(test)]
 mod simulated;
@@ -22,31 +22,31 @@ pub(crate) use self::simulated::{Work, Worker};
 use crate::lock::locked;
 use crate::metrics::{Metrics, cpu_time};
 
-/// Measurements that all rooms and sessions add to.
+/// Measurements from all rooms and sessions.
 #[derive(Debug)]
 pub(crate) struct Load {
     pub(crate) metrics: Arc<Metrics>,
-    /// In microseconds: the sum of the delays of all steps since the last sample.
+    /// The sum of the delays of all steps since the last sample, in microseconds.
     lateness: AtomicU64,
-    /// The number of those steps.
+    /// The number of steps since the last sample.
     steps: AtomicU64,
-    /// In microseconds: the least time between two frames.
+    /// The least time between two frames, in microseconds.
     frame_time: AtomicU64,
     /// The processor time of this process at the last sample.
     used: Mutex<Duration>,
-    /// The processors that it may use.
+    /// The number of processors that this process may use.
     processors: f64,
-    /// The clock of its processor time.
+    /// The clock of this process's processor time.
     clock: fn() -> Duration,
     #[cfg(test)]
     worker: Worker,
 }
 
 impl Load {
-    /// Nothing measured yet; it adds to `metrics`, too.
+    /// Creates a load without measurements. It also records them in `metrics`.
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
-        // Where it is not known, late steps are all that lowers the frame rate.
+        // If the processor time is unknown, only late steps lower the frame rate.
         Self::with(metrics, processors, || cpu_time().unwrap_or_default())
     }
 
@@ -67,14 +67,14 @@ impl Load {
         }
     }
 
-    /// Notes by how much a step of a room was late.
+    /// Records by how much a step of a room was late.
     pub(crate) fn note_lateness(&self, lateness: Duration) {
         self.lateness.fetch_add(micros(lateness), Ordering::Relaxed);
         self.steps.fetch_add(1, Ordering::Relaxed);
         self.metrics.step_lateness.observe(lateness);
     }
 
-    /// What was measured in the last `time`, since the last call.
+    /// The measurements since the last call, which was `time` ago.
     pub(crate) fn sample(&self, time: Duration) -> Sample {
         let steps = self.steps.swap(0, Ordering::Relaxed).max(1);
         let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed) / steps);
@@ -101,40 +101,41 @@ fn micros(time: Duration) -> u64 {
 /// Measurements since the last decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
-    /// The share of their time in which the threads that draw were busy, from 0 to 1.
+    /// The share of the available processor time that was used, from 0 to 1.
     pub(crate) busy: f64,
-    /// By how much the steps of rooms were late in the mean.
+    /// The mean delay of the steps of rooms.
     pub(crate) lateness: Duration,
 }
 
-/// The state of the policy.
+/// The state of the policy for the frame rate.
 #[derive(Clone, Debug)]
 pub(crate) struct Governor {
-    /// In frames a second; [`f64::INFINITY`] for no limit.
+    /// The rate in frames a second; [`f64::INFINITY`] for no limit.
     rate: f64,
-    /// The number of decisions in a row for which there was time to spare.
+    /// The number of consecutive decisions with time to spare.
     calm: u32,
 }
 
-/// In frames a second, the lowest rate.
+/// The lowest rate, in frames a second.
 const LEAST: f64 = 5.0;
-/// The share from which on the rate falls.
+/// The busy share at which the rate drops.
 const BUSY: f64 = 0.9;
-/// The share below which it may rise.
+/// The busy share below which the rate may rise.
 const SPARE: f64 = 0.75;
-/// The mean delay of steps from which on the rate falls: a step. Rejected: the longest delay. If
-/// other programs use the machine, some step is late in each quarter of a second.
+/// The mean delay of steps at which the rate drops: one step. Rejected: the longest delay. If other
+/// programs use the machine, some step is late in each quarter of a second.
 const LATE: Duration = Duration::from_micros(16_667);
-/// The decisions with time to spare after which the rate rises: a second.
+/// The number of decisions with time to spare after which the rate rises: a second.
 const CALM: u32 = 4;
 
 impl Governor {
-    /// No limit.
+    /// A governor without a limit.
     pub(crate) fn new() -> Self {
         Self { rate: f64::INFINITY, calm: 0 }
     }
 
-    /// The least time between two frames of a session, where at most `most` frames a second are wanted.
+    /// The least time between two frames of a session. `most` is the configured limit in frames a
+    /// second.
     pub(crate) fn decide(&mut self, sample: Sample, most: u32) -> Duration {
         let most = f64::from(most).max(LEAST);
         self.rate = self.rate.min(most);
@@ -184,7 +185,7 @@ mod tests {
         assert!(rate(governor.decide(late, 30)) < 25.0);
     }
 
-    /// Sessions that use `cost` of the processor for each frame a second.
+    /// Each frame a second costs the share `cost` of the processor.
     #[test]
     fn the_rate_settles_where_the_threads_are_busy_but_not_full() {
         for cost in [0.01, 0.05, 0.09] {

@@ -1,15 +1,15 @@
-//! The log of a server: what happens, as lines on standard error.
+//! The log of a server: events, as lines on standard error.
 //!
 //! # Rules
 //!
-//! - The events are in one place, a function each. An operator can rely on their names.
-//! - **No key and no address is logged whole:** a key as its fingerprint, an address as its network.
-//! - **What a player typed is data:** it stands in a field, quoted and escaped, and what they say to
-//!   each other is not logged at all.
-//! - A flood of connections is a few lines a second: `Throttle` sums what precedes a login, by network and second.
+//! - Each event has a function in this module. Operators can rely on the names of the events.
+//! - **No key and no address is logged in full:** a key appears as its fingerprint, an address as its network.
+//! - **Text that a player typed is data:** it appears in a field, quoted and escaped. Chat is not logged at all.
+//! - A flood of connections takes a few lines a second: `Throttle` sums the events before a login by network and
+//!   second.
 //!
-//! An event has a topic, which is the target that `tracing` knows: `host`, `connections`, `rooms`,
-//! `results` or `admin`. A [`LogFilter`] has a level for each.
+//! An event has a topic: `host`, `connections`, `rooms`, `results` or `admin`. The topic is the event's target in
+//! `tracing`. A [`LogFilter`] contains a level for each topic.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -30,7 +30,7 @@ use crate::accounts::{AccountKey, AddressPrefix, BanTarget};
 use crate::admission::{Outcome, Refusal};
 use crate::visitors::SessionId;
 
-/// The form of a line.
+/// The format of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
 pub enum LogFormat {
     /// For people: time, level, topic, event, fields.
@@ -40,7 +40,7 @@ pub enum LogFormat {
     Json,
 }
 
-/// A log that has begun. Its filter can be changed.
+/// A log that has begun. Its filter can change.
 #[derive(Debug)]
 pub struct Logging {
     filter: Handle<Targets, Registry>,
@@ -49,10 +49,10 @@ pub struct Logging {
 /// The topics of events.
 pub(crate) const TOPICS: [&str; 5] = ["host", "connections", "rooms", "results", "admin"];
 
-/// The beginning of targets without a topic: the paths of modules.
+/// The beginning of targets without a topic: module paths of this program.
 const PROGRAM: &str = env!("CARGO_CRATE_NAME");
 
-/// The least level of events that are logged, and that of some topics.
+/// The lowest level of the events that are logged, and other levels for some topics.
 ///
 /// ```
 /// use cellcaster_server::logging::LogFilter;
@@ -68,32 +68,33 @@ pub struct LogFilter {
     topics: Vec<(&'static str, LevelFilter)>,
 }
 
-/// Lets a few events a second through, and sums the others, so that a flood of connections is a few lines a second.
+/// Keeps the log readable during a flood of connections: a few lines a second, and sums of all other events.
 ///
-/// Within a second, the first [`MOST`] pairs of an event and a network have a line of their own at once. What follows
-/// is counted, and is logged when the second is over: a line with the sum for each of these pairs, and one for
-/// each event with the sum of all other networks.
+/// Within a second, the first [`MOST`] pairs of an event and a network are each logged at once, in a line of their
+/// own. Later events are counted. When the second is over, they are logged as a line with the sum for each of these
+/// pairs, and a line for each event with the sum of all other networks.
 #[derive(Debug, Default)]
 pub(crate) struct Throttle {
-    /// The events of this second without a line; without a network, those of all that have no line.
+    /// The events of this second that no line contains yet. An entry without a network counts all networks without a
+    /// line.
     unlogged: BTreeMap<(ConnectionEvent, Option<AddressPrefix>), u64>,
 }
 
-/// The pairs that have a line of their own in a second.
+/// The number of pairs that have a line of their own in a second.
 const MOST: usize = 4;
 
 impl Logging {
     /// Begins the log of this process on standard error. A second call has no effect.
     pub fn begin(format: LogFormat, filter: &LogFilter) -> Self {
         let (subscriber, logging) = subscriber(format, filter, io::stderr);
-        // Another log, of a test or an embedding program, stays.
+        // If a test or an embedding program has set another log, that one stays.
         _ = tracing::subscriber::set_global_default(subscriber);
         logging
     }
 
-    /// Changes what is logged.
+    /// Changes the filter.
     pub fn set_filter(&self, filter: &LogFilter) {
-        // It fails only when nothing is logged any more.
+        // This fails only when the log is gone.
         _ = self.filter.reload(filter.targets());
     }
 }
@@ -115,12 +116,12 @@ fn subscriber(
 }
 
 impl LogFilter {
-    /// The grammar in a sentence.
+    /// The grammar of a filter, in a sentence.
     pub const GRAMMAR: &str = "off, error, warn, info, debug or trace, and others for the topics host, \
                                connections, rooms, results and admin";
 
-    /// The filter for a subscriber. Events of this program without a topic count as those of `host`, and
-    /// events of libraries are not logged.
+    /// The filter for a subscriber. Events of this program without a topic belong to `host`. Events of libraries are
+    /// not logged.
     pub(crate) fn targets(&self) -> Targets {
         let of_topic = |topic| {
             let own = self.topics.iter().find(|(other, _)| *other == topic);
@@ -132,14 +133,14 @@ impl LogFilter {
 }
 
 impl Default for LogFilter {
-    /// `info` for all.
+    /// `info` for all topics.
     fn default() -> Self {
         Self { level: LevelFilter::INFO, topics: Vec::new() }
     }
 }
 
 impl FromStr for LogFilter {
-    /// The part that is no level.
+    /// The part that is not a valid level or topic.
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -161,7 +162,7 @@ impl FromStr for LogFilter {
 }
 
 fn level(name: &str) -> Option<LevelFilter> {
-    // It also knows numbers and capitals.
+    // `parse` also accepts numbers and capitals.
     name.parse().ok().filter(|level: &LevelFilter| level.to_string() == name)
 }
 
@@ -173,7 +174,7 @@ impl Display for LogFilter {
 }
 
 impl Throttle {
-    /// Logs an event of a client at `address`, at once or with the second.
+    /// Logs an event of a client at `address`, at once or at the end of the second.
     pub(crate) fn log(&mut self, event: ConnectionEvent, address: IpAddr) {
         let network = Some(AddressPrefix::network_of(address));
         let with_line = self.unlogged.keys().filter(|(_, network)| network.is_some()).count();
@@ -187,7 +188,7 @@ impl Throttle {
         }
     }
 
-    /// Logs the sums of the second that is over.
+    /// Logs the sums of the second that has ended.
     pub(crate) fn end_second(&mut self) {
         for ((event, network), count) in mem::take(&mut self.unlogged) {
             if count > 0 {
@@ -197,14 +198,14 @@ impl Throttle {
     }
 }
 
-/// What a client brings about without logging in.
+/// An event that a client causes without logging in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum ConnectionEvent {
     /// A connection was accepted.
     Accepted,
     /// A connection was refused.
     Refused(Refusal),
-    /// A connection has ended before its login.
+    /// A connection ended before its login.
     Ended(Outcome),
 }
 
@@ -224,8 +225,8 @@ pub(crate) fn metrics_listening(address: SocketAddr) {
     info!(target: HOST, %address, "metrics listening");
 }
 
-/// The configuration was read again, from `file` if there is one. Settings that are in `fixed` stay as
-/// they are until the next start.
+/// The configuration was read again, from `file` if there is one. The settings in `fixed` stay unchanged until the
+/// next start.
 pub(crate) fn reloaded(file: Option<&Path>, fixed: &[&str]) {
     let file = file.map(|file| clean(file.display()));
     if fixed.is_empty() {
@@ -236,12 +237,12 @@ pub(crate) fn reloaded(file: Option<&Path>, fixed: &[&str]) {
     }
 }
 
-/// A part of the report of a file's faults. The configuration before stays in force.
+/// A line of the report about a file's faults. The previous configuration stays in force.
 pub(crate) fn configuration_fault(line: &str) {
     error!(target: HOST, fault = clean(line), "configuration not reloaded");
 }
 
-/// The server accepts no more connections, and ends after `seconds` at most.
+/// The server accepts no more connections, and ends after at most `seconds`.
 pub(crate) fn draining(seconds: u64) {
     info!(target: HOST, seconds, "draining");
 }
@@ -256,12 +257,12 @@ pub(crate) fn fault(what: &str, error: impl Display) {
     error!(target: HOST, what, error = clean(error), "fault");
 }
 
-/// A call of the store failed.
+/// A call to the store failed.
 pub(crate) fn store_failed(error: impl Display) {
     error!(target: HOST, error = clean(error), "store failed");
 }
 
-/// `count` clients of a network, or of several other networks, have brought about an event.
+/// `count` clients of a network caused an event; `None` stands for several other networks.
 pub(crate) fn connections(network: Option<AddressPrefix>, event: ConnectionEvent, count: u64) {
     let network = network.map_or_else(|| "others".to_owned(), |network| network.to_string());
     match event {
@@ -275,25 +276,25 @@ pub(crate) fn connections(network: Option<AddressPrefix>, event: ConnectionEvent
     }
 }
 
-/// A client is authenticated; without a key as a guest.
+/// A client was authenticated, as a guest if it has no key.
 pub(crate) fn authenticated(address: IpAddr, key: Option<AccountKey>) {
     let key = or_guest(key);
     info!(target: CONNECTIONS, network = network(address), key, "authenticated");
 }
 
-/// A connection has ended in order, after so many seconds.
+/// A connection ended normally after `seconds`.
 pub(crate) fn disconnected(address: IpAddr, seconds: u64) {
     let (network, outcome) = (network(address), Outcome::Served.name());
     info!(target: CONNECTIONS, network, outcome, seconds, "disconnected");
 }
 
-/// A visitor was sent away because of a ban.
+/// A visitor was turned away because of a ban.
 pub(crate) fn banned_visitor(address: IpAddr, target: &BanTarget) {
     let (network, target) = (network(address), clean(target));
     info!(target: CONNECTIONS, network, ban = target, "banned visitor");
 }
 
-/// A visitor has a name.
+/// A visitor received a name.
 pub(crate) fn named(key: Option<&AccountKey>, name: &str) {
     let key = or_guest(key.copied());
     info!(target: CONNECTIONS, key, name = clean(name), "named");
@@ -309,38 +310,38 @@ pub(crate) fn room_closed(room: u32) {
     info!(target: ROOMS, room, "closed");
 }
 
-/// A round has ended with standings, the winner first.
+/// A round ended with standings. `winner` comes first in them.
 pub(crate) fn round_ended(room: u32, steps: u64, winner: Option<&str>) {
     info!(target: ROOMS, room, steps, winner = winner.map(clean), "round ended");
 }
 
-/// A room has ended by a defect.
+/// A room ended because of a bug.
 pub(crate) fn room_failed(room: u32, error: impl Display) {
     error!(target: ROOMS, room, error = clean(error), "failed");
 }
 
-/// A result was replayed and kept.
+/// A result was replayed and recorded.
 pub(crate) fn result_verified(name: &str, level: &str, steps: u64, rank: &str) {
     info!(target: RESULTS, name = clean(name), level = clean(level), steps, rank, "verified");
 }
 
-/// A result was replayed, and is none.
+/// The replay did not produce the claimed result.
 pub(crate) fn result_refused(name: &str, level: &str, reason: impl Display) {
     warn!(target: RESULTS, name = clean(name), level = clean(level), reason = clean(reason), "refused");
 }
 
-/// A result was replayed, and waits for the store, which is away or full.
+/// A result was replayed, and waits because the store is unavailable or full.
 pub(crate) fn result_waits(name: &str, level: &str) {
     warn!(target: RESULTS, name = clean(name), level = clean(level), "waits for the store");
 }
 
-/// A result that has waited is lost.
+/// A waiting result was lost.
 pub(crate) fn result_lost(key: &AccountKey, reason: impl Display) {
     let (key, reason) = (key.to_string(), clean(reason));
     error!(target: RESULTS, key, reason, "lost");
 }
 
-/// An operator has ended the sessions of `count` visitors, and may have banned them.
+/// An operator ended the sessions of `count` visitors, and possibly banned them.
 pub(crate) fn removed(target: &BanTarget, count: usize, is_banned: bool) {
     let who = clean(target);
     if is_banned {
@@ -350,17 +351,17 @@ pub(crate) fn removed(target: &BanTarget, count: usize, is_banned: bool) {
     }
 }
 
-/// An operator has ended a session, if `count` is 1 and not 0.
+/// An operator ended a session. `count` is 0 if there was no such session.
 pub(crate) fn removed_session(session: SessionId, count: usize) {
     info!(target: ADMIN, %session, count, "removed");
 }
 
-/// An operator has said a line to `count` visitors.
+/// An operator sent a line to `count` visitors.
 pub(crate) fn said(count: usize) {
     info!(target: ADMIN, count, "said");
 }
 
-/// The text of a value, with escapes for characters that a terminal would obey or not show.
+/// The text of a value, with escapes for characters that a terminal would interpret or not show.
 fn clean(value: impl Display) -> String {
     let mut escaped = String::new();
     for char in value.to_string().chars() {
@@ -372,7 +373,7 @@ fn clean(value: impl Display) -> String {
     escaped
 }
 
-/// The network of an address, as admission knows it: /24 or /64.
+/// The network of an address: the /24 or /64 that admission uses.
 fn network(address: IpAddr) -> String {
     AddressPrefix::network_of(address).to_string()
 }

@@ -1,7 +1,7 @@
 //! Figures about a running server, in Prometheus' text format.
 //!
-//! [`Metrics`] has a handle for each figure. Parts of the server add to it, and [`text`](Metrics::text) writes all of
-//! them, with those of the process. A responder on an address of its own answers `GET /metrics` with that text.
+//! [`Metrics`] contains a handle for each figure. Parts of the server update them. [`text`](Metrics::text) writes all
+//! of them, and the figures of the process. A responder on an address of its own answers `GET /metrics` with that text.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -29,13 +29,13 @@ use crate::service::serve_each;
 /// The figures of a server.
 #[derive(Debug, Default)]
 pub struct Metrics {
-    /// The name of the host in a cluster, which is then a label of every sample.
+    /// The name of the host in a cluster. If it is set, it is a label of every sample.
     pub host: OnceLock<String>,
-    /// Connections that are open.
+    /// Open connections.
     pub connections: Gauge,
-    /// Visitors whose session runs.
+    /// Visitors with a running session.
     pub sessions: Gauge,
-    /// Connections that were accepted.
+    /// Accepted connections.
     pub accepted: Counter,
     refused: Family<Label, Counter>,
     /// Bytes of frames that wait for clients.
@@ -44,27 +44,27 @@ pub struct Metrics {
     pub frames: Counter,
     /// Their bytes, before compression and encryption.
     pub frame_bytes: Counter,
-    /// Rooms that are open.
+    /// Open rooms.
     pub rooms: Gauge,
     /// Members of all rooms.
     pub members: Gauge,
     /// Visitors who watch a room.
     pub watchers: Gauge,
-    /// Entries of the logs of all rooms.
+    /// Entries in the logs of all rooms.
     pub entries: Counter,
     checks: Family<Label, Counter>,
-    /// Steps of rooms that went on while the bus of the cluster did not answer.
+    /// Steps that rooms took alone while the bus of the cluster did not answer.
     pub steps_alone: Counter,
-    /// How late the steps of rooms are, in seconds.
+    /// The delays of the steps of rooms, in seconds.
     pub step_lateness: Seconds,
-    /// The time in which a frame is drawn and encoded, in seconds.
+    /// The time to draw and encode a frame, in seconds.
     pub frame_time: Seconds,
     /// The time from the arrival of a key to the departure of the frame that shows its effect, in seconds.
     pub key_time: Seconds,
     results: Family<Label, Counter>,
-    /// Results that wait for a store that is away.
+    /// Results that wait while the store is unavailable.
     pub results_waiting: Gauge,
-    /// Calls of the store that failed.
+    /// Failed calls to the store.
     pub store_errors: Counter,
     room_figures: Mutex<BTreeMap<u32, Weak<RoomFigures>>>,
 }
@@ -73,28 +73,28 @@ pub struct Metrics {
 #[derive(Clone, Debug)]
 pub struct Seconds(pub(crate) Histogram);
 
-/// The figures of a room that a host of a cluster runs.
+/// The figures of a room that this host runs, in a cluster.
 #[derive(Debug, Default)]
 pub struct RoomFigures {
     /// Members on all hosts.
     pub members: Gauge,
-    /// Visitors on this host who watch it.
+    /// Watchers on this host.
     pub watchers: Gauge,
     /// 1 while this host writes the log, otherwise 0.
     pub writes: Gauge,
     /// Steps that the room has taken on this host.
     pub steps: Counter,
-    /// Entries of its log.
+    /// Entries in its log.
     pub entries: Counter,
-    /// For each of [`CHECK_RESULTS`].
+    /// One counter for each of [`CHECK_RESULTS`].
     checks: [Counter; 2],
 }
 
 /// The name and the value of a label.
 type Label = [(&'static str, &'static str); 1];
 
-/// The upper bounds of the histograms' buckets, in seconds. A frame takes less than a millisecond, a step of a room is
-/// one of 0.016667, and above 0.05 a player feels the delay of a key.
+/// The upper bounds of the histograms' buckets, in seconds. A frame takes less than a millisecond, a step of a room
+/// lasts 0.016667 s, and above 0.05 s a player feels the delay of a key.
 const BOUNDS: [f64; 15] = [
     0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.016_667, 0.025, 0.05, 0.1, 0.25, 0.5,
     1.0, 2.5,
@@ -103,22 +103,23 @@ const CHECK_RESULTS: [&str; 2] = ["different", "equal"];
 const VERDICTS: [&str; 2] = ["refused", "verified"];
 
 impl Metrics {
-    /// The refusals of connections for `reason`, which include connections that were refused or displaced later.
+    /// Connections that were refused for `reason`, including connections that were displaced or refused after they
+    /// were accepted.
     pub fn refused(&self, reason: Refusal) -> Counter {
         self.refused.get_or_create_owned(&[("reason", reason.name())])
     }
 
-    /// Results that a replay has confirmed, or refuted.
+    /// Results that a replay confirmed or refuted.
     pub(crate) fn results(&self, is_verified: bool) -> Counter {
         self.results.get_or_create_owned(&[("verdict", VERDICTS[usize::from(is_verified)])])
     }
 
-    /// Checksums of rooms that were equal to those of another host, or different, which is a bug.
+    /// Checksums of rooms that matched another host's, or differed. A difference is a bug.
     pub(crate) fn checks(&self, is_equal: bool) -> Counter {
         self.checks.get_or_create_owned(&[("result", CHECK_RESULTS[usize::from(is_equal)])])
     }
 
-    /// Adds a room with figures of its own. It takes the place of an earlier one with its number, and is listed until its
+    /// Adds a room with figures of its own. It replaces an earlier room with the same number, and is listed until its
     /// figures are dropped.
     pub(crate) fn add_room(&self, room: u32) -> Arc<RoomFigures> {
         let figures = Arc::<RoomFigures>::default();
@@ -139,20 +140,20 @@ impl Metrics {
         })
     }
 
-    /// All figures, with those of this process.
+    /// All figures, including the figures of this process.
     pub fn text(&self) -> String {
         let host = self.host.get().map(|host| (Cow::Borrowed("host"), Cow::Owned(host.clone())));
         let mut registry = Registry::with_labels(host.into_iter());
         self.register(registry.sub_registry_with_prefix("cellcaster"));
         register_process(&mut registry);
         let mut text = String::new();
-        // Memory accepts every byte.
+        // Writing to a string cannot fail.
         _ = prometheus_text::encode(&mut text, &registry);
         text
     }
 
     fn register(&self, page: &mut Registry) {
-        // Figures that are still zero are samples, too.
+        // A figure that is still zero must be a sample, too.
         for reason in Refusal::ALL {
             drop(self.refused(reason));
         }
@@ -223,24 +224,24 @@ impl Default for Seconds {
 }
 
 impl Seconds {
-    /// Adds a time.
+    /// Records a time.
     pub fn observe(&self, time: Duration) {
         self.0.observe(time.as_secs_f64());
     }
 }
 
 impl RoomFigures {
-    /// Checksums that were equal to those of another host, or different, which is a bug.
+    /// Checksums that matched another host's, or differed. A difference is a bug.
     pub(crate) fn checks(&self, is_equal: bool) -> &Counter {
         &self.checks[usize::from(is_equal)]
     }
 }
 
-/// Rooms with their figures, as they are at one time.
+/// The rooms that exist now, with their figures.
 #[derive(Debug)]
 struct Rooms(Vec<(u32, Arc<RoomFigures>)>);
 
-/// The name, the help and the figure of a room.
+/// The name, the help and the value of a room's figure.
 type RoomFigure<F> = (&'static str, &'static str, fn(&RoomFigures) -> &F);
 
 impl Collector for Rooms {
@@ -282,7 +283,7 @@ impl Collector for Rooms {
     }
 }
 
-/// The figures of the process, by the names that Prometheus' own clients use.
+/// Registers the figures of the process, under the names that Prometheus's own clients use.
 fn register_process(page: &mut Registry) {
     if let Some(time) = cpu_time() {
         let time = ConstCounter::new(time.as_secs_f64());
@@ -305,7 +306,7 @@ pub(crate) fn cpu_time() -> Option<Duration> {
     None
 }
 
-/// The memory that is in use, in bytes, where the system tells it as Linux does.
+/// The memory in use, in bytes. `None` if the system does not report it as Linux does.
 fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let size = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -313,12 +314,12 @@ fn resident_bytes() -> Option<u64> {
     Some(kilobytes << 10)
 }
 
-/// The page of metrics is answered by hand, and not by a server library: a request of Prometheus is one line. Of a
-/// request, so many bytes are read.
+/// The most bytes of a request that are read. The responder needs no server library, because a request of Prometheus is
+/// one line.
 const MOST_BYTES: u64 = 4096;
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Answers `GET /metrics` with the figures, until the future is dropped.
+/// Answers `GET /metrics` with the figures until the future is dropped.
 pub async fn respond(listener: TcpListener, metrics: Arc<Metrics>) {
     let answer = |stream| answer(stream, Arc::clone(&metrics));
     serve_each(|context| listener.poll_accept(context), TIMEOUT, answer).await;
@@ -328,7 +329,7 @@ async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> 
     let request = request(&mut stream).await?;
     stream.write_all(response(&request, || metrics.text()).as_bytes()).await?;
     stream.shutdown().await?;
-    // Closed with unread bytes, the connection would be reset, and the client might lose the answer.
+    // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
     copy(&mut stream, &mut sink()).await?;
     Ok(())
 }

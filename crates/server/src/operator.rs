@@ -1,4 +1,4 @@
-//! What a request does: on this host, and on all hosts of a cluster.
+//! The effect of an admin request: on this host, and on all hosts of a cluster.
 
 #[cfg(unix)]
 pub mod socket;
@@ -13,28 +13,28 @@ use crate::line::Line;
 use crate::logging;
 use crate::visitors::{Present, SessionId, Visitors};
 
-/// What an operator can see and change in a server. Clones are the same.
+/// The parts of a server that an operator can see and change. Clones share them.
 #[derive(Clone)]
 pub struct Operator {
-    /// Who is on.
+    /// The visitors of this host.
     visitors: Visitors,
-    /// The rooms now.
+    /// Returns the current rooms.
     rooms: Arc<dyn Fn() -> Vec<RoomRow> + Send + Sync>,
     /// Notified when the server has to end.
     drain: Arc<Notify>,
-    /// The other hosts of a cluster.
+    /// The other hosts, in a cluster.
     cluster: Option<SharedRooms>,
 }
 
-/// The longest line that an operator says, in columns.
+/// The longest line that an operator can say, in columns.
 const SAID_COLUMNS: usize = 200;
 /// The longest reason, in columns.
 const REASON_COLUMNS: usize = 200;
-/// What an operator reads who asks for hosts where there is one.
+/// The reply to a request for hosts on a host without a cluster.
 const NO_CLUSTER: &str = "this host is in no cluster";
 
 impl Operator {
-    /// One who sees these visitors and rooms, and notifies `drain` to end the server.
+    /// Creates an operator of these visitors and rooms. It notifies `drain` to end the server.
     pub(crate) fn new(
         visitors: Visitors,
         rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
@@ -44,7 +44,7 @@ impl Operator {
         Self { visitors, rooms: Arc::new(rooms), drain, cluster }
     }
 
-    /// Does what is asked, on all hosts of a cluster.
+    /// Carries out a request, on all hosts of a cluster if the request is for all of them.
     pub async fn answer(&self, request: &AdminRequest) -> AdminReply {
         let own = self.answer_alone(request);
         if let Some(cluster) = &self.cluster
@@ -56,14 +56,14 @@ impl Operator {
         own
     }
 
-    /// Answers the operators of other hosts, as long as the future is not dropped.
+    /// Answers the operators of other hosts until the future is dropped.
     pub async fn answer_others(self) {
         if let Some(cluster) = self.cluster.clone() {
             cluster.answer_others(|request| self.answer_alone(request)).await;
         }
     }
 
-    /// Does what is asked, on this host.
+    /// Carries out a request on this host.
     pub(crate) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
         match request {
             AdminRequest::Who => {
@@ -119,7 +119,7 @@ impl Operator {
     }
 }
 
-/// The sentence for those who are sent away.
+/// The sentence for visitors whose sessions are ended.
 pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
     let what = if is_banned {
         "You are banned from this host"

@@ -1,4 +1,4 @@
-//! Rooms: games that several people play, as deterministic state machines.
+//! Rooms: multiplayer games as deterministic state machines.
 
 pub mod directory;
 pub mod ghost;

@@ -1,4 +1,4 @@
-//! The loop of a small service for the operator: the admin socket, the page of metrics.
+//! The accept loop of a small service for the operator, such as the admin socket or the metrics page.
 
 use std::future::{Future, poll_fn};
 use std::io;
@@ -8,12 +8,13 @@ use std::time::Duration;
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
-/// The connections that a service of the operator answers at a time. Further ones wait in the system's queue.
+/// The number of connections that a service answers at a time. Further ones wait in the system's queue.
 const MOST_CONNECTIONS: usize = 8;
 /// The pause after a failed `accept`.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
-/// Answers each connection that `accept` returns, within `time`, until the future is dropped.
+/// Answers each connection that `accept` returns. Each answer may take at most `time`. Runs until the future
+/// is dropped.
 pub(crate) async fn serve_each<S, P, A>(
     mut accept: impl FnMut(&mut Context<'_>) -> Poll<io::Result<(S, P)>>,
     time: Duration,
@@ -21,7 +22,7 @@ pub(crate) async fn serve_each<S, P, A>(
 ) where
     A: Future<Output = io::Result<()>> + Send + 'static,
 {
-    // Its tasks end with it.
+    // Dropping the set aborts its tasks.
     let mut tasks = JoinSet::new();
     loop {
         while tasks.len() >= MOST_CONNECTIONS {

@@ -1,5 +1,5 @@
-//! Visitors: a session draws snapshots of a room and returns requests, and its driver has the connection, the clock and
-//! the room.
+//! Visitors' sessions. A session draws snapshots of a room and returns requests. Its driver owns the
+//! connection, the clock and the place in the room.
 
 pub mod driver;
 pub mod session;

@@ -1,11 +1,11 @@
-//! A host in simulated time: rooms, sequencers, drivers, sessions and the store as they are, and
-//! clients with terminal emulators at the far ends of pipes.
+//! A host in simulated time: real rooms, sequencers, drivers, sessions and store, connected by pipes to
+//! clients with terminal emulators.
 //!
-//! Everything runs on one thread under a clock that advances when nothing else is left to do. So what
-//! happens depends on the seed alone, and a minute takes less than a second. Tokio wakes those who wait
-//! for one `watch` channel in a random order, which only an unstable option seeds; no run depends on
-//! that order, as a test shows that plays seeds twice. Where computing [costs](Worker) time, the order decides
-//! who is some milliseconds later.
+//! Everything runs on one thread, under a clock that advances only when no task is ready. A run therefore
+//! depends on its seed alone, and a simulated minute takes less than a second. Tokio wakes the tasks that
+//! wait for a `watch` channel in random order, and only an unstable option seeds that order. No run depends
+//! on it: a test plays seeds twice to check. The exception is a slow [worker](Worker), where the order shifts
+//! some tasks by a few milliseconds.
 
 mod client;
 #[path = "../../../tests/support/emulator.rs"]
@@ -57,12 +57,12 @@ grid = '''
 ">" = { exit = true }
 "##;
 
-/// The standing room.
+/// The number of the standing room.
 pub(crate) const ROOM: RoomId = RoomId(1);
 pub(crate) const ENTER: &str = "\r";
 pub(crate) const ESCAPE: &str = "\x1b";
 
-/// A host, and the clients that have come so far.
+/// A host and all clients that have connected to it.
 pub(crate) struct Rig {
     runtime: Runtime,
     host: Simulated,
@@ -72,13 +72,13 @@ pub(crate) struct Rig {
     pub(crate) tapes: Tapes,
 }
 
-/// What may differ from rig to rig.
+/// Options of a simulated server.
 pub(crate) struct Wish {
     pub(crate) catalog: Catalog,
-    /// The level and the mode of the standing room.
+    /// The level of the standing room.
     pub(crate) level: &'static str,
     pub(crate) mode: Mode,
-    /// How long the store takes for a call.
+    /// The duration of each call to the store.
     pub(crate) store_time: Duration,
     pub(crate) worker: Worker,
     pub(crate) seed: u64,
@@ -88,7 +88,7 @@ pub(crate) fn line(text: &str) -> Line {
     Line::of(text, NAME_COLUMNS).unwrap()
 }
 
-/// Two levels with the same map.
+/// A catalog of two levels with the same map.
 pub(crate) fn catalog(map: &str) -> Catalog {
     let mut catalog = Catalog::default();
     for name in ["museum", "hall"] {
@@ -98,7 +98,7 @@ pub(crate) fn catalog(map: &str) -> Catalog {
 }
 
 impl Wish {
-    /// Two levels with the hall, and a standing room in it.
+    /// The hall as both levels, and a standing room in one of them.
     pub(crate) fn new(mode: Mode) -> Self {
         let (store_time, worker) = (Duration::ZERO, Worker::default());
         Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7 }
@@ -106,7 +106,7 @@ impl Wish {
 }
 
 impl Rig {
-    /// A host with a standing room of that mode.
+    /// A host with a standing room in this mode.
     pub(crate) fn new(mode: Mode) -> Self {
         Self::with(Wish::new(mode))
     }
@@ -134,7 +134,7 @@ impl Rig {
         Self { runtime, host, live, visitors, clients: Vec::new(), tapes }
     }
 
-    /// Adds a visitor whose terminal has no colours, and returns their index.
+    /// Connects a visitor with a monochrome terminal; returns their index.
     pub(crate) fn visitor(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
         self.visitor_with(name, size, speaks, ColorDepth::Mono)
     }
@@ -151,7 +151,7 @@ impl Rig {
         index
     }
 
-    /// A guest connects; no time passes.
+    /// Connects a guest without letting time pass; returns their index.
     pub(crate) fn arrive(
         &mut self,
         name: &str,
@@ -162,7 +162,7 @@ impl Rig {
         self.connect(guest(name, size), speaks, depth)
     }
 
-    /// That visitor connects; no time passes.
+    /// Connects a visitor without letting time pass; returns their index.
     pub(crate) fn connect(&mut self, visitor: Visitor, speaks: Speaks, depth: ColorDepth) -> usize {
         let Self { runtime, host, .. } = self;
         let client = runtime.block_on(async { Client::come(host, visitor, speaks, depth) });
@@ -170,7 +170,7 @@ impl Rig {
         self.clients.len() - 1
     }
 
-    /// A visitor who is in the room.
+    /// Connects a visitor and enters the standing room; returns their index.
     pub(crate) fn member(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
         let index = self.visitor(name, size, speaks);
         for _ in 0..3 {
@@ -180,7 +180,7 @@ impl Rig {
         index
     }
 
-    /// Types bytes, and lets half a second pass.
+    /// Types bytes and lets half a second pass.
     pub(crate) fn press(&mut self, index: usize, bytes: &str) {
         self.send(index, bytes);
         self.pump(500);
@@ -191,18 +191,18 @@ impl Rig {
         self.clients[index].send(bytes.as_ref());
     }
 
-    /// Lets that many milliseconds pass.
+    /// Lets time pass, in milliseconds.
     pub(crate) fn pump(&mut self, milliseconds: u64) {
         self.runtime.block_on(async { sleep(Duration::from_millis(milliseconds)).await });
     }
 
-    /// The simulated time.
+    /// The current simulated time.
     pub(crate) fn now(&self) -> Instant {
         let _guard = self.runtime.enter();
         Instant::now()
     }
 
-    /// What the visitor's screen shows.
+    /// The text on the visitor's screen.
     pub(crate) fn text(&self, index: usize) -> String {
         self.clients[index].look(|emulator| {
             let screen = emulator.screen();
@@ -212,7 +212,7 @@ impl Rig {
         })
     }
 
-    /// Looks into a session that has not ended, with the newest snapshot of its room.
+    /// Inspects a running session together with the latest snapshot of its room.
     pub(crate) fn session<T: Send + 'static>(
         &self,
         index: usize,
@@ -222,7 +222,7 @@ impl Rig {
         looked.expect("the session has ended")
     }
 
-    /// The number of the visitor as a member.
+    /// The visitor's number as a member.
     pub(crate) fn member_id(&self, index: usize) -> Option<MemberId> {
         self.session(index, |session, _| session.member())
     }
@@ -239,7 +239,7 @@ impl Rig {
         self.host.rooms()
     }
 
-    /// The newest snapshot of the standing room.
+    /// The latest snapshot of the standing room.
     pub(crate) fn view(&self) -> Arc<RoomView> {
         self.rooms().view(ROOM).expect("the room is there")
     }
@@ -253,7 +253,7 @@ impl Rig {
         })
     }
 
-    /// The tasks of the host and its clients.
+    /// The number of tasks of the host and its clients.
     pub(crate) fn tasks(&self) -> usize {
         self.runtime.metrics().num_alive_tasks()
     }

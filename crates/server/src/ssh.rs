@@ -1,4 +1,4 @@
-//! From sockets to visitors.
+//! The SSH transport: from sockets to visitors.
 
 mod client;
 mod connection;

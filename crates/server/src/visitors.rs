@@ -1,11 +1,11 @@
-//! The visitors who are on a server, as its operator sees them, and the operator's notices to them.
+//! The visitors on a server, as its operator sees them, and the operator's notices to them.
 //!
-//! The driver of a session holds a [`Presence`], says in it what the visitor is called and where they
-//! are, and waits for its [notices](Presence::notice). An operator lists visitors, says a line to all
-//! of them, and removes some.
+//! The driver of a session holds a [`Presence`]. It records the visitor's name and location there and waits
+//! for [notices](Presence::notice). An operator can list visitors, send a line to all of them, and remove
+//! some.
 //!
-//! At most `MAX_LINES` lines wait for a session; then the oldest one is dropped. So a session that
-//! does not take them costs no memory.
+//! At most `MAX_LINES` lines are queued per session; then the oldest is dropped. A session that does not read
+//! them therefore uses no more memory.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
@@ -18,11 +18,11 @@ use tokio::time::Instant;
 use crate::accounts::{AccountKey, BanTarget, Identity, Name};
 use crate::lock::locked;
 
-/// The visitors of a server. Clones share them.
+/// The visitors of a server. Clones share the same list.
 #[derive(Clone, Debug, Default)]
 pub struct Visitors(Arc<Mutex<Table>>);
 
-/// A visitor among the [`Visitors`], until it is dropped.
+/// A visitor's entry in the list of [`Visitors`]. Dropping it removes the entry.
 #[derive(Debug)]
 pub struct Presence {
     number: u64,
@@ -33,34 +33,34 @@ pub struct Presence {
 /// An operator's notice to a visitor's session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// A line from the host.
+    /// A line from the operator.
     Said(String),
-    /// The session ends, with this sentence.
+    /// The session must end, with this sentence.
     Removed(String),
 }
 
-/// A session among those of all hosts, and of all their earlier runs: written as `3f9a-7`.
+/// A number for a session, unique across all hosts and restarts, written as `3f9a-7`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SessionId {
-    /// Of the run of the host, by chance.
+    /// A random number for this run of the host.
     run: u16,
     number: u64,
 }
 
-/// A visitor, as an operator sees them.
+/// A visitor, as listed for the operator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Present {
-    /// Their session.
+    /// The visitor's session.
     pub session: SessionId,
-    /// The name; `None` until it is chosen.
+    /// The visitor's name; `None` until it is chosen.
     pub name: Option<Name>,
-    /// The address that they connect from.
+    /// The address from which they connect.
     pub address: IpAddr,
-    /// Their key; `None` for a guest.
+    /// The visitor's key; `None` for a guest.
     pub key: Option<AccountKey>,
-    /// The room that they are in, in a few words; `None` for the lobby.
+    /// A short description of the room they are in; `None` for the lobby.
     pub room: Option<String>,
-    /// When they came.
+    /// The time of arrival.
     pub since: Instant,
 }
 
@@ -68,7 +68,7 @@ pub struct Present {
 struct Table {
     run: u16,
     next: u64,
-    /// In the order in which they came.
+    /// The entries, in order of arrival.
     entries: BTreeMap<u64, (Present, Arc<Inbox>)>,
 }
 
@@ -84,19 +84,19 @@ struct Notices {
     removed: Option<String>,
 }
 
-/// The most lines that wait for a session.
+/// The maximum number of lines queued per session.
 const MAX_LINES: usize = 8;
 
 impl Default for Table {
     fn default() -> Self {
-        // Without random numbers from the system there would be no keys, either.
+        // If the system had no random numbers, the server would have no keys either.
         let run = getrandom::u32().unwrap_or_default() as u16;
         Self { run, next: 1, entries: BTreeMap::new() }
     }
 }
 
 impl SessionId {
-    /// The session of a text such as `3f9a-7`.
+    /// Parses text such as `3f9a-7`.
     pub fn parse(text: &str) -> Option<Self> {
         let (run, number) = text.split_once('-')?;
         let is_plain = run.len() == 4
@@ -130,32 +130,32 @@ impl Visitors {
         Presence { number, visitors: self.clone(), inbox }
     }
 
-    /// Everybody, in the order in which they came.
+    /// All visitors, in order of arrival.
     pub fn list(&self) -> Vec<Present> {
         locked(&self.0, |table| table.entries.values().map(|it| it.0.clone()).collect())
     }
 
-    /// How many there are.
+    /// The number of visitors.
     pub fn count(&self) -> usize {
         locked(&self.0, |table| table.entries.len())
     }
 
-    /// Says a line to everybody, and returns to how many.
+    /// Sends a line to all visitors; returns their number.
     pub fn say(&self, line: &str) -> usize {
         self.each(|_| true, |inbox| inbox.say(line))
     }
 
-    /// Says a line to the visitors with a key.
+    /// Sends a line to the visitors with this key.
     pub(crate) fn say_to(&self, key: &AccountKey, line: &str) {
         self.each(|it| it.key.as_ref() == Some(key), |inbox| inbox.say(line));
     }
 
-    /// Says a line to the visitors in a room.
+    /// Sends a line to the visitors in a room.
     pub(crate) fn say_in(&self, room: &str, line: &str) {
         self.each(|it| it.room.as_deref() == Some(room), |inbox| inbox.say(line));
     }
 
-    /// Ends the sessions to which `target` applies with a sentence, and returns how many.
+    /// Ends the sessions that match `target` with a sentence; returns their number.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
         let is_meant = |it: &Present| {
             let (address, key, name) = (Some(it.address), it.key.as_ref(), it.name.as_ref());
@@ -164,17 +164,17 @@ impl Visitors {
         self.each(is_meant, |inbox| inbox.remove(sentence))
     }
 
-    /// Ends a session with a sentence, and returns whether there is one of that number.
+    /// Ends a session with a sentence; returns whether it exists.
     pub fn remove_session(&self, session: SessionId, sentence: &str) -> bool {
         self.each(|it| it.session == session, |inbox| inbox.remove(sentence)) > 0
     }
 
-    /// Whether a guest has a name that looks like this one.
+    /// Returns true if a guest has a name that looks like `name`.
     pub(crate) fn has_guest(&self, name: &Name) -> bool {
         locked(&self.0, |table| table.has_guest(name, None))
     }
 
-    /// Acts on the inboxes of some, and returns of how many.
+    /// Calls `act` on the inboxes of matching visitors; returns their number.
     fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&Inbox)) -> usize {
         locked(&self.0, |table| {
             let meant = table.entries.values().filter(|(present, _)| is_meant(present));
@@ -195,7 +195,7 @@ impl Table {
 }
 
 impl Presence {
-    /// Sets the name of a guest, unless another guest has a name that looks like it. Returns whether it did.
+    /// Sets a guest's name, unless another guest has a name that looks like it. Returns whether it was set.
     pub(crate) fn take_guest_name(&self, name: &Name) -> bool {
         locked(&self.visitors.0, |table| {
             let is_free = !table.has_guest(name, Some(self.number));
@@ -206,17 +206,17 @@ impl Presence {
         })
     }
 
-    /// Records the visitor's name: of an account, or chosen by a guest.
+    /// Records the visitor's name, from their account or chosen as a guest.
     pub fn set_name(&self, name: &str) {
         self.change(|it| it.name = Some(Name::kept(name)));
     }
 
-    /// Records the room that the visitor is in, in a few words; `None` for the lobby.
+    /// Records a short description of the visitor's room; `None` for the lobby.
     pub fn set_room(&self, room: Option<String>) {
         self.change(|it| it.room = room);
     }
 
-    /// Waits for the next notice. It may be dropped before it is ready.
+    /// Waits for the next notice. Cancellation-safe.
     pub async fn notice(&mut self) -> Notice {
         loop {
             if let Some(notice) = self.inbox.take() {
@@ -254,7 +254,7 @@ impl Inbox {
         self.changed.notify_one();
     }
 
-    /// A removal comes before lines.
+    /// Takes the next notice. A removal comes before any lines.
     fn take(&self) -> Option<Notice> {
         locked(&self.notices, |notices| {
             let removed = notices.removed.take().map(Notice::Removed);

@@ -1,8 +1,8 @@
-//! The memory that a server needs for a thousand clients that never read, and a client that reads on
-//! among them.
+//! The memory that a server needs for a thousand clients that never read, and the frame rate of another
+//! client that reads meanwhile.
 //!
-//! The clients live in another process, so that their memory does not count. `cargo test --features
-//! serve --test crowd -- --nocapture` prints the figures.
+//! The clients run in another process, so that their memory does not count.
+//! `cargo test --features serve --test crowd -- --nocapture` prints the figures.
 
 use std::net::SocketAddr;
 use std::process::{Child, Command};
@@ -21,28 +21,28 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-/// Sends frames as a game does.
+/// A host that sends frames at the pace of a game.
 struct Frames;
 
-/// A client that takes no frame.
+/// A client that never reads.
 #[derive(Clone, Copy)]
 struct Deaf;
 
-/// A client that takes all.
+/// A client that reads everything.
 #[derive(Clone, Copy)]
 struct Awake;
 
 const CLIENTS: usize = 1000;
-/// In bytes: an exact frame of 80×24 cells, on average. Without flow control, each client holds one.
+/// The average size of an exact frame of 80×24 cells, in bytes. Without flow control, each client holds one frame.
 const FRAME: usize = 16_000;
 const FRAME_TIME: Duration = Duration::from_millis(33);
-/// The time for which the frames of the client that reads are counted.
+/// How long the frames of the reading client are counted.
 const COUNTED: Duration = Duration::from_secs(3);
-/// In bytes.
+/// The memory limit for all clients together, in bytes.
 const MOST_MEMORY: usize = 64 << 20;
-/// The clients that connect at the same time.
+/// The number of clients that connect at the same time.
 const LANES: usize = 8;
-/// The variable that makes this program the clients of a server at that address.
+/// The environment variable that turns this program into the clients of the server at the given address.
 const ADDRESS: &str = "CELLCASTER_CROWD";
 const PATIENCE: Duration = Duration::from_mins(2);
 
@@ -121,14 +121,14 @@ fn clients_that_never_read_need_little_memory() {
     assert!(added < MOST_MEMORY, "{added} bytes");
 }
 
-/// The resident bytes of this process, where Linux tells them.
+/// The resident memory of this process in bytes; `None` except on Linux.
 fn memory() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     Some(1024 * line.trim().strip_suffix(" kB")?.parse::<usize>().ok()?)
 }
 
-/// Waits until all clients are there, and nothing moves any more.
+/// Waits until all clients are connected and the amount of held data no longer changes.
 fn wait_for_crowd(metrics: &Metrics, crowd: &mut Child) {
     let end = Instant::now() + PATIENCE;
     let mut still_since = Instant::now();
@@ -146,7 +146,7 @@ fn wait_for_crowd(metrics: &Metrics, crowd: &mut Child) {
     }
 }
 
-/// Connects the clients, and waits for its end.
+/// Connects all clients and then waits forever.
 async fn crowd(address: SocketAddr) {
     let mut lanes = JoinSet::new();
     for _ in 0..LANES {
@@ -167,7 +167,7 @@ async fn connect<H: Handler<Error = Error> + Send + Copy + 'static>(
     handler: H,
 ) -> (Handle<H>, Channel<client::Msg>) {
     let mut client = loop {
-        // Some are dropped by chance.
+        // The server drops some connections at random.
         match client::connect(Arc::default(), address, handler).await {
             Ok(client) => break client,
             Err(_) => sleep(Duration::from_millis(10)).await,
@@ -180,7 +180,7 @@ async fn connect<H: Handler<Error = Error> + Send + Copy + 'static>(
     (client, channel)
 }
 
-/// The frames that a client takes in the time in which they are counted, after those that wait.
+/// Counts the frames that a client receives within [`COUNTED`], after reading old ones for as long.
 async fn frames(channel: &mut Channel<client::Msg>) -> usize {
     let mut bytes = 0;
     let begun = Instant::now() + COUNTED;

@@ -16,7 +16,7 @@ pub struct UnixTime(u64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct AccountId(pub(crate) i64);
 
-/// The SHA-256 of the data of a public key: its fingerprint.
+/// The SHA-256 of a public key's data: its fingerprint.
 ///
 /// ```
 /// use cellcaster_server::accounts::AccountKey;
@@ -42,28 +42,29 @@ pub struct Account {
     pub named_at: UnixTime,
     /// When the account was created.
     pub created_at: UnixTime,
-    /// When the player was here last.
+    /// When the player was last on the host.
     pub seen_at: UnixTime,
 }
 
-/// What the player of an account has chosen.
+/// The choices of an account's player.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct AccountSettings {
     /// The choices in the game.
     pub preferences: Preferences,
-    /// Keys, glyphs, colours and the rest, as the text of a configuration file. The store does not read
-    /// it. A text of more than [`Self::MOST_BYTES`] bytes is refused.
+    /// Keys, glyphs, colours and other settings, as the text of a configuration file. The store does
+    /// not read it. A text of more than [`Self::MOST_BYTES`] bytes is refused.
     pub configuration: String,
 }
 
 impl UnixTime {
-    /// The time that many seconds after 1970 began. Later times than a database holds are its last.
+    /// The time that many seconds after the beginning of 1970. A time later than a database can store
+    /// becomes the latest one that it can.
     pub const fn new(seconds: u64) -> Self {
         const LAST: u64 = i64::MAX as u64;
         Self(if seconds < LAST { seconds } else { LAST })
     }
 
-    /// The time by the clock of this machine.
+    /// The current time by the clock of this machine.
     pub fn now() -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         Self::new(since.as_secs())
@@ -82,7 +83,7 @@ impl UnixTime {
 }
 
 impl AccountSettings {
-    /// The longest configuration that is kept, in bytes.
+    /// The longest configuration that is stored, in bytes.
     pub const MOST_BYTES: usize = 16 << 10;
 
     pub(crate) fn checked(&self) -> Result<&Self, StoreFailure> {
@@ -97,7 +98,7 @@ impl AccountKey {
         Self(sha256)
     }
 
-    /// The key that is written as `ssh-keygen -l` does.
+    /// Parses a key in the format of `ssh-keygen -l`.
     pub fn parse(text: &str) -> Option<Self> {
         match text.trim_end_matches('=').parse() {
             Ok(Fingerprint::Sha256(sha256)) => Some(Self(sha256)),
@@ -112,7 +113,7 @@ impl AccountKey {
 }
 
 impl fmt::Display for AccountKey {
-    /// Writes it as `ssh-keygen -l` does.
+    /// Writes the key in the format of `ssh-keygen -l`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         Fingerprint::Sha256(self.0).fmt(f)
     }

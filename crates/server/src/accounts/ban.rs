@@ -10,30 +10,30 @@ use super::{AccountKey, Name, UnixTime};
 /// A ban.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ban {
-    /// To whom it applies.
+    /// The visitors that it applies to.
     pub target: BanTarget,
-    /// When it ends; `None` for never.
+    /// The end; `None` for never.
     pub until: Option<UnixTime>,
-    /// Why.
+    /// The reason.
     pub reason: String,
-    /// Who made it.
+    /// The name of its author.
     pub by: String,
     /// When it was made.
     pub made_at: UnixTime,
 }
 
-/// To whom a ban applies.
+/// The visitors that a ban applies to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BanTarget {
     /// The account of a key.
     Key(AccountKey),
     /// Everybody with this name, or one that looks like it.
     Name(Name),
-    /// Everybody with an address of this range.
+    /// Everybody with an address in this range.
     Addresses(AddressPrefix),
 }
 
-/// What is known of a visitor.
+/// The known facts about a visitor.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Identity<'a> {
     /// The address of the client.
@@ -58,14 +58,14 @@ pub struct Identity<'a> {
 pub struct AddressPrefix(IpNet);
 
 impl Ban {
-    /// Whether it is in force.
+    /// Returns true if the ban is in force.
     pub fn is_in_force(&self, now: UnixTime) -> bool {
         self.until.is_none_or(|until| now < until)
     }
 }
 
 impl BanTarget {
-    /// Whether a ban of it takes the place of one of `other`.
+    /// Returns true if a ban of this target replaces a ban of `other`.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Name(name), Self::Name(other)) => name.looks_like(other),
@@ -73,7 +73,7 @@ impl BanTarget {
         }
     }
 
-    /// Whether it applies to somebody.
+    /// Returns true if a ban of this target applies to a visitor.
     pub fn applies_to(&self, identity: &Identity<'_>) -> bool {
         match self {
             Self::Key(key) => identity.key == Some(key),
@@ -96,27 +96,27 @@ impl fmt::Display for BanTarget {
 }
 
 impl AddressPrefix {
-    /// The addresses that share their first `length` bits with `address`; `None` if it has fewer. An
-    /// IPv4 address that is written as IPv6 is an IPv4 address.
+    /// The addresses that share their first `length` bits with `address`; `None` if the address has fewer
+    /// bits. An IPv4 address in IPv6 notation counts as an IPv4 address.
     pub fn new(address: IpAddr, length: u8) -> Option<Self> {
         IpNet::new(address.to_canonical(), length).ok().map(|range| Self(range.trunc()))
     }
 
-    /// The network of an address, as far as one owner has it: a /24 of IPv4, a /64 of IPv6.
+    /// The network that an address's owner holds: a /24 of IPv4 or a /64 of IPv6.
     pub fn network_of(address: IpAddr) -> Self {
         Self::around(address, [24, 64])
     }
 
-    /// The addresses that share their first bits with `address`: so many if it is one of IPv4, and so many
-    /// of IPv6.
+    /// The addresses that share their first bits with `address`: `v4` bits of an IPv4 address, `v6` bits
+    /// of an IPv6 address.
     pub(crate) fn around(address: IpAddr, [v4, v6]: [u8; 2]) -> Self {
         let address = address.to_canonical();
         let length = if address.is_ipv4() { v4 } else { v6 };
-        // No address has more bits.
+        // If an address has fewer bits, the range is that address alone.
         Self::new(address, length).unwrap_or_else(|| Self(address.into()))
     }
 
-    /// The range of a text such as 203.0.113.0/24. An address without a length is a range of one.
+    /// Parses a range such as 203.0.113.0/24. An address without a length is a range of one address.
     pub fn parse(text: &str) -> Option<Self> {
         if !text.contains('/') {
             return text.parse().ok().map(|address| Self::around(address, [32, 128]));
@@ -125,7 +125,7 @@ impl AddressPrefix {
         Self::new(range.addr(), range.prefix_len())
     }
 
-    /// Whether an address belongs to it.
+    /// Returns true if an address belongs to the range.
     pub fn contains(&self, address: IpAddr) -> bool {
         self.0.contains(&address.to_canonical())
     }
@@ -137,7 +137,7 @@ impl fmt::Display for AddressPrefix {
     }
 }
 
-/// The ban of `bans` that applies to somebody; of several, the one that ends last.
+/// The ban in `bans` that applies to a visitor. If several apply, the one that ends last.
 pub(crate) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
     let applying = bans.into_iter().filter(|ban| ban.target.applies_to(identity));
     applying.max_by_key(|ban| (ban.until.is_none(), ban.until))

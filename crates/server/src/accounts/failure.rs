@@ -1,4 +1,4 @@
-//! Why a store did not do something.
+//! Failures of a store, and refusals.
 
 use thiserror::Error;
 
@@ -10,15 +10,15 @@ pub enum StoreFailure {
     /// The store did not answer.
     #[error("{0}")]
     Away(String),
-    /// Its disk is full.
+    /// The disk of the store is full.
     #[error("{0}")]
     Full(String),
-    /// Something else, which the same call meets again.
+    /// Another failure. The same call would fail again.
     #[error("{0}")]
     Refused(String),
 }
 
-/// Why an account was not created or renamed.
+/// The reason why an account was not created or renamed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Refusal {
     /// Another account has this name, or one that looks like it.
@@ -27,22 +27,22 @@ pub enum Refusal {
     /// The name is banned.
     #[error("This name is not allowed here.")]
     NameBanned,
-    /// The key has an account.
+    /// The key already has an account.
     #[error("Your key has an account.")]
     KeyKnown,
     /// There is no such account.
     #[error("There is no such account.")]
     NoAccount,
-    /// The name was chosen not long ago.
+    /// The current name is too recent.
     #[error("A name can be changed after seven days.")]
     TooEarly {
-        /// When it can be changed.
+        /// The earliest time at which the name can change.
         next: UnixTime,
     },
-    /// The network of a new account has made too many.
+    /// The network of a new account has created too many.
     #[error("Your network makes too many accounts; try again in {}.", minutes(*seconds))]
     TooManyAccounts {
-        /// After how many seconds it can make the next one.
+        /// The seconds until it can create the next account.
         seconds: u64,
     },
     /// The store failed.
@@ -55,13 +55,13 @@ impl StoreFailure {
         Self::Refused(sentence.into())
     }
 
-    /// Whether the same call may succeed later.
+    /// Returns true if the same call may succeed later.
     pub(crate) fn is_of_now(&self) -> bool {
         matches!(self, Self::Away(_) | Self::Full(_))
     }
 }
 
-/// The wait after which a network can make an account, in a sentence.
+/// The time until a network can create an account, in words.
 fn minutes(seconds: u64) -> String {
     match seconds.div_ceil(60) {
         0 | 1 => "1 minute".to_owned(),

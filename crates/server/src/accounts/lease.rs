@@ -1,15 +1,16 @@
-//! Leases: which host has a room.
+//! Leases: the rights of hosts to run rooms.
 //!
 //! Rules:
 //!
-//! - **A room has at most one holder.** A lease ends when it is released, or when its time is over without a
-//!   renewal. No host takes it before that, not even its own holder: a host that was started again waits.
-//! - **A lease has an epoch**, greater than that of every earlier lease of the room. No epoch is repeated while the
-//!   room exists, so that what a host does under an expired lease can be told from what its successor does.
+//! - **A room has at most one holder.** A lease ends when it is released, or when its time is over without a renewal.
+//!   Until then no host can take it, not even its own holder: a host that was restarted waits.
+//! - **A lease has an epoch**, greater than the epoch of every earlier lease of the room. No epoch is repeated while
+//!   the room exists. So the actions of a host with an expired lease can be distinguished from the actions of its
+//!   successor.
 //! - **An expired lease that no host has taken can be renewed**, with its epoch.
-//! - **Time is that of the store.** A host whose clock is wrong keeps no lease too long and loses none.
+//! - **The clock is the store's.** A host with a wrong clock keeps no lease too long and loses none.
 //! - **One statement takes, renews or ends leases**, on the newest version of their rows. So it needs no serializable
-//!   transaction. All leases of a host are renewed by one statement, and so by one write to the disk.
+//!   transaction. One statement, and so one write to the disk, renews all leases of a host.
 //!
 //! Rejected: locks that end with their holder's connection. A connection outlives a host that hangs,
 //! and a host outlives a connection that was cut.
@@ -22,12 +23,12 @@ use serde_json::{Map, json};
 
 use super::{HostStore, StoreFailure};
 
-/// The right to have a room, for a while.
+/// The right to run a room, for a while.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lease {
-    /// The room, whose name has no control characters.
+    /// The name of the room, without control characters.
     pub room: String,
-    /// The host that has it.
+    /// The host that holds the lease.
     pub host: String,
     /// Its number among the leases of the room.
     pub epoch: u64,
@@ -37,12 +38,13 @@ pub struct Lease {
 
 /// Leases.
 impl HostStore {
-    /// Takes the lease of a room for `time`, with an epoch above `above` and all earlier ones; `None` if the
-    /// room has a holder. A store that was restored from a backup may know fewer epochs than its callers do.
+    /// Takes the lease of a room for `time`; `None` if the room has a holder. The epoch is greater than `above` and
+    /// all earlier epochs. The caller passes `above` because a store that was restored from a backup may know fewer
+    /// epochs than the caller.
     ///
     /// # Errors
-    /// If the store can't be asked; so for each method. If the failure says that a change may be kept or not, the
-    /// room may have a holder until `time` is over.
+    /// If the store can't be asked. All methods share this error. If the failure says that a change may be kept or
+    /// not, the room may have a holder until `time` is over.
     pub fn acquire(
         &mut self,
         room: &str,
@@ -65,8 +67,8 @@ impl HostStore {
         lease.transpose()
     }
 
-    /// Makes leases last for their times from now on, and returns for each whether it does. A lease that was
-    /// released or taken does not.
+    /// Extends each lease by its time from now on. Returns true for each lease that was renewed, and false for a
+    /// lease that was released or taken.
     ///
     /// # Errors
     /// See [`acquire`](Self::acquire).
@@ -89,7 +91,7 @@ impl HostStore {
         Ok(leases.iter().map(is_renewed).collect())
     }
 
-    /// Ends a lease, and returns whether there was one to end.
+    /// Ends a lease. Returns true if there was one to end.
     ///
     /// # Errors
     /// See [`acquire`](Self::acquire).
@@ -98,7 +100,7 @@ impl HostStore {
         self.change_lease(sql, lease)
     }
 
-    /// Ends the lease of a room that is closed for ever, and forgets its epochs. Returns whether there was one to
+    /// Ends the lease of a room that is closed for ever, and forgets its epochs. Returns true if there was one to
     /// end.
     ///
     /// # Errors
@@ -114,7 +116,7 @@ impl HostStore {
     }
 }
 
-/// A time in milliseconds, of at most a year.
+/// A time in milliseconds, at most a year.
 pub(crate) fn milliseconds(time: Duration) -> i64 {
     const LONGEST: Duration = Duration::from_hours(365 * 24);
     time.min(LONGEST).as_millis() as i64

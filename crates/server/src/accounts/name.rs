@@ -2,18 +2,18 @@
 //!
 //! A text becomes a name in these steps:
 //!
-//! 1. It is brought to the Unicode form NFKC, so that wide or decomposed letters are the plain ones.
-//! 2. Each character is a letter of one of the [scripts](NameFault::Character) below, a digit from 0 to 9,
-//!    `-` or `_`. The first one is a letter, and the last one is no `-` or `_`.
-//! 3. It is 2 to 16 columns wide.
-//! 4. Its letters are of one script, or of Latin with those of Japanese, Korean or Chinese: "highly
-//!    restrictive" of Unicode Technical Standard #39, section 5.2.
-//! 5. It does not look like a [reserved](Name::is_reserved) name.
+//! 1. It is converted to the Unicode form NFKC, so that wide or decomposed letters become the plain ones.
+//! 2. Each character must be a letter of one of the [scripts](NameFault::Character) below, a digit from 0
+//!    to 9, `-` or `_`. The first one must be a letter, and the last one must not be `-` or `_`.
+//! 3. It must be 2 to 16 columns wide.
+//! 4. Its letters must belong to one script, or to Latin together with Japanese, Korean or Chinese:
+//!    "highly restrictive" in Unicode Technical Standard #39, section 5.2.
+//! 5. It must not look like a [reserved](Name::is_reserved) name.
 //!
-//! The scripts are those whose letters stand one in a cell or two, from left to right: Latin, Greek,
-//! Cyrillic, Armenian, Georgian, Han, Hiragana, Katakana, Hangul, Bopomofo. Letters that are written with
-//! combining marks or from right to left were refused: terminals disagree about their width and order,
-//! and a name stands in the middle of another player's picture.
+//! The scripts are written from left to right, with letters of one or two cells: Latin, Greek, Cyrillic,
+//! Armenian, Georgian, Han, Hiragana, Katakana, Hangul, Bopomofo. Rejected: letters that are written with
+//! combining marks or from right to left. Terminals disagree about their width and order, and a name
+//! appears in the middle of another player's picture.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -26,7 +26,7 @@ use unicode_security::{
 };
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// A name.
+/// A player's name.
 ///
 /// ```
 /// use cellcaster_server::accounts::{Name, NameFault};
@@ -40,7 +40,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Name(String);
 
-/// Why a text is no name.
+/// The reason why a text is not a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NameFault {
     /// It is too short.
@@ -49,7 +49,7 @@ pub enum NameFault {
     /// It is too long.
     #[error("A name is at most {} columns wide.", Name::MOST_COLUMNS)]
     Long,
-    /// It has a character that no name has.
+    /// It contains a character that is not allowed.
     #[error("A name has letters, digits, - and _, not {}.", shown(*.0))]
     Character(char),
     /// It does not begin with a letter.
@@ -58,7 +58,7 @@ pub enum NameFault {
     /// It ends with `-` or `_`.
     #[error("A name ends with a letter or a digit.")]
     End,
-    /// Its letters are of different scripts.
+    /// Its letters belong to different scripts.
     #[error("The letters of a name are of one script.")]
     Mixed,
     /// It is reserved, or looks like a reserved name.
@@ -66,7 +66,7 @@ pub enum NameFault {
     Reserved,
 }
 
-/// The scripts of letters.
+/// The allowed scripts.
 const SCRIPTS: [Script; 10] = [
     Script::Latin,
     Script::Greek,
@@ -79,19 +79,20 @@ const SCRIPTS: [Script; 10] = [
     Script::Hangul,
     Script::Bopomofo,
 ];
-/// Names that nobody may have.
+/// Names that nobody may use.
 const RESERVED: &str = "admin administrator all anonymous anybody cellcaster console everybody everyone \
     game guard host lobby mod moderator nobody none operator owner player room root \
     server spectator staff support system you";
-/// The beginning of the names of guests.
+/// The beginning of guests' names.
 const GUEST: &str = "guest";
-/// Characters with a width that some terminals show as nothing, or that change what is beside them: the
-/// soft hyphen, Hangul fillers, the blank of Braille, marks of annotation, and the object replacement.
+/// Characters that some terminals show as nothing although they have a width, or that change their
+/// neighbours: the soft hyphen, Hangul fillers, the blank of Braille, annotation marks, and the object
+/// replacement.
 const INVISIBLE: [char; 9] = [
     '\u{ad}', '\u{115f}', '\u{1160}', '\u{2800}', '\u{3164}', '\u{ffa0}', '\u{fff9}', '\u{fffb}',
     '\u{fffc}',
 ];
-/// In bytes. A longer text is not looked at.
+/// The longest text that is examined, in bytes.
 const MOST_BYTES: usize = 256;
 
 impl Name {
@@ -100,7 +101,7 @@ impl Name {
     /// The largest width in columns.
     pub const MOST_COLUMNS: usize = 16;
 
-    /// The name that a text is.
+    /// Parses a name.
     ///
     /// # Errors
     /// A [`NameFault`], which is one sentence for the player.
@@ -109,7 +110,7 @@ impl Name {
         if name.is_reserved() { Err(NameFault::Reserved) } else { Ok(name) }
     }
 
-    /// The name of a guest, such as `guest-12`. No account has it.
+    /// The name of a guest, such as `guest-12`. No account can have it.
     pub fn of_guest(number: u32) -> Self {
         Self(format!("{GUEST}-{number}"))
     }
@@ -119,16 +120,16 @@ impl Name {
         &self.0
     }
 
-    /// Whether it is the same as `other` in upper or lower case, or looks the same.
+    /// Returns true if the names look the same, or differ only in case.
     pub fn looks_like(&self, other: &Self) -> bool {
         let keys = self.keys();
         other.keys().iter().any(|key| keys.contains(key))
     }
 
-    /// Whether only the host can have it: it looks like `guest`, begins like that, or is a word for the
-    /// host or for nobody.
+    /// Returns true if only the host can have the name: it looks like `guest` or begins like that, or it
+    /// is a word for the host or for nobody.
     fn is_reserved(&self) -> bool {
-        // Made once: that takes some thirty times as long as the keys of one name.
+        // Computed once, because that takes about thirty times as long as the keys of one name.
         static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| keys_of(GUEST));
         static WORDS: LazyLock<Vec<String>> =
             LazyLock::new(|| RESERVED.split(' ').flat_map(keys_of).collect());
@@ -136,13 +137,13 @@ impl Name {
         self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
     }
 
-    /// The keys of the name: two names that share one are not told from each other.
+    /// The keys of the name. Two names that share a key count as the same.
     pub(crate) fn keys(&self) -> Vec<String> {
         keys_of(&self.0)
     }
 
-    /// The name that the store has kept. What would be no name now is taken as it is, as far as it can be
-    /// printed.
+    /// A name that the store has kept. A text that would not be a name today is accepted, as far as it is
+    /// printable.
     pub(crate) fn kept(text: &str) -> Self {
         Self(printable(text, Self::MOST_COLUMNS))
     }
@@ -179,12 +180,13 @@ impl fmt::Display for Name {
     }
 }
 
-/// The printable characters of a text, up to that many columns, in one line.
+/// The printable characters of a text, up to `columns`, in one line.
 ///
-/// Every character that is kept takes one or two columns. Kinds of blanks and breaks become one blank,
-/// and there is none at the ends. Control characters, escape sequences' introducers, marks that combine,
-/// marks of direction, invisible, private and unassigned characters are dropped, and characters that
-/// terminals draw in different widths. Letters with accents are composed before, so that these stay.
+/// Every character that is kept takes one or two columns. Blanks and breaks of all kinds become one blank,
+/// and there is none at the ends. Control characters and the introducers of escape sequences are dropped.
+/// So are combining marks, direction marks, invisible, private-use and unassigned characters, and
+/// characters that terminals draw in different widths. Letters with accents are composed first, so they
+/// stay.
 ///
 /// ```
 /// use cellcaster_server::accounts::printable;
@@ -214,13 +216,13 @@ pub fn printable(text: &str, columns: usize) -> String {
     line
 }
 
-/// The keys of a name. Two names that share a key are not told from each other.
+/// The keys of a name. Two names that share a key count as the same.
 ///
-/// A key is a skeleton of Unicode Technical Standard #39, section 4, in which letters that look alike are
-/// one. Skeletons know upper from lower case, and these look alike in another way each: `I` is like `l`,
-/// and `i` is not. So there are two keys, the skeleton of the name in lower case, and the skeleton of the
-/// name as it is, put in lower case then. Names that differ in case alone share the first one, and names
-/// with the same skeleton share the second one.
+/// A key is a skeleton as in Unicode Technical Standard #39, section 4, in which letters that look alike
+/// are one letter. Skeletons distinguish upper from lower case, because a letter has different look-alikes
+/// in each: `I` looks like `l`, but `i` does not. So there are two keys: the skeleton of the name in lower
+/// case, and the skeleton of the name as it is, which is then put in lower case. Names that differ only in
+/// case share the first key, and names with the same skeleton share the second one.
 fn keys_of(name: &str) -> Vec<String> {
     let of_lower_case: String = skeleton(&folded(name)).collect();
     let of_name: String = skeleton(name).collect();
@@ -229,8 +231,8 @@ fn keys_of(name: &str) -> Vec<String> {
     keys
 }
 
-/// The text with one case. It goes by way of upper case, in which `ß` is `SS` and both forms of a small
-/// sigma are one.
+/// The text in one case. It goes through upper case, where `ß` becomes `SS` and both forms of a small
+/// sigma become one.
 fn folded(text: &str) -> String {
     text.chars().flat_map(char::to_uppercase).flat_map(char::to_lowercase).collect()
 }
@@ -245,7 +247,7 @@ fn is_letter(character: char) -> bool {
     is_of_script && has_width && character.is_alphabetic() && character.identifier_allowed()
 }
 
-/// The character in a sentence, or its number if a sentence cannot show it.
+/// The character as a sentence can show it: itself, or its number.
 fn shown(character: char) -> String {
     match printable(character.encode_utf8(&mut [0; 4]), 2) {
         text if character != ' ' && text.starts_with(character) => character.to_string(),
@@ -253,7 +255,7 @@ fn shown(character: char) -> String {
     }
 }
 
-/// The columns of a character that is kept.
+/// The number of columns of a character; `None` if the character is dropped.
 fn width_of(character: char) -> Option<usize> {
     let is_dropped = character.is_control()
         || INVISIBLE.contains(&character)
@@ -262,8 +264,9 @@ fn width_of(character: char) -> Option<usize> {
     character.width().filter(|width| !is_dropped && (1..=2).contains(width))
 }
 
-/// Whether terminals draw `character` over its neighbours, or join it with them: dashes of two and three
-/// ems, Arabic words that are one character, halves of flags, and skin tones. (Cuneiform signs, too.)
+/// Returns true if terminals draw `character` over its neighbours, or join it with them: dashes of two and
+/// three ems, Arabic words that are one character, halves of flags, and skin tones. (They do the same with
+/// Cuneiform signs.)
 fn is_of_disputed_width(character: char) -> bool {
     matches!(
         character,

@@ -2,24 +2,24 @@
 //!
 //! Rules:
 //!
-//! - **A change is on the server's disk when its method returns**, unless the server is told not to wait for
-//!   its disk (`fsync = off`).
-//! - **Transactions are serializable**, except for those in which each statement does everything by itself. A transaction
-//!   that meets another one is run again, after a random wait that doubles, up to [`MOST_CONFLICTS`] times.
-//! - **Each call ends after [`PATIENCE`]**, whatever the server or the network does. The limit is kept on both
-//!   sides: by a timer here, and by `statement_timeout` there.
-//! - **A lost connection is made again.** A call that lost it before it asked to keep its change is run once
-//!   more. A call that lost it after that fails, and its sentence says that the change may be kept or not.
-//!   After a failed attempt to connect, calls fail at once for [`PAUSE`].
-//! - **The tables are made by the first host**, under a lock, and have a version. Tables of another version are
-//!   left alone, and so is a database in which another program has tables of these names.
-//! - **A password is never shown.** Sentences have neither the address as it was given nor a part of it that
-//!   may belong to a misspelt password.
-//! - **No text has the character U+0000**, which PostgreSQL's texts can't contain. Names, reasons, settings and scripts
-//!   have been printed or parsed before they get here.
+//! - **A change is on the server's disk when its method returns**, unless the server is configured not to wait for its
+//!   disk (`fsync = off`).
+//! - **Transactions are serializable**, unless each of their statements does everything by itself. A transaction that
+//!   conflicts with another one is run again, after a random wait that doubles, up to [`MOST_CONFLICTS`] times.
+//! - **Each call ends after [`PATIENCE`]**, whatever the server or the network does. Both sides enforce the limit: a
+//!   timer here, and `statement_timeout` there.
+//! - **A lost connection is made again.** A call that lost it before the commit is run once more. A call that lost it
+//!   during the commit fails, and its sentence says that the change may be kept or not. After a failed attempt to
+//!   connect, calls fail at once for [`PAUSE`].
+//! - **The first host creates the tables**, under a lock, and gives them a version. Tables of another version are left
+//!   alone, and so is a database in which another program has tables with these names.
+//! - **A password is never shown.** Sentences contain neither the address as it was given nor a part of it that may
+//!   belong to a misspelt password.
+//! - **No text contains the character U+0000**, which PostgreSQL cannot store in a text. Names, reasons, settings and
+//!   scripts have been filtered or parsed before they get here.
 //!
-//! Rejected: a pool of connections, since a host has one thread for its store; and the crate `postgres`, whose
-//! calls wait without limit for a server that has stopped without closing its connections.
+//! Rejected: a pool of connections, because a host has one thread for its store. Also rejected: the crate `postgres`.
+//! Its calls wait without limit for a server that has stopped without closing its connections.
 
 mod tls;
 
@@ -43,28 +43,28 @@ use self::tls::Tls;
 use super::StoreFailure;
 use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
-/// The most time that a call takes.
+/// The time limit for a call.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The most time that the end of a failed transaction takes.
+/// The time limit for the end of a failed transaction.
 const UNDO_PATIENCE: Duration = Duration::from_secs(1);
-/// The most time that making the tables takes, also while another host makes them.
+/// The time limit for creating the tables, including the wait for another host that creates them.
 const SCHEMA_PATIENCE: Duration = Duration::from_secs(30);
-/// The time after a connection that could not be made in which none is tried.
+/// How long calls fail at once after a failed attempt to connect.
 const PAUSE: Duration = Duration::from_secs(1);
-/// How often a transaction is run again because it met others.
+/// How many times a transaction is run again after conflicts.
 const MOST_CONFLICTS: u32 = 12;
 /// The longest wait before a transaction is run again.
 const LONGEST_WAIT: Duration = Duration::from_millis(128);
 
-/// The lock under which tables are made, "Cell".
+/// The lock under which tables are created, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
-/// What the server is told about a new connection. A change is on the disk when it is kept, whatever the
-/// configuration says. A host that hangs holds no lock for long.
+/// The settings of a new connection. A committed change is on the disk whatever the configuration says. A host that
+/// hangs holds no lock for long.
 const SETTINGS: &str = "SET idle_in_transaction_session_timeout = 10000; \
     SELECT set_config('synchronous_commit', 'on', false) \
     WHERE current_setting('synchronous_commit') = 'off'";
-/// What PostgreSQL calls otherwise in the [tables](SCHEMA). A text is compared by its bytes, whatever the language of the
-/// database.
+/// PostgreSQL's names for the types in the [tables](SCHEMA). Texts are compared by their bytes, whatever the language
+/// of the database.
 const TYPES: [(&str, &str); 5] = [
     ("INTEGER PRIMARY KEY AUTOINCREMENT", "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"),
     ("INTEGER", "BIGINT"),
@@ -72,38 +72,38 @@ const TYPES: [(&str, &str); 5] = [
     ("TEXT", "TEXT COLLATE \"C\""),
     (" STRICT", ""),
 ];
-/// The time of the database, at the moment of the statement and not of the transaction's begin; and the version.
+/// The time of the database, at the moment of the statement and not at the start of the transaction; and the version.
 const CLOCK_AND_VERSION: &str = "CREATE VIEW clock AS SELECT (extract(epoch FROM clock_timestamp()) * 1000)::bigint AS ms; \
      CREATE TABLE cellcaster (version BIGINT NOT NULL)";
 
-/// A database on a server. Its connection is made when it is needed.
+/// A database on a server. It connects when a connection is needed.
 pub(crate) struct Server {
     address: Address,
     is_to_read: bool,
-    /// `None` at the end alone.
+    /// `None` only at the end.
     runtime: Option<Runtime>,
     session: Option<Session>,
-    /// When a connection could not be made, and why.
+    /// The time and the failure of the last attempt to connect, if it failed.
     refused: Option<(Instant, StoreFailure)>,
 }
 
-/// How a database is reached.
+/// The address of a database.
 struct Address {
     config: Config,
-    /// `None` if the connection is not encrypted.
+    /// `None` if connections are not encrypted.
     tls: Option<Tls>,
-    /// The server and the database, to name in sentences.
+    /// The server and the database, as sentences name them.
     shown: String,
 }
 
 /// A connection.
 struct Session {
     client: Client,
-    /// The statements that the server knows. A store has some thirty.
+    /// The statements that the server has prepared. A store has about thirty.
     prepared: RefCell<HashMap<String, Statement>>,
 }
 
-/// Statements over a connection, up to a deadline.
+/// Runs statements over a connection, up to a deadline.
 struct Call<'a> {
     runtime: &'a Runtime,
     session: &'a Session,
@@ -112,31 +112,30 @@ struct Call<'a> {
     fault: Cell<Option<Fault>>,
 }
 
-/// Why a statement failed.
+/// The reason why a statement failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
-    /// The connection is lost, and what a transaction has changed is not kept.
+    /// The connection is lost, and the changes of a transaction are not kept.
     Lost,
-    /// Nobody knows what the server has done: the time was over, or the connection was lost while a change was
-    /// kept.
+    /// It is unknown what the server has done: the time was over, or the connection was lost during a commit.
     Unknown,
     /// Another transaction came before this one, which can be run again.
     Conflict,
     /// The disk of the server is full.
     Full,
-    /// The server does not do it.
+    /// The server refuses the statement.
     Refused,
 }
 
 impl Server {
-    /// The database at an address, whose tables are made if there are none.
+    /// Opens the database at an address. Creates the tables if there are none.
     pub(crate) fn open(address: &str) -> Result<Self, StoreFailure> {
         let mut server = Self::new(address, false)?;
         make_tables(&server.call(SCHEMA_PATIENCE)?)?;
         Ok(server)
     }
 
-    /// The database at an address to read from; `None` if it has no tables.
+    /// Opens the database at an address to read from it; `None` if it has no tables.
     pub(crate) fn open_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
         let mut server = Self::new(address, true)?;
         let has_tables = has_tables(&server.call(PATIENCE)?)?;
@@ -193,8 +192,7 @@ impl Server {
         }
     }
 
-    /// Ends a transaction that has failed. If that fails, too, the connection is given up, and the
-    /// transaction with it.
+    /// Ends a failed transaction. If that fails, too, the connection is given up, and the transaction with it.
     fn undo(&mut self, isolation: Isolation) {
         if isolation == Isolation::None {
             return;
@@ -205,7 +203,7 @@ impl Server {
         }
     }
 
-    /// A call that ends after `patience`. A connection is made if there is none.
+    /// Starts a call that ends after `patience`. Connects if there is no connection.
     fn call(&mut self, patience: Duration) -> Result<Call<'_>, StoreFailure> {
         let deadline = tokio::time::Instant::now() + patience;
         self.look_at_the_connection();
@@ -219,11 +217,11 @@ impl Server {
         Ok(Call { runtime, session, deadline, shown, fault: Cell::new(None) })
     }
 
-    /// Notices that the server has ended the connection meanwhile, before anything is lost with it.
+    /// Notices that the server has closed the connection, before a call is lost with it.
     fn look_at_the_connection(&self) {
         const TURNS: u32 = 3;
         if let Some(runtime) = self.runtime.as_ref().filter(|_| self.session.is_some()) {
-            // A turn each for the end to be heard, for the task of the connection, and for its own end.
+            // One turn each to receive the end, to run the connection's task, and to end that task.
             runtime.block_on(async {
                 for _ in 0..TURNS {
                     tokio::task::yield_now().await;
@@ -241,7 +239,7 @@ impl Server {
         };
         let (config, read) = (&self.address.config, if self.is_to_read { "on" } else { "off" });
         let connect = async {
-            // The end of the connection is noticed by the next call.
+            // The next call notices the end of the connection.
             let client = if let Some(tls) = &self.address.tls {
                 let (client, connection) = config.connect(tls.clone()).await?;
                 tokio::spawn(connection);
@@ -277,7 +275,7 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.session = None;
-        // It may be in a task of another runtime, which must not wait.
+        // This may run in a task of another runtime, which must not wait.
         if let Some(runtime) = self.runtime.take() {
             runtime.shutdown_background();
         }
@@ -290,7 +288,7 @@ impl Call<'_> {
         self.wait(self.session.client.batch_execute(sql))
     }
 
-    /// Keeps what a transaction has changed.
+    /// Commits a transaction.
     fn commit(&self) -> Result<(), StoreFailure> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(Fault::Lost | Fault::Unknown) => {
@@ -306,7 +304,7 @@ impl Call<'_> {
         if let Some(known) = known {
             return Ok(known);
         }
-        // No statement has a question mark that is not a parameter's.
+        // Every question mark in a statement belongs to a parameter.
         let statement = self.session.client.prepare(&sql.replace('?', "$")).await?;
         self.session.prepared.borrow_mut().insert(sql.to_owned(), statement.clone());
         Ok(statement)
@@ -363,11 +361,11 @@ fn parameters<'a>(values: &'a [&dyn rusqlite::ToSql]) -> Result<Vec<Parameter<'a
     Ok(values.iter().map(|value| value.to_sql().map(Parameter)).collect::<Result<_, _>>()?)
 }
 
-/// A parameter, as rusqlite has it.
+/// A parameter in rusqlite's form.
 #[derive(Debug)]
 struct Parameter<'a>(ToSqlOutput<'a>);
 
-/// A column.
+/// The value of a column.
 struct Column(Value);
 
 impl ToSql for Parameter<'_> {
@@ -435,14 +433,14 @@ fn in_transaction<T, E: From<StoreFailure>>(
 /// A random wait of up to 1 ms, 2 ms, 4 ms and so on.
 fn wait(conflicts: u32) -> Duration {
     let longest = (Duration::from_millis(1) * (1 << conflicts.min(10))).min(LONGEST_WAIT);
-    // Without chance, two that met would meet again.
+    // Without randomness, two transactions that met would meet again.
     let share = getrandom::u32().map_or(1.0, |number| f64::from(number) / f64::from(u32::MAX));
     longest.mul_f64(share)
 }
 
-/// Makes the tables if there are none, all at once or not at all.
+/// Creates the tables if there are none, all at once or not at all.
 fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
-    // Not serializable: what another host has made while this one waited for the lock is to be seen.
+    // Not serializable, because it must see the tables that another host created while this one waited for the lock.
     let patience = SCHEMA_PATIENCE.as_millis();
     call.batch(&format!("BEGIN; SET LOCAL statement_timeout = {patience}"))?;
     let made = call.batch(&format!("SELECT pg_advisory_xact_lock({LOCK})")).and_then(|()| {
@@ -458,7 +456,7 @@ fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
     made
 }
 
-/// Whether a database has the tables, which must be of this version.
+/// Returns true if the database has the tables. These must be of this version.
 fn has_tables(call: &Call<'_>) -> Result<bool, StoreFailure> {
     let sql = "SELECT current_setting('server_encoding') = 'UTF8', \
                to_regclass('cellcaster') IS NOT NULL, to_regclass('accounts') IS NOT NULL";
@@ -495,7 +493,7 @@ impl Address {
         let mut config: Config = text.parse().map_err(|_| no_address())?;
         let host = host(&config).ok_or_else(no_address)?;
         let database = config.get_dbname().or(config.get_user()).unwrap_or("").to_owned();
-        // A password with an @ that is not written as %40 is cut there, and its end taken for the host.
+        // If a password contains an @ that is not written as %40, it is cut there, and its end is read as the host.
         if [&host, &database].iter().any(|part| part.contains(['@', ':'])) {
             return Err(no_address());
         }
@@ -533,13 +531,13 @@ fn no_address() -> StoreFailure {
 }
 
 fn fault(error: &Error) -> Fault {
-    // A transaction may learn that another one has inserted the same row from that row alone.
+    // A unique violation may be the only sign that another transaction has inserted the same row.
     const CONFLICTS: [&SqlState; 3] = [
         &SqlState::T_R_SERIALIZATION_FAILURE,
         &SqlState::T_R_DEADLOCK_DETECTED,
         &SqlState::UNIQUE_VIOLATION,
     ];
-    // The connection is lost, or the server ends, begins, or is not one that takes changes any more.
+    // The connection is lost, or the server is ending, starting, or no longer accepts changes.
     const LOSSES: [&str; 3] = ["08", "57P", "25006"];
     match error.code() {
         Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
@@ -551,13 +549,13 @@ fn fault(error: &Error) -> Fault {
     }
 }
 
-/// Whether the cause is a parameter or a column, and not the connection.
+/// Returns true if the cause is a parameter or a column, and not the connection.
 fn is_of_the_value(error: &Error) -> bool {
     let text = error.to_string();
     text.starts_with("error serializing") || text.starts_with("error deserializing")
 }
 
-/// What the server or the system says.
+/// The reason for an error, as the server or the system states it.
 fn reason(error: &Error) -> String {
     match (error.as_db_error(), error.source()) {
         (Some(error), _) => error.message().to_owned(),

@@ -1,18 +1,16 @@
-//! Hosts of a cluster, and who is on each of them.
+//! The hosts of a cluster, and the visitors on each of them.
 //!
 //! Rules:
 //!
-//! - **A host is there while it announces itself.** One that has ended without a word is gone some seconds later.
-//! - **A visit counts on all hosts, while its host is there**, so that a limit of visits by a key or by addresses
-//!   holds for all hosts together. A host that was late has its visitors none the less: then its visits count
-//!   again, and for a while there may be more than the limit.
-//! - **A refusal says how fresh it is.** The visits in the way may be those of a host that was just
-//!   killed.
-//! - **Time is that of the store**, as with [leases](super::Lease).
+//! - **A host is present while it announces itself.** A host that ended silently counts as gone some seconds later.
+//! - **A visit counts on all hosts while its host is present**, so that a limit on visits by a key or by addresses
+//!   holds for all hosts together. A host that was late still has its visitors. Its visits count again then, and for a
+//!   while there may be more visits than the limit.
+//! - **A refusal says how fresh it is**, because the visits in the way may belong to a host that was just killed.
+//! - **The clock is the store's**, as with [leases](super::Lease).
 //!
-//! A counter for each visitor was refused: what a host has counted when it is killed would be there for ever. So
-//! was a time for each visit that the host renews: a host with a thousand visitors would write a thousand rows
-//! each time.
+//! Rejected: a counter for each visitor. The counts of a killed host would stay for ever. Also rejected: a time for
+//! each visit that the host renews. A host with a thousand visitors would write a thousand rows each time.
 
 use std::time::Duration;
 
@@ -33,40 +31,40 @@ pub struct Visit {
     pub id: VisitId,
     /// The host.
     pub host: String,
-    /// By what it counts: a key, or a range of addresses.
+    /// The key or the range of addresses that it counts against.
     pub visitor: String,
 }
 
-/// What a host says of itself.
+/// A host's information about itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HostNotice {
-    /// Its name, which no other host of the cluster has.
+    /// The name, which is unique in the cluster.
     pub name: String,
-    /// The version of its program.
+    /// The version of the program.
     pub version: String,
-    /// Where players reach it.
+    /// The address at which players reach the host.
     pub address: String,
-    /// Its visitors.
+    /// The number of visitors.
     pub load: u32,
 }
 
-/// A host that is there.
+/// A host that is present.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HostRow {
-    /// What it said last.
+    /// Its latest notice.
     pub notice: HostNotice,
-    /// How long ago that was.
+    /// The age of the notice.
     pub ago: Duration,
 }
 
-/// The visits and hosts of a cluster. In each method, a host is there if it has announced itself in the last `time`.
+/// The visits and hosts of a cluster. In each method, a host is present if it has announced itself in the last `time`.
 impl HostStore {
-    /// Begins a visit, if fewer than `most` of the visitor count. Otherwise, returns the time in which all hosts that count
-    /// against the visitor have announced themselves.
+    /// Begins a visit if fewer than `most` visits of the visitor count. Otherwise returns a time in which the hosts of
+    /// at least `most` counting visits have announced themselves.
     ///
     /// # Errors
-    /// If the store can't be asked; so for each method. If the failure says that a change may be kept or not, the visit
-    /// may count.
+    /// If the store can't be asked. All methods share this error. If the failure says that a change may be kept or not,
+    /// the visit may count.
     pub fn begin_visit(
         &mut self,
         host: &str,
@@ -83,8 +81,8 @@ impl HostStore {
                           ORDER BY seen_at DESC LIMIT 1 OFFSET ?3";
         let insert = "INSERT INTO visits (host, visitor) VALUES (?1, ?2) RETURNING id";
         self.database.change_rows(|it| {
-            // Transactions that count the same visits wait for each other. A serializable transaction would also
-            // conflict with those that count others, as long as the table is short.
+            // Transactions that count the same visits wait for each other. While the table is short, a serializable
+            // transaction would also conflict with transactions that count other visits.
             it.lock(&format!("visits of {visitor}"))?;
             let row = it.row(in_the_way, params![visitor, milliseconds(time), others])?;
             if let Some(row) = row {
@@ -105,7 +103,7 @@ impl HostStore {
         self.database.once(|it| it.execute(sql, params![visit.0]).map(|_| ()))
     }
 
-    /// The visits that count, in the order in which they were begun.
+    /// The visits that count, in the order in which they began.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
@@ -120,13 +118,13 @@ impl HostStore {
         rows.iter().map(visit).collect()
     }
 
-    /// Keeps what a host says of itself, in place of what it said before.
+    /// Stores a host's notice in place of its previous one.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
     pub fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure> {
         const DAY: Duration = Duration::from_hours(24);
-        // Hosts that do not come back.
+        // Remove hosts that have not come back.
         let visits = "DELETE FROM visits WHERE host IN \
                       (SELECT name FROM hosts WHERE seen_at < (SELECT ms FROM clock) - ?1)";
         let hosts = "DELETE FROM hosts WHERE seen_at < (SELECT ms FROM clock) - ?1";
@@ -142,7 +140,7 @@ impl HostStore {
         })
     }
 
-    /// Forgets a host that ends, with all of its visits.
+    /// Forgets a host that ends, and all of its visits.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
@@ -153,7 +151,7 @@ impl HostStore {
         })
     }
 
-    /// The hosts that are there, by name.
+    /// The present hosts, by name.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).

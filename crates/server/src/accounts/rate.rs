@@ -1,29 +1,29 @@
-//! How many accounts a network may make: the generic cell rate algorithm (ITU-T I.371).
+//! The limit on the accounts that a network may create: the generic cell rate algorithm (ITU-T I.371).
 //!
-//! Of each network one time is kept: when it would have its whole allowance again. Each account puts that time off,
-//! and one that would put it off too far is refused. A time that is over is as good as none.
+//! For each network, one time is stored: when it has its whole allowance again. Each account moves that time later,
+//! and an account that would move it too far is refused. A time in the past means the same as none.
 //!
-//! A list of the accounts of the last hour was refused: it grows with the rate, and its limit has an edge.
+//! Rejected: a list of the accounts of the last hour. It grows with the rate, and its limit has an edge.
 
 use std::net::IpAddr;
 
 use super::{AddressPrefix, Refusal, UnixTime};
 
-/// How many accounts a network may make.
+/// The number of accounts that a network may create.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccountRate {
-    /// How many in an hour, in the long run.
+    /// The most accounts in an hour, in the long run.
     pub per_hour: u32,
-    /// How many at once.
+    /// The most accounts at once.
     pub at_once: u32,
 }
 
-/// Where a new account comes from.
+/// The origin of a new account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// The network: a /24 of IPv4, a /64 of IPv6.
+    /// The network: a /24 of IPv4 or a /64 of IPv6.
     pub network: AddressPrefix,
-    /// How many accounts it may make.
+    /// The number of accounts that it may create.
     pub rate: AccountRate,
 }
 
@@ -37,18 +37,18 @@ impl Default for AccountRate {
 }
 
 impl Origin {
-    /// Somebody with an address, in a network with a rate.
+    /// The origin of a visitor with this address, in a network with this rate.
     pub fn new(address: IpAddr, rate: AccountRate) -> Self {
         Self { network: AddressPrefix::network_of(address), rate }
     }
 
-    /// Counts an account: the time, in milliseconds since 1970, from which on the network has its whole allowance
-    /// again, after `known`.
+    /// Counts an account. `known` is the stored time. Returns the new one: when the network has its whole allowance
+    /// again, in milliseconds since 1970.
     pub(crate) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, Refusal> {
         let now = milliseconds(now);
         let pause = HOUR / i64::from(self.rate.per_hour.max(1));
         let most = pause * (i64::from(self.rate.at_once.max(1)) - 1);
-        // One that is later was kept by a clock that went wrong, or under another rate.
+        // A later time comes from a wrong clock or from another rate.
         let whole_at = known.unwrap_or(now).clamp(now, now + most + pause);
         let early = whole_at - now - most;
         if early > 0 {
@@ -61,7 +61,7 @@ impl Origin {
 
 /// A time in milliseconds since 1970.
 pub(crate) fn milliseconds(time: UnixTime) -> i64 {
-    // Some thousands of years.
+    // Several thousand years.
     const LAST: u64 = 1 << 37;
     (time.seconds().min(LAST) * 1000) as i64
 }
@@ -88,7 +88,7 @@ mod tests {
                         made.push(now.seconds());
                     }
                     Err(Refusal::TooManyAccounts { seconds }) => {
-                        // Whoever waits as long as they are told gets in, and not a second earlier.
+                        // A visitor who waits as long as told gets in, and not a second earlier.
                         prop_assert!(origin.count(known, now.after(seconds)).is_ok());
                         prop_assert!(origin.count(known, now.after(seconds - 1)).is_err());
                     }

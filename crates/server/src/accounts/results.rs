@@ -1,4 +1,4 @@
-//! Results: the boards that they belong to, and the runs that count. The host plays the scripts of runs again.
+//! Results: their boards, and the runs that count. The host replays the scripts of runs.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use super::{AccountId, Name, UnixTime};
 
 /// The longest script that is verified, in steps: half an hour.
 pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
-/// The longest script that is verified, in bytes. A player who moves the mouse in each step of half an
-/// hour writes less.
+/// The longest script that is verified, in bytes. A player who moves the mouse in each step of half an hour writes
+/// less.
 pub const MOST_SCRIPT_BYTES: usize = 8 << 20;
 
 /// A board: a built-in level or a map of the host, at one difficulty.
@@ -48,19 +48,19 @@ pub struct VerifiedRun {
     script: String,
 }
 
-/// Why a script is no run that counts.
+/// The reason why a script is not a run that counts.
 #[derive(Debug, Error)]
 pub enum Unverified {
     /// It is longer than [`MOST_SCRIPT_STEPS`] or [`MOST_SCRIPT_BYTES`].
     #[error("The run took longer than half an hour.")]
     TooLong,
-    /// It is no script.
+    /// It is not a script.
     #[error("{0}")]
     Faulty(Faults),
-    /// It names no level that has a board.
+    /// It names no level with a board.
     #[error("The level has no board.")]
     OtherLevel,
-    /// A level is played with the seed 0, so that all runs of it compare.
+    /// Its seed is not 0. All runs of a level have the same seed, so that they compare.
     #[error("The level was played with another seed than all others.")]
     OtherSeed,
     /// The player dies.
@@ -71,9 +71,9 @@ pub enum Unverified {
     NotWon,
 }
 
-/// Plays a script again in the level that its header names: a built-in one, or one of the host's maps, whose worlds `map`
-/// returns by their [keys](cellcaster::app::store::map_key). So no file is read. The work is that of
-/// [`MOST_SCRIPT_STEPS`] steps at most.
+/// Replays a script in the level that its header names: a built-in level, or one of the host's maps. `map` returns the
+/// world of a map by its [key](cellcaster::app::store::map_key), so no file is read. The work is at most
+/// [`MOST_SCRIPT_STEPS`] steps.
 ///
 /// ```
 /// use cellcaster_server::accounts::{Unverified, verify};
@@ -83,7 +83,7 @@ pub enum Unverified {
 /// ```
 ///
 /// # Errors
-/// Why the run does not count.
+/// The reason why the run does not count.
 pub fn verify(
     script: &str,
     map: impl FnOnce(&str) -> Option<World>,
@@ -128,7 +128,7 @@ impl LevelBoard {
         &self.level
     }
 
-    /// The name of the level, or that of the map without the hash of its text.
+    /// The name of the level, or the name of the map without the hash of its text.
     pub fn name(&self) -> &str {
         name_in_map_key(&self.level).unwrap_or(&self.level)
     }
@@ -138,7 +138,7 @@ impl LevelBoard {
         self.difficulty
     }
 
-    /// The key of a list of boards: built-in levels in their order come before maps by name, and easy before hard.
+    /// The sort key of a list of boards: built-in levels in their order, then maps by name; easy before hard.
     pub(crate) fn order(&self) -> (usize, Arc<str>, Option<usize>) {
         let level = place(&self.level).unwrap_or(usize::MAX);
         let difficulty = Difficulty::ALL.iter().position(|it| *it == self.difficulty);
@@ -146,7 +146,7 @@ impl LevelBoard {
     }
 }
 
-/// The place of a built-in level among all of them.
+/// The position of a built-in level among all built-in levels.
 fn place(level: &str) -> Option<usize> {
     builtin::LEVELS.iter().position(|known| known.name == level)
 }
@@ -157,17 +157,17 @@ impl VerifiedRun {
         &self.board
     }
 
-    /// What happened in it.
+    /// The tally of the run.
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Its rank.
+    /// The rank of the run.
     pub fn rank(&self) -> Rank {
         self.rank
     }
 
-    /// Its script.
+    /// The script of the run.
     pub fn script(&self) -> &str {
         &self.script
     }
@@ -175,14 +175,14 @@ impl VerifiedRun {
 
 #[cfg(any(test, feature = "fuzzing"))]
 impl VerifiedRun {
-    /// A run that nobody has verified.
+    /// A run that was not verified.
     #[doc(hidden)]
     pub fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
         Self { board, tally, rank, script: script.to_owned() }
     }
 }
 
-/// The best of a known result and a run, and what the run improves.
+/// Merges a known result with a run. Also returns the improvements by the run.
 pub(crate) fn with_run(known: Option<Best>, run: &VerifiedRun) -> (Best, Improved) {
     let of_run = Best { tally: run.tally(), rank: run.rank() };
     let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
@@ -204,7 +204,7 @@ mod tests {
         let run = verify(WON, |_| None).unwrap();
         assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
         assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
-        // What is kept is a run, too, and the same one.
+        // The stored script is a run, too, and the same one.
         assert_eq!(verify(run.script(), |_| None).unwrap(), run);
     }
 

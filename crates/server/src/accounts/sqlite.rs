@@ -1,22 +1,20 @@
-//! The store's SQLite file: where it lies, who may read it, and whether it is sound.
+//! The store's SQLite file: its location, its permissions, and whether it is sound.
 //!
 //! Rules:
 //!
-//! - **A change is on the disk when its method returns.** The file has a write-ahead log, which is
-//!   synchronised with each transaction (`journal_mode = WAL`, `synchronous = FULL`). A process that is
-//!   killed loses at most the change that has not returned.
-//! - **Others can read at the same time**, such as `cellcaster-server scores`.
-//! - **The log is short.** What is in it is copied into the file at each start and end.
-//! - **A damaged file is kept.** [`open`] checks the whole file, and refuses a damaged one.
-//!   [`open_or_salvage`] renames it to `host.db.damaged-1` with its log, copies
-//!   all rows that can be read into a new file, and says so in a sentence. That is never done unasked: names
-//!   would be free to take, and bans gone.
-//! - **A file of another version is left alone**, and so is one of another program.
-//! - **Nobody else on the machine reads it**: the file has the mode 0600, and the folder 0700 where it is
-//!   created.
+//! - **A change is on the disk when its method returns.** The file has a write-ahead log, which is synchronised with
+//!   each transaction (`journal_mode = WAL`, `synchronous = FULL`). A process that is killed loses at most the change
+//!   whose method has not returned.
+//! - **Other processes can read at the same time**, such as `cellcaster-server scores`.
+//! - **The log stays short.** Its content is copied into the file at each start and end.
+//! - **A damaged file is kept.** [`open`] checks the whole file, and refuses a damaged one. If the caller accepts the
+//!   loss, `open` renames the file to `host.db.damaged-1`, with its log, copies all readable rows into a new file, and
+//!   says so in a sentence. It never does this unasked, because names would be free to take, and bans would be gone.
+//! - **A file of another version or of another program is left alone.**
+//! - **No other user of the machine can read it**: the file has the mode 0600, and a new folder has the mode 0700.
 //!
-//! Rejected: a cache of prepared statements (rusqlite's feature `cache`). A host prepares some ten
-//! statements a second.
+//! Rejected: a cache of prepared statements (rusqlite's feature `cache`). A host prepares about ten statements a
+//! second.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -30,18 +28,19 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, par
 use super::StoreFailure;
 use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
-/// The mark of the file in its header, "Cell".
+/// The mark in the file's header, "Cell".
 const APPLICATION: i32 = 0x4365_6c6c;
-/// The time of the database.
+/// The view with the time of the database.
 const CLOCK: &str = "CREATE VIEW clock AS SELECT CAST(unixepoch('subsec') * 1000 AS INTEGER) AS ms";
 const FILE: &str = "host.db";
-/// What SQLite adds to the name for its log, and for the index of the log.
+/// The suffixes of SQLite's log, and of the index of the log.
 const LOGS: [&str; 2] = ["-wal", "-shm"];
-/// The time to wait for another process.
+/// The most time to wait for another process.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The file in `folder` to read and write. A damaged one is an error, and stays as it is. Only if the loss is accepted, it is
-/// put aside, and the rows that can be read are copied into a new one; then a sentence says so.
+/// Opens the file in `folder` to read and write. A damaged file is an error, and stays unchanged. If the loss is
+/// accepted, a damaged file is put aside, its readable rows are copied into a new file, and the returned sentence says
+/// so.
 pub(crate) fn open(
     folder: &Path,
     accepts_loss: bool,
@@ -61,7 +60,7 @@ pub(crate) fn open(
     }
 }
 
-/// The file in `folder`, which is made if there is none.
+/// Opens the file in `folder`, or creates it.
 fn open_sound(folder: &Path) -> Result<Connection, Fault> {
     let file = folder.join(FILE);
     if has_lost_its_content(&file) {
@@ -73,14 +72,14 @@ fn open_sound(folder: &Path) -> Result<Connection, Fault> {
         Fault::Failure(StoreFailure::new(sentence))
     })?;
     connect(&file).inspect_err(|_| {
-        // An empty file would be taken for a damaged one at the next start.
+        // An empty file would count as damaged at the next start.
         if is_new && fs::metadata(&file).is_ok_and(|data| data.len() == 0) {
             _ = fs::remove_file(&file);
         }
     })
 }
 
-/// Whether the file is empty, or missing beside its log. SQLite would take either for a new database, and
+/// Returns true if the file is empty, or missing although its log exists. SQLite would treat it as a new database, and
 /// delete the log.
 fn has_lost_its_content(file: &Path) -> bool {
     match fs::metadata(file) {
@@ -89,13 +88,13 @@ fn has_lost_its_content(file: &Path) -> bool {
     }
 }
 
-/// Copies the content of the write-ahead log into the file, and empties the log. What another process still
-/// reads remains in the log.
+/// Copies the content of the write-ahead log into the file, and empties the log. Content that another process is still
+/// reading remains in the log.
 pub(crate) fn checkpoint(connection: &Connection) -> rusqlite::Result<()> {
     connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))
 }
 
-/// The file in `folder` to read, if it exists.
+/// Opens the file in `folder` to read from it, if it exists.
 pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFailure> {
     let file = folder.join(FILE);
     if !file.exists() {
@@ -105,7 +104,7 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
     let unreadable = |error: &dyn fmt::Display| {
         StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)))
     };
-    // Not by opening it: to close it again would give up the locks of this process.
+    // This check does not open the file, because closing it again would release the locks of this process.
     private::check_is_file(&file).map_err(|error| unreadable(&error))?;
     let connection = Connection::open_with_flags(&file, flags).and_then(|connection| {
         connection.busy_timeout(PATIENCE)?;
@@ -119,7 +118,7 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
     Ok(Some(connection))
 }
 
-/// Why a file is not opened.
+/// The reason why a file is not opened.
 enum Fault {
     Damaged,
     Failure(StoreFailure),
@@ -143,9 +142,9 @@ impl From<rusqlite::Error> for Fault {
     }
 }
 
-/// A connection to a file that is sound and of this version.
+/// Opens a file that must be sound and of this version.
 fn connect(file: &Path) -> Result<Connection, Fault> {
-    // Without SQLITE_OPEN_URI: a path is a path.
+    // Without SQLITE_OPEN_URI, so that a path is never read as a URI.
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let mut connection = Connection::open_with_flags(file, flags)?;
     connection.busy_timeout(PATIENCE)?;
@@ -160,7 +159,7 @@ fn connect(file: &Path) -> Result<Connection, Fault> {
         "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF;",
     )?;
     make_tables(&mut connection)?;
-    // What can't be copied now, as on a full disk, is as safe in the log.
+    // Content that cannot be copied now, as on a full disk, is just as safe in the log.
     _ = checkpoint(&connection);
     Ok(connection)
 }
@@ -195,7 +194,7 @@ fn check_content(connection: &Connection) -> Result<(), Fault> {
     if answer == "ok" { Ok(()) } else { Err(Fault::Damaged) }
 }
 
-/// Puts a damaged file aside, and copies what can be read into a new one. Returns that, and a sentence.
+/// Puts a damaged file aside, and copies its readable rows into a new one. Returns the new one, and a sentence.
 fn replace(folder: &Path) -> Result<(Connection, String), StoreFailure> {
     let file = folder.join(FILE);
     let aside = put_aside(folder, &file).and_then(|aside| {
@@ -229,7 +228,7 @@ fn put_aside(folder: &Path, file: &Path) -> io::Result<String> {
     Ok(name)
 }
 
-/// The name that a damaged file gets.
+/// A free name for a damaged file.
 fn free_name(folder: &Path) -> String {
     let is_free = |name: &String| {
         let file = folder.join(name);
@@ -245,8 +244,8 @@ fn with_end(file: &Path, end: &str) -> PathBuf {
     name.into()
 }
 
-/// Copies the rows of a damaged file that can be read and obey the rules of their table, and returns their
-/// number. Each table is read from both ends, so that a damaged page hides only the rows on it.
+/// Copies the rows of a damaged file that can be read and satisfy the constraints of their table, and returns their
+/// number. Each table is read from both ends, so that a damaged page hides only its own rows.
 fn salvage(damaged: &Path, into: &mut Connection) -> rusqlite::Result<usize> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let Ok(from) = Connection::open_with_flags(damaged, flags) else { return Ok(0) };
@@ -257,7 +256,7 @@ fn salvage(damaged: &Path, into: &mut Connection) -> rusqlite::Result<usize> {
         for direction in ["ASC", "DESC"] {
             let sql =
                 format!("SELECT {columns} FROM {table} NOT INDEXED ORDER BY rowid {direction}");
-            // What can't be read is lost, and the damaged file is kept.
+            // Unreadable rows are lost, but the damaged file is kept.
             _ = copy(&from, &sql, &transaction, (table, columns), &mut rows);
         }
     }
@@ -265,7 +264,7 @@ fn salvage(damaged: &Path, into: &mut Connection) -> rusqlite::Result<usize> {
     Ok(rows)
 }
 
-/// The tables and their columns. A table comes after the tables to which it refers.
+/// The tables and their columns. A table comes after the tables that it refers to.
 pub(crate) fn tables(connection: &Connection) -> rusqlite::Result<Vec<(String, String)>> {
     let sql = "SELECT name, (SELECT group_concat(name, ', ') FROM pragma_table_info(tables.name)) \
                FROM sqlite_schema AS tables WHERE type = 'table' AND name NOT LIKE 'sqlite_%' \
@@ -300,12 +299,12 @@ fn values(row: &rusqlite::Row<'_>) -> rusqlite::Result<Vec<Value>> {
     (0..row.as_ref().column_count()).map(|column| row.get(column)).collect()
 }
 
-/// The version of the file; 0 if it has no tables. In a file that no Cellcaster wrote, it may be negative.
+/// The version of the file; 0 if it has no tables. In a file of another program, it may be negative.
 fn version(connection: &Connection) -> rusqlite::Result<i64> {
     connection.query_row("PRAGMA user_version", [], |row| row.get(0))
 }
 
-/// Makes the tables in a new file, all at once or not at all.
+/// Creates the tables in a new file, all at once or not at all.
 pub(crate) fn make_tables(connection: &mut Connection) -> rusqlite::Result<()> {
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
     if version(&transaction)? == 0 {
@@ -317,7 +316,7 @@ pub(crate) fn make_tables(connection: &mut Connection) -> rusqlite::Result<()> {
     transaction.commit()
 }
 
-/// Runs statements, in a transaction if they are to be isolated. SQLite's transactions run one after the other.
+/// Runs statements, in a transaction if they need isolation. SQLite runs transactions one after the other.
 pub(crate) fn run<T, E: From<StoreFailure>>(
     connection: &mut Connection,
     isolation: Isolation,
@@ -326,7 +325,7 @@ pub(crate) fn run<T, E: From<StoreFailure>>(
     if isolation == Isolation::None {
         return act(connection);
     }
-    // A transaction that begins by reading could not wait for another one that writes.
+    // A transaction that begins with a read could not wait for another one that writes.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate);
     let transaction = transaction.map_err(StoreFailure::from)?;
     let result = act(&*transaction)?;
@@ -346,7 +345,7 @@ impl Statements for Connection {
     }
 
     fn lock(&self, _: &str) -> Result<(), StoreFailure> {
-        // A transaction that writes has the file to itself.
+        // A transaction that writes locks the whole file.
         Ok(())
     }
 }

@@ -2,30 +2,30 @@
 //!
 //! Rules:
 //!
-//! - **Every statement is written once, in the language that both databases share.** Parameters are `?1`, `?2` and so
-//!   on. `json_each` expands an object, and the view `clock` has the database's own time in milliseconds. The modules
-//!   of the two databases contain only what differs: opening, transactions, and failures.
+//! - **Every statement is written once, in the SQL that both databases share.** Parameters are `?1`, `?2` and so on.
+//!   `json_each` expands an object, and the view `clock` contains the database's own time in milliseconds. The modules
+//!   of the two databases contain only the differences: opening, transactions, and failures.
 //! - **Values are bound, never written into a statement.** rusqlite's traits convert them for both databases.
-//! - **A change that reads before it writes is a transaction.** It may run several times, until it meets no
-//!   other, so it must do nothing but run statements.
+//! - **A change that reads before it writes is a transaction.** It may run several times until it meets no conflict, so
+//!   it must do nothing but run statements.
 //!
 //! Rejected: sqlx. It has a pool and migrations, but no deadline for a call, no retry of a transaction or of a lost
-//! connection, and no way to read what is left of a damaged file. Two dialects would remain too. Also rejected: a trait
-//! with a method for each statement. Each database would repeat all of them, and they would drift apart.
+//! connection, and no way to read the rest of a damaged file. The two dialects would also remain. Also rejected: a
+//! trait with a method for each statement. Each database would repeat all of them, and they would drift apart.
 
 use rusqlite::ToSql;
 use rusqlite::types::{FromSql, FromSqlResult, ToSqlOutput, Value, ValueRef};
 
 use super::{AccountId, Name, StoreFailure, UnixTime};
 
-/// What statements see of transactions that run at the same time.
+/// The isolation of statements from transactions that run at the same time.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Isolation {
-    /// Each statement is by itself, and may as well run twice.
+    /// Each statement runs by itself, and can run twice without harm.
     None,
-    /// A transaction whose statements each see what others have kept until then.
+    /// A transaction in which each statement sees the changes that others have committed by then.
     Committed,
-    /// A transaction as if there were no other.
+    /// A transaction that runs as if there were no others.
     Serializable,
 }
 
@@ -34,13 +34,13 @@ pub(crate) trait Statements {
     /// Runs a statement, and returns the number of rows that it changed.
     fn execute(&self, sql: &str, values: &[&dyn ToSql]) -> Result<u64, StoreFailure>;
 
-    /// The rows of a statement.
+    /// Runs a statement, and returns its rows.
     fn rows(&self, sql: &str, values: &[&dyn ToSql]) -> Result<Vec<Row>, StoreFailure>;
 
-    /// Holds a lock until the transaction ends. Waits for the transaction that holds it now.
+    /// Holds a lock until the transaction ends. If another transaction holds it, waits for that one.
     fn lock(&self, name: &str) -> Result<(), StoreFailure>;
 
-    /// The first row of a statement.
+    /// Runs a statement, and returns its first row.
     fn row(&self, sql: &str, values: &[&dyn ToSql]) -> Result<Option<Row>, StoreFailure> {
         Ok(self.rows(sql, values)?.into_iter().next())
     }
@@ -50,10 +50,10 @@ pub(crate) trait Statements {
 #[derive(Debug)]
 pub(crate) struct Row(pub(crate) Vec<Value>);
 
-/// The version of the [tables](SCHEMA). Versions below it were never released.
+/// The version of the [tables](SCHEMA). Lower versions were never released.
 pub(crate) const VERSION: i64 = 6;
 
-/// The tables, as SQLite takes them. `postgres` translates the types.
+/// The tables in SQLite's dialect. `postgres` translates the types.
 pub(crate) const SCHEMA: &str = include_str!("schema.sql");
 
 impl Row {
@@ -66,7 +66,7 @@ impl Row {
         })
     }
 
-    /// A column with a number that is never negative.
+    /// The value of a column with a number that is never negative.
     pub(crate) fn count(&self, column: usize) -> Result<u64, StoreFailure> {
         Ok(self.get::<i64>(column)?.max(0) as u64)
     }

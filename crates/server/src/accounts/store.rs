@@ -1,4 +1,4 @@
-//! Accounts, their settings, bans and results: the statements, which are the same in each database.
+//! Accounts, their settings, bans and results: the statements, which are the same for both databases.
 
 use std::fmt;
 use std::path::Path;
@@ -21,7 +21,7 @@ use super::{
     VerifiedRun, sqlite,
 };
 
-/// What a host keeps.
+/// The store of a host.
 pub struct HostStore {
     pub(crate) database: Database,
 }
@@ -30,16 +30,16 @@ pub struct HostStore {
 pub(crate) enum Database {
     File(Connection),
     Server(Box<Server>),
-    /// Answers every call with this failure.
+    /// Fails every call with this failure.
     #[cfg(test)]
     Failing(StoreFailure),
 }
 
 impl Database {
-    /// Runs statements that may as well run twice: they read, or set what they would set again.
+    /// Runs statements that may run twice, because they only read, or set the same values again.
     ///
     /// # Errors
-    /// Those of `act`.
+    /// The errors of `act`.
     pub(crate) fn once<T, E: From<StoreFailure>>(
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, E>,
@@ -47,10 +47,10 @@ impl Database {
         self.run(Isolation::None, act)
     }
 
-    /// Runs a transaction, which is undone if `act` fails. Transactions have the effect of one after the other.
+    /// Runs a transaction, which is undone if `act` fails. Transactions take effect one after the other.
     ///
     /// # Errors
-    /// Those of `act`, and if the transaction can't be kept.
+    /// The errors of `act`, and a failure to commit.
     pub(crate) fn change<T, E: From<StoreFailure>>(
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, E>,
@@ -58,11 +58,11 @@ impl Database {
         self.run(Isolation::Serializable, act)
     }
 
-    /// Runs a transaction each of whose statements sees what others have kept until then, and waits for transactions
-    /// that change the same row.
+    /// Runs a transaction in which each statement sees the changes that others have committed by then. It waits for
+    /// transactions that change the same row.
     ///
     /// # Errors
-    /// Those of `act`, and if the transaction can't be kept.
+    /// The errors of `act`, and a failure to commit.
     pub(crate) fn change_rows<T>(
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
@@ -86,7 +86,7 @@ impl Database {
 
 /// Opening a store.
 impl HostStore {
-    /// The store in the file `host.db` of `folder`. Both are created if they do not exist.
+    /// Opens the store in the file `host.db` of `folder`. Creates both if they do not exist.
     ///
     /// # Errors
     /// If the folder can't be used, or the file is damaged, of another version or of another program.
@@ -94,8 +94,8 @@ impl HostStore {
         Ok(Self { database: Database::File(sqlite::open(folder, false)?.0) })
     }
 
-    /// The store in `folder`. If its file was damaged, it is a new one with the rows that can be read, and the
-    /// sentence says so.
+    /// Opens the store in `folder`. If its file is damaged, the store is a new one with the readable rows, and the
+    /// returned sentence says so.
     ///
     /// # Errors
     /// If the folder can't be used, or the file is of another version or of another program.
@@ -104,7 +104,7 @@ impl HostStore {
         Ok((Self { database: Database::File(connection) }, sentence))
     }
 
-    /// The store in `folder` to read from while a host uses it. `None` if there is none. All methods that
+    /// Opens the store in `folder` to read from it while a host uses it. `None` if there is none. All methods that
     /// change something fail.
     ///
     /// # Errors
@@ -114,7 +114,8 @@ impl HostStore {
         Ok(connection.map(|connection| Self { database: Database::File(connection) }))
     }
 
-    /// The store at an address such as `postgres://user@host/database`, whose tables are made if there are none.
+    /// Connects to the store at an address such as `postgres://user@host/database`. Creates the tables if there are
+    /// none.
     ///
     /// # Errors
     /// If the server can't be reached, or the database is of another version or of another program.
@@ -122,7 +123,8 @@ impl HostStore {
         Ok(Self { database: Database::Server(Box::new(Server::open(address)?)) })
     }
 
-    /// The store at an address to read from. `None` if there is none. All methods that change something fail.
+    /// Connects to the store at an address to read from it. `None` if there is none. All methods that change something
+    /// fail.
     ///
     /// # Errors
     /// If the server can't be reached, or the database is of another version.
@@ -131,10 +133,10 @@ impl HostStore {
         Ok(server.map(|server| Self { database: Database::Server(Box::new(server)) }))
     }
 
-    /// Brings the store into the form in which it rests while no host runs.
+    /// Copies the write-ahead log of a file into the file, for the time while no host runs.
     ///
     /// # Errors
-    /// If it can't be written. Nothing is lost then.
+    /// If it can't be written. Nothing is lost in that case.
     pub fn checkpoint(&mut self) -> Result<(), StoreFailure> {
         if let Database::File(connection) = &self.database {
             sqlite::checkpoint(connection)?;
@@ -150,12 +152,12 @@ impl HostStore {
     /// The account of a key.
     ///
     /// # Errors
-    /// If the store can't be read; so for each method.
+    /// If the store can't be read. All methods share this error.
     pub fn account(&mut self, key: &AccountKey) -> Result<Option<Account>, StoreFailure> {
         self.database.once(|it| account_of_key(it, key))
     }
 
-    /// The account that has `name`, or one that looks like it.
+    /// The account with `name`, or with a name that looks like it.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -170,11 +172,11 @@ impl HostStore {
         self.database.once(|it| it.row(&sql, values)?.as_ref().map(account).transpose())
     }
 
-    /// Creates the account of a key, with a name. A new account counts for its `origin`, if there is one, unless it is
-    /// refused for another reason.
+    /// Creates the account of a key, with a name. A new account counts against the rate of its `origin`, if there is
+    /// one, unless it is refused for another reason.
     ///
     /// # Errors
-    /// A [`Refusal`]: for one, the name is taken or banned, or the network makes too many accounts.
+    /// A [`Refusal`]: for example, the name is taken or banned, or the network creates too many accounts.
     pub fn create_account(
         &mut self,
         origin: Option<&Origin>,
@@ -229,7 +231,7 @@ impl HostStore {
         })
     }
 
-    /// Notes that the player of an account is here.
+    /// Records the time of a player's visit.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -246,7 +248,7 @@ impl HostStore {
         let sql = "SELECT preferences, configuration FROM settings WHERE account = ?1";
         let row = self.database.once(|it| it.row(sql, params![id]))?;
         let settings = row.map(|row| {
-            // Those of another version are the default.
+            // Preferences of another version become the defaults.
             let preferences = serde_json::from_str(&row.get::<String>(0)?).unwrap_or_default();
             Ok(AccountSettings { preferences, configuration: row.get(1)? })
         });
@@ -256,7 +258,7 @@ impl HostStore {
     /// Replaces the settings of an account.
     ///
     /// # Errors
-    /// If the configuration is too long; and see [`account`](Self::account).
+    /// If the configuration is too long; also see [`account`](Self::account).
     pub fn set_settings(
         &mut self,
         id: AccountId,
@@ -273,7 +275,7 @@ impl HostStore {
 
 /// Bans.
 impl HostStore {
-    /// Bans, in place of an earlier ban of the same target.
+    /// Bans a target. The ban replaces an earlier one of the same target.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -288,7 +290,7 @@ impl HostStore {
         })
     }
 
-    /// Ends the ban of a target, and returns whether there was one.
+    /// Ends the ban of a target. Returns true if there was one.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -304,7 +306,7 @@ impl HostStore {
         self.database.once(|it| bans_in_force(it, now))
     }
 
-    /// The ban in force that applies to somebody; of several, the one that ends last.
+    /// The ban in force that applies to a visitor. If several apply, the one that ends last.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -319,7 +321,7 @@ impl HostStore {
 
 /// Results and boards.
 impl HostStore {
-    /// Records a run, and returns what it improved.
+    /// Records a run, and returns its improvements.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -356,7 +358,7 @@ impl HostStore {
         })
     }
 
-    /// The best results of an account, by level and difficulty.
+    /// The best results of an account, in the order of levels and difficulties.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -370,7 +372,7 @@ impl HostStore {
         Ok(bests)
     }
 
-    /// The boards that have results, in the order of levels and difficulties.
+    /// The boards with results, in the order of levels and difficulties.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -383,8 +385,8 @@ impl HostStore {
         Ok(boards)
     }
 
-    /// The first `most` entries of a board: the fastest run of each account. Of equally fast runs the earlier one
-    /// is first.
+    /// The first `most` entries of a board: the fastest run of each account. Of equally fast runs, the earlier one
+    /// comes first.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -402,7 +404,7 @@ impl HostStore {
         self.database.once(|it| it.rows(sql, values)?.iter().map(score).collect())
     }
 
-    /// The script of the fastest run of an account.
+    /// The script of an account's fastest run.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -419,7 +421,7 @@ impl HostStore {
 }
 
 impl fmt::Debug for HostStore {
-    /// Without an address, which may have a password.
+    /// Leaves out the address, because it may contain a password.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("HostStore").finish_non_exhaustive()
     }
@@ -430,7 +432,7 @@ fn account_of_key(it: &dyn Statements, key: &AccountKey) -> Result<Option<Accoun
     it.row(&sql, params![key.bytes()])?.as_ref().map(account).transpose()
 }
 
-/// Counts a new account of a network, and forgets the networks that have their whole allowance.
+/// Counts a new account for its network, and forgets the networks that have their whole allowance.
 fn count_origin(it: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(), Refusal> {
     let network = origin.network.to_string();
     let sql = "SELECT whole_at_ms FROM account_rates WHERE network = ?1";
@@ -444,7 +446,7 @@ fn count_origin(it: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(
     Ok(())
 }
 
-/// Refuses a name that is banned, or belongs to another account than `own`.
+/// Refuses a name that is banned, or that belongs to an account other than `own`.
 fn check_name(
     it: &dyn Statements,
     own: Option<AccountId>,
@@ -490,7 +492,7 @@ fn bans_in_force(it: &dyn Statements, now: UnixTime) -> Result<Vec<Ban>, StoreFa
     Ok(bans.filter(|ban| ban.is_in_force(now)).collect())
 }
 
-/// All bans with their numbers, in the order in which they were made. Bans of unknown targets are left out.
+/// All bans with their numbers, in the order in which they were made. Bans with an unknown target are left out.
 fn bans(it: &dyn Statements) -> Result<Vec<(i64, Ban)>, StoreFailure> {
     let sql = "SELECT id, kind, target, until, reason, made_by, made_at FROM bans ORDER BY id";
     let mut bans = Vec::new();
@@ -504,7 +506,7 @@ fn bans(it: &dyn Statements) -> Result<Vec<(i64, Ban)>, StoreFailure> {
 }
 
 impl BanTarget {
-    /// The kind of a target, and its text.
+    /// The kind and the text of a target, as the store keeps them.
     fn parts(&self) -> (&'static str, String) {
         match self {
             Self::Key(key) => ("key", key.to_string()),
@@ -533,7 +535,7 @@ fn account(row: &Row) -> Result<Account, StoreFailure> {
     })
 }
 
-/// The board in the first two columns; `None` if there is none of that name any more.
+/// The board in the first two columns; `None` if that level no longer exists.
 fn board(row: &Row) -> Result<Option<LevelBoard>, StoreFailure> {
     let (level, difficulty): (String, String) = (row.get(0)?, row.get(1)?);
     Ok(Difficulty::named(&difficulty).and_then(|difficulty| LevelBoard::new(&level, difficulty)))
@@ -545,7 +547,7 @@ fn score(row: &Row) -> Result<LevelScore, StoreFailure> {
     Ok(LevelScore { account, name, tally, rank, verified_at })
 }
 
-/// The result whose tally and rank are in the columns from `first` on.
+/// The result whose tally is in column `first` and whose rank is in the next column.
 fn best(row: &Row, first: usize) -> Result<Best, StoreFailure> {
     let tally = serde_json::from_str(&row.get::<String>(first)?)
         .map_err(|error| StoreFailure::new(format!("the host's store has no tally: {error}")))?;

@@ -1,4 +1,4 @@
-//! Stores without a file, for tests.
+//! In-memory stores for tests.
 
 use std::time::Duration;
 
@@ -17,10 +17,10 @@ use super::sqlite::tables;
 use super::store::Database;
 
 impl HostStore {
-    /// A store that ends with the program. Its clock stands still, and [passes](Self::pass) time when it is told to.
+    /// A store that ends with the program. Its clock stands still until a test lets time [pass](Self::pass).
     ///
     /// # Panics
-    /// Without memory for it.
+    /// If there is not enough memory.
     #[doc(hidden)]
     pub fn in_memory() -> Self {
         let mut connection = Connection::open_in_memory().unwrap();
@@ -41,13 +41,13 @@ impl HostStore {
     /// The SQLite connection.
     ///
     /// # Panics
-    /// If it is another database.
+    /// If the store is in another kind of database.
     pub(crate) fn connection(&self) -> &Connection {
         let Database::File(connection) = &self.database else { panic!("not a file") };
         connection
     }
 
-    /// Lets time pass for leases, hosts and visits.
+    /// Advances the clock for leases, hosts and visits.
     pub(crate) fn pass(&mut self, time: Duration) {
         let time = i64::try_from(time.as_millis()).unwrap();
         self.connection().execute("UPDATE clock SET ms = ms + ?1", [time]).unwrap();
@@ -56,7 +56,7 @@ impl HostStore {
     /// Removes all rows.
     ///
     /// # Panics
-    /// Without memory for it.
+    /// If there is not enough memory.
     #[cfg(feature = "fuzzing")]
     #[doc(hidden)]
     pub fn clear(&mut self) {
@@ -67,10 +67,11 @@ impl HostStore {
         }
     }
 
-    /// Puts a row into the table with that number, whatever refers to what. Returns whether the table takes it.
+    /// Inserts a row into a table, whatever the references and constraints are. Returns true if the table accepts
+    /// it.
     ///
     /// # Panics
-    /// If the database does not stop to look at references.
+    /// If the database does not turn off its checks.
     #[cfg(feature = "fuzzing")]
     #[doc(hidden)]
     pub fn put(&mut self, table: usize, values: &[Value]) -> bool {

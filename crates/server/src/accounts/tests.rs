@@ -1,4 +1,4 @@
-//! What a store does in each database.
+//! The behaviour of a store in each database.
 
 #[cfg(all(unix, feature = "system-tests"))]
 mod alike;
@@ -44,7 +44,7 @@ impl Drop for Folder {
     }
 }
 
-/// Runs a test with a store of each kind.
+/// Runs a test with each kind of store.
 fn with_each(test: impl Fn(&mut HostStore)) {
     test(&mut HostStore::in_memory());
     let folder = Folder::new();
@@ -59,7 +59,7 @@ fn on_server() -> HostStore {
     HostStore::connect(&postgres_server::PostgresServer::shared().address()).unwrap()
 }
 
-/// Runs a test of leases or visits with a store of each kind whose clock a test can let run.
+/// Runs a test of leases or visits with each kind of store in which a test can let time pass.
 fn with_each_clock(test: impl Fn(&mut HostStore)) {
     test(&mut HostStore::in_memory());
     #[cfg(all(unix, feature = "system-tests"))]
@@ -147,7 +147,8 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
         assert_eq!(eve, Account { name: name("Eve"), named_at: next, ..ada.clone() });
         assert_eq!(store.account(&key(1)).unwrap(), Some(eve));
         assert_eq!(store.account_named(&name("Ada")).unwrap(), None);
-        // Nobody else has the old name for a while; the account itself may go back to it.
+        // No other account can take the old name for a while, but the account itself can go back to
+        // it.
         let taken = store.create_account(None, &key(2), &name("ADA"), at(36));
         assert_eq!(taken, Err(Refusal::NameTaken));
         store.rename(ada.id, &name("ada"), at(14)).unwrap();
@@ -212,10 +213,10 @@ fn a_ban_applies_until_it_ends() {
         let visitor = Identity { address, key: Some(&key(1)), name: Some(&rude) };
         assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[0]));
         assert_eq!(store.ban_of(&Identity::default(), at(0)).unwrap(), None);
-        // A name that is banned is nobody's.
+        // Nobody can take a banned name.
         assert_eq!(store.create_account(None, &key(3), &rude, at(1)), Err(Refusal::NameBanned));
         store.create_account(None, &key(3), &rude, at(2)).unwrap();
-        // A later ban is in place of the earlier one.
+        // A later ban replaces the earlier one.
         let longer = ban(range(), None);
         store.ban(&longer).unwrap();
         assert_eq!(store.bans(at(0)).unwrap(), [&bans[..2], &[longer]].concat());

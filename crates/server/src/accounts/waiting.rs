@@ -1,18 +1,20 @@
-//! Results that wait for a store that is away or full, in the file `waiting_results` of the host's data folder.
+//! Results that wait while the store is unavailable or full, in the file `waiting_results` of the host's data
+//! folder.
 //!
 //! Rules:
 //!
-//! - **A result is on the disk when [`save`](WaitingResults::save) has succeeded**, and in the file until the next
-//!   one after it was recorded. A host that is killed in between records it twice, which changes nothing. On a
-//!   full disk, results wait in memory until there is room.
-//! - **An account is named by its key**, since the number of an account is that of one database.
-//! - **A script is replayed again before it is recorded**, so that the file proves nothing, and so that a newer
-//!   version of the rules decides by itself.
-//! - **File and memory are bounded.** The file is replaced at once. A part that can't be read is put aside.
-//! - **Nothing waits for ever:** a result that the store refuses although it answers is given up after
+//! - **A result is on the disk when [`save`](WaitingResults::save) has succeeded.** It stays in the file until the
+//!   first `save` after it was recorded. If a host is killed in between, it records the result twice, which
+//!   changes nothing. If the disk is full, results wait in memory until there is room.
+//! - **The key identifies an account**, because the number of an account is valid in one database only.
+//! - **A script is replayed again before it is recorded.** So nothing has to trust the file, and a newer version
+//!   of the rules decides by itself.
+//! - **File and memory are bounded.** The file is replaced atomically. If a part of it cannot be read, the old
+//!   file is put aside.
+//! - **No result waits for ever:** if the store answers but refuses a result, the result is given up after
 //!   [`MOST_AGE`].
 //!
-//! Rejected: a queue in memory alone. A database is often restarted together with its hosts.
+//! Rejected: a queue only in memory. A database is often restarted together with its hosts.
 
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
@@ -30,21 +32,21 @@ use cellcaster::world::World;
 
 /// The most results that wait.
 const MOST_RESULTS: usize = 1000;
-/// The most bytes of the file. One result is some ten thousand.
+/// The most bytes of the file. One result takes about ten thousand.
 const MOST_BYTES: usize = 16 << 20;
-/// The seconds after which a result is given up that the store refuses.
+/// The seconds after which a refused result is given up.
 const MOST_AGE: u64 = 7 * 24 * 60 * 60;
 
-/// The results that wait, in the order in which they were added.
+/// The waiting results, in the order in which they were added.
 #[derive(Debug)]
 pub struct WaitingResults {
     file: PathBuf,
     results: Vec<WaitingResult>,
-    /// Whether the file has the same.
+    /// `true` if the file contains the same results.
     is_saved: bool,
 }
 
-/// A result that waits.
+/// A waiting result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WaitingResult {
     /// The key of the account.
@@ -55,18 +57,18 @@ pub struct WaitingResult {
     pub script: String,
 }
 
-/// What became of a result that has waited.
+/// The outcome for a result that has waited.
 #[derive(Debug)]
 pub enum Late {
-    /// It was recorded, and waits no more.
+    /// It was recorded, and no longer waits.
     Recorded(Account, VerifiedRun),
-    /// Its script is no run that counts in this version. It waits no more.
+    /// Its script is not a run that counts in this version. It no longer waits.
     Refuted(WaitingResult, Unverified),
-    /// The store refuses it, and it is given up.
+    /// The store refused it for too long, and it is given up.
     GivenUp(WaitingResult, StoreFailure),
-    /// The store refuses it, and it waits on.
+    /// The store refused it, and it still waits.
     Refused(StoreFailure),
-    /// The store is away or full, and it waits on with all others.
+    /// The store is unavailable or full. All results still wait.
     NotNow,
 }
 
@@ -80,7 +82,7 @@ struct Row<'a> {
 }
 
 impl WaitingResults {
-    /// The results that wait in a folder. Returns also a sentence if some can't be read.
+    /// Reads the results that wait in a folder. Also returns a sentence if some of them cannot be read.
     ///
     /// # Errors
     /// If the file can't be read or replaced.
@@ -90,7 +92,7 @@ impl WaitingResults {
         let mut bytes = Vec::new();
         match private::open(&file) {
             Ok(found) => {
-                // More than this was not written by a host.
+                // A host never writes more than this.
                 let most = 2 * MOST_BYTES as u64;
                 _ = found.take(most).read_to_end(&mut bytes).map_err(failed)?;
             }
@@ -111,12 +113,12 @@ impl WaitingResults {
         self.results.len()
     }
 
-    /// Whether none waits.
+    /// Returns true if no result waits.
     pub fn is_empty(&self) -> bool {
         self.results.is_empty()
     }
 
-    /// Adds a result, which is on the disk after the next [`save`](Self::save).
+    /// Adds a result. The next [`save`](Self::save) puts it on the disk.
     ///
     /// # Errors
     /// If too many wait.
@@ -130,8 +132,8 @@ impl WaitingResults {
         Ok(())
     }
 
-    /// Records result number `index` at the time of its own, if there is one. [`save`](Self::save) is to be
-    /// called after the last one.
+    /// Records result number `index` with its own time, if there is one. Call [`save`](Self::save) after the last
+    /// one.
     pub fn record(
         &mut self,
         index: usize,
@@ -148,7 +150,7 @@ impl WaitingResults {
         Some(late)
     }
 
-    /// Makes the file have the results that wait still.
+    /// Updates the file to the results that still wait.
     ///
     /// # Errors
     /// If it can't be written.
@@ -171,7 +173,7 @@ impl WaitingResults {
         let written = private::create_file(&new)
             .and_then(|()| Real.write(&new, self.content().as_bytes()))
             .and_then(|()| Real.rename(&new, &self.file));
-        // A part of a file takes room on a full disk.
+        // A partial file would take up room on a full disk.
         written.inspect_err(|_| _ = Real.remove(&new))
     }
 
@@ -180,7 +182,7 @@ impl WaitingResults {
         self.results.iter().map(WaitingResult::line).collect()
     }
 
-    /// Puts a file aside of which a part can't be read; a sentence about it.
+    /// Puts aside a file that cannot be read completely, and returns a sentence about it.
     fn put_aside(&mut self) -> Result<String, StoreFailure> {
         let aside = self.file.with_extension("damaged");
         Real.rename(&self.file, &aside).map_err(|error| failure(&self.file, &error))?;

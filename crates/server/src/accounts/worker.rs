@@ -1,12 +1,12 @@
-//! A store on a thread of its own, since its methods block.
+//! A store on a thread of its own, because its methods block.
 //!
-//! Calls wait in a bounded queue; if it is full, a call fails at once. Calls that wait when the last sender is dropped are
-//! done before the thread ends, so that no result is lost.
+//! Calls wait in a bounded queue. If the queue is full, a call fails at once. When the last sender is dropped, the
+//! thread makes the waiting calls before it ends, so that no result is lost.
 //!
-//! A host has one such thread for sessions, and in a cluster one for leases and one for visits: a result that is
-//! replayed delays neither.
+//! A host has one such thread for sessions, and in a cluster one for leases and one for visits. So the replay of a
+//! result delays neither leases nor visits.
 //!
-//! In simulated time, a task takes the place of the thread, whose time nobody could simulate.
+//! In simulated time, a task takes the place of the thread, because the time of a thread cannot be simulated.
 
 use std::fmt;
 use std::io;
@@ -17,10 +17,10 @@ use tokio::sync::{mpsc, oneshot};
 
 use super::HostStore;
 
-/// A call that waits.
+/// A waiting call.
 pub(crate) type Call = Box<dyn FnOnce(&mut HostStore) + Send>;
 
-/// The answer to a call. It is an error if the call was not accepted, or has panicked.
+/// The answer to a call. It is an error if the call was not accepted or has panicked.
 pub(crate) type Answer<T> = oneshot::Receiver<T>;
 
 /// The sender of calls to a store.
@@ -30,12 +30,12 @@ pub(crate) struct StoreWorker {
 }
 
 impl StoreWorker {
-    /// Starts a thread called `name`, for which at most `most` calls wait.
+    /// Starts a thread called `name`. At most `most` calls wait for it.
     pub(crate) fn start(name: &str, most: usize, mut store: HostStore) -> io::Result<Self> {
         let (mut worker, mut queue) = Self::new(most);
         let thread = thread::Builder::new().name(name.to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
-                // A fault in one call is no reason to answer no other.
+                // A panic in one call must not stop the other calls.
                 _ = catch_unwind(AssertUnwindSafe(|| call(&mut store)));
             }
         })?;
@@ -43,13 +43,13 @@ impl StoreWorker {
         Ok(worker)
     }
 
-    /// A sender of calls, and their receiver.
+    /// A sender of calls and their receiver.
     pub(crate) fn new(most: usize) -> (Self, mpsc::Receiver<Call>) {
         let (calls, queue) = mpsc::channel(most);
         (Self { calls: Some(calls), thread: None }, queue)
     }
 
-    /// Acts on the store, and answers. The answer is an error if too many calls wait.
+    /// Runs `act` on the store, and returns its answer. The answer is an error if too many calls wait.
     pub(crate) fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut HostStore) -> T + Send + 'static,
@@ -59,7 +59,7 @@ impl StoreWorker {
         receiver
     }
 
-    /// Acts on the store; returns whether it will, which it does not if too many calls wait.
+    /// Runs `act` on the store. Returns false if it will not run because too many calls wait.
     pub(crate) fn run(&self, act: impl FnOnce(&mut HostStore) + Send + 'static) -> bool {
         let calls = self.calls.as_ref();
         let is_accepted = calls.is_some_and(|calls| calls.try_send(Box::new(act)).is_ok());
@@ -73,7 +73,7 @@ impl StoreWorker {
 impl Drop for StoreWorker {
     fn drop(&mut self) {
         self.calls = None;
-        // The last sender may be dropped by a call.
+        // A call may drop the last sender. A thread cannot wait for itself.
         if let Some(thread) = self.thread.take_if(|it| it.thread().id() != thread::current().id()) {
             _ = thread.join();
         }

@@ -7,13 +7,13 @@ use super::*;
 
 const START: Duration = Duration::ZERO;
 
-/// With small limits.
+/// An admission with small limits.
 fn admission() -> Admission {
     Admission::new(Limits { per_address: 8, startups: 20, ..Limits::default() })
 }
 
-/// Forty people behind one address, or with addresses of one /64, read the fingerprint of the host at the same
-/// time, whatever chance says.
+/// Forty people behind one address, or with addresses in one /64, read the host's fingerprint at the same
+/// time. All of them get in, whatever the random numbers.
 #[test]
 fn a_classroom_gets_in_by_default() {
     for (seed, last) in (0..50).zip([0, 1].into_iter().cycle()) {
@@ -36,8 +36,9 @@ fn a_classroom_gets_in_by_default() {
     }
 }
 
-/// The share of newcomers who log in, one a tenth of a second, each alone in a network. They take a second,
-/// while as many connections as `flood` says arrive in each tenth of it, and say nothing.
+/// The share of newcomers who log in during a flood. A newcomer arrives every tenth of a second, each alone in
+/// a network, and takes a second to log in. In each tenth of a second, `flood` connections arrive and say
+/// nothing.
 fn logged_in_during(flood: u32, address_of: impl Fn(u32) -> IpAddr) -> f64 {
     const NEWCOMERS: u32 = 238;
     let mut admission = Admission::new(Limits::default());
@@ -77,7 +78,7 @@ fn silent_connections_of_a_few_networks_keep_no_newcomer_out() {
     }
 }
 
-/// A flood that no penalty concerns, since each connection is from a network of its own.
+/// A flood without penalties, because each connection comes from a network of its own.
 #[test]
 fn a_flood_from_one_wide_network_displaces_itself() {
     let v4 = |arrival: u32| IpAddr::V4(Ipv4Addr::from_bits(0x0a00_0001 + ((arrival % 256) << 8)));
@@ -92,7 +93,7 @@ fn a_flood_from_one_wide_network_displaces_itself() {
     }
 }
 
-/// Of the networks of each width, the busiest one makes room, and its oldest connection first.
+/// At each width, the busiest network makes room. Its oldest connection goes first.
 #[test]
 fn the_oldest_connection_of_the_busiest_network_makes_room() {
     let limits = Limits { startups: 8, ..Limits::default() };
@@ -100,7 +101,7 @@ fn the_oldest_connection_of_the_busiest_network_makes_room() {
     let addresses = [
         "192.0.2.1",
         "198.51.100.1",
-        // Four of a /48, of which three are of a /56, of which two are of a /64.
+        // Four in one /48; three of them in one /56; two of these in one /64.
         "2001:db8:1:100::1",
         "2001:db8:1:200::1",
         "2001:db8:1:201::1",
@@ -113,7 +114,8 @@ fn the_oldest_connection_of_the_busiest_network_makes_room() {
     let ids = addresses.map(|address| arrive(address).id);
     let displaced = ["192.0.3.1", "10.0.0.1", "10.1.0.1", "10.2.0.1"];
     let displaced = displaced.map(|address| arrive(address).displaced);
-    // Three networks of the first width have two then; one of them has both in a /24; then the oldest goes.
+    // Then three networks of the first width have two connections each. One of them has both in a /24 and goes
+    // next. After that, the oldest connection goes.
     assert_eq!(displaced, [4, 3, 6, 0].map(|index| Some(ids[index])));
 }
 
@@ -129,7 +131,8 @@ fn who_was_displaced_does_not_log_in() {
     assert_eq!((admission.visits.len(), admission.waiting.len()), (1, 0));
 }
 
-/// Those who have logged in count apart from those who have not, who may be nobody.
+/// Visitors who have logged in are counted apart from connections that have not, because the latter may be
+/// nobody.
 #[test]
 fn silent_connections_take_no_place_of_a_player() {
     let limits = Limits { connections: 2, startups: 3, ..Limits::default() };
@@ -172,7 +175,7 @@ fn a_refusal_names_its_limit_in_one_sentence() {
     ] {
         let sentence = refusal.sentence(&limits);
         assert!(sentence.contains(part) && sentence.ends_with('.'), "{sentence}");
-        // More than this, OpenSSH does not print.
+        // OpenSSH prints no more than this.
         assert!(sentence.len() < 400 && sentence.lines().count() == 1, "{sentence}");
     }
 }
@@ -216,7 +219,7 @@ fn one_key_has_three_connections_from_anywhere() {
     assert_eq!(admission.log_in(next, Some(key(7)), START), Ok(()));
 }
 
-/// A network that floods is refused nearly always, and forgiven in time.
+/// A network that floods is nearly always refused, and is forgiven in time.
 #[test]
 fn failures_are_penalised_and_forgotten() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
@@ -237,7 +240,7 @@ fn failures_are_penalised_and_forgotten() {
     assert_eq!(tries(&mut admission, Outcome::Served, later), 1000);
 }
 
-/// Behind one address are an attacker and four players, who log in now and then.
+/// An attacker and four players share one address. The players log in now and then.
 #[test]
 fn a_player_beside_an_attacker_gets_in() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
@@ -292,7 +295,7 @@ fn acts() -> impl Strategy<Value = Vec<Act>> {
 }
 
 proptest! {
-    /// Whatever happens, in whatever order, no count passes its limit, and all return to nothing.
+    /// Whatever happens, in whatever order, no count exceeds its limit, and all counts return to zero.
     #[test]
     fn counts_are_exact(acts in acts(), seed: u64) {
         let (mut admission, mut chance) = (admission(), SplitMix64::new(seed));
@@ -328,7 +331,7 @@ proptest! {
         prop_assert!(admission.per_network.is_empty());
     }
 
-    /// The answers depend on the time, the chance and what happened, and on nothing else.
+    /// The answers depend only on the time, the random numbers and the events.
     #[test]
     fn the_same_seed_gives_the_same_answers(seed: u64) {
         let run = || {
@@ -348,7 +351,7 @@ proptest! {
     }
 }
 
-/// The networks that have failed longest ago are dropped first.
+/// The networks whose failures are oldest are dropped first.
 #[test]
 fn memory_for_networks_is_bounded() {
     let mut penalties = Penalties::new(20, Duration::from_secs(1000));

@@ -1,7 +1,7 @@
-//! `cellcaster-server admin`: what an operator asks a host.
+//! `cellcaster-server admin`: an operator's requests to a host.
 //!
-//! Bans are written to the store, whether a server runs or not. A server that runs then ends the
-//! sessions to which they apply.
+//! Bans are written to the store, whether a server runs or not. A running server then ends the
+//! sessions that they apply to.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -19,7 +19,7 @@ use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
 use cellcaster::rng;
 
-/// Does the action, and writes what came of it.
+/// Carries out the action, and prints the result.
 pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
@@ -57,15 +57,15 @@ fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String
     text
 }
 
-/// A server that runs with a data folder.
+/// The server that runs with a data folder.
 struct RunningHost<'a> {
     folder: &'a Path,
-    /// What it has remarked of its answers.
+    /// The remarks in its answers, each once.
     remarks: Vec<String>,
 }
 
 impl RunningHost<'_> {
-    /// Asks it.
+    /// Sends a request to the server, and collects the remarks in the answer.
     fn answers(&mut self, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
         match ask(self.folder, request)? {
             AdminReply::AllHosts { reply, remarks } => {
@@ -78,7 +78,7 @@ impl RunningHost<'_> {
         }
     }
 
-    /// A list as a table.
+    /// Requests a list, and returns it as a table.
     fn lists(&mut self, request: &AdminRequest) -> Result<String, Error> {
         Ok(match self.answers(request)? {
             AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
@@ -103,7 +103,7 @@ impl RunningHost<'_> {
         })
     }
 
-    /// How many visitors a request concerns.
+    /// Sends a request, and returns the number of visitors that it affects.
     fn counts(&mut self, request: &AdminRequest) -> Result<usize, Error> {
         match self.answers(request)? {
             AdminReply::Count(count) => Ok(count),
@@ -159,7 +159,7 @@ fn of_host(row: &HostInfo) -> Vec<String> {
     vec![row.host.clone(), row.address.clone(), version, visitors, seen, maps, rooms]
 }
 
-/// The number of maps, and a hash by which an operator sees that two hosts have the same ones.
+/// The number of maps, and a hash that shows an operator whether two hosts have the same maps.
 fn summary_of_maps(keys: &[String]) -> String {
     let bytes = keys.iter().flat_map(|key| key.bytes().chain([b'\n']));
     match keys.len() {
@@ -168,7 +168,7 @@ fn summary_of_maps(keys: &[String]) -> String {
     }
 }
 
-/// Bans, and ends the sessions to which the ban applies.
+/// Bans a target, and ends the sessions that the ban applies to.
 fn ban(
     host: &mut RunningHost<'_>,
     database: &Database,
@@ -217,7 +217,7 @@ fn unban(database: &Database, target: &Target) -> Result<String, Error> {
     Ok(format!("{} may come back\n", ended.join(" and ")))
 }
 
-/// The bans in force.
+/// Lists the bans in force.
 fn bans(database: &Database) -> Result<String, Error> {
     let mut store = database.open_to_read()?;
     let now = UnixTime::now();
@@ -239,7 +239,7 @@ fn bans(database: &Database) -> Result<String, Error> {
     ))
 }
 
-/// The target of a ban; for a name, also the key of the account that has it.
+/// The target of a ban, and for a name also the key of the account with that name.
 fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
     let target = target.to_ban().map_err(Error::mistake)?;
     let account = match &target {
@@ -274,20 +274,19 @@ fn remove(
     Ok(Some(removed))
 }
 
-/// The store, which is not made if there is none.
+/// Opens the store. Does not create it if there is none.
 fn open(database: &Database) -> Result<HostStore, Error> {
     database.open_to_read()?;
     database.open().map_err(failed)
 }
 
-/// Who bans: the user who calls, also through `sudo`.
+/// The author of a ban: the user who runs the command, also through `sudo`.
 fn operator() -> String {
     let names = ["SUDO_USER", "USER", "LOGNAME"].into_iter().filter_map(|name| env::var(name).ok());
     names.into_iter().find(|name| !name.is_empty()).unwrap_or_else(|| "console".to_owned())
 }
 
-/// Rows below a line of titles, in columns as wide as they need. Characters that a terminal would obey
-/// are replaced.
+/// Rows below a line of titles, in columns as wide as necessary. Control characters are replaced.
 fn table(titles: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let titles = titles.iter().map(|&title| title.to_owned()).collect();
     let mut rows: Vec<Vec<String>> = iter::once(titles).chain(rows).collect();

@@ -162,7 +162,7 @@ pub(crate) enum AdminAction {
     Drain,
 }
 
-/// The player whom an action concerns, named in one of three ways.
+/// The player that an action affects, named in one of three ways.
 #[derive(Args, Debug)]
 #[group(id = "target", required = true, multiple = false)]
 pub(crate) struct Player {
@@ -177,7 +177,7 @@ pub(crate) struct Player {
 }
 
 impl Player {
-    /// The target, which `session` names if nothing else does.
+    /// The target. `session` names it if nothing else does.
     pub(crate) fn target(self, session: Option<SessionId>) -> Target {
         let Self { name, key, address } = self;
         name.map(Target::Name)
@@ -232,7 +232,7 @@ pub(crate) struct Replay {
     pub(crate) maps: Option<PathBuf>,
 }
 
-/// The address of a cluster, which may have a password.
+/// The address of a cluster, which may contain a password.
 #[derive(Clone)]
 struct ClusterAddress(String);
 
@@ -249,7 +249,7 @@ impl ClusterAddress {
 }
 
 impl fmt::Debug for ClusterAddress {
-    /// Without the password.
+    /// Leaves out the address, because it may contain a password.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ClusterAddress").finish_non_exhaustive()
     }
@@ -287,7 +287,7 @@ fn difficulty(text: &str) -> Result<Difficulty, Takes> {
     Difficulty::named(text).ok_or(Takes("easy, normal or hard"))
 }
 
-/// The time of a text such as `7d`, up to a hundred years.
+/// Parses a time such as `7d`, up to a hundred years.
 fn time(text: &str) -> Result<Duration, Takes> {
     const LONGEST: u64 = 100 * 365 * 24 * 60 * 60;
     let seconds = || {

@@ -1,6 +1,6 @@
-//! The store of a host: in a folder, or at an address.
+//! The location of a host's store: a folder or an address.
 //!
-//! `--store` names it, or `$CELLCASTER_STORE`, or else it is in the folder for data. The variable keeps a
+//! `--store` names it, or otherwise `$CELLCASTER_STORE`. The default is the folder for data. The variable keeps a
 //! password out of the list of processes.
 
 use std::env;
@@ -14,12 +14,12 @@ use cellcaster::fault::printable_path;
 
 use crate::accounts::{HostStore, StoreFailure};
 
-/// Where the store of a host is.
+/// The location of a host's store.
 #[derive(Clone, PartialEq)]
 pub(crate) enum Database {
-    /// In a folder.
+    /// A folder.
     Folder(PathBuf),
-    /// At an address of PostgreSQL, which may have a password.
+    /// An address of PostgreSQL, which may contain a password.
     Address(String),
 }
 
@@ -30,13 +30,13 @@ impl Database {
         if text.is_empty() { Err(TAKES) } else { Ok(Self::of(text.into())) }
     }
 
-    /// The database that `option` names, or else the environment.
+    /// The database that `option` names, or otherwise the environment.
     pub(crate) fn named(option: Option<Self>) -> Option<Self> {
         let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
         option.or_else(|| word().map(Self::of))
     }
 
-    /// Opens the store, which is made if there is none.
+    /// Opens the store, or creates it if there is none.
     pub(crate) fn open(&self) -> Result<HostStore, StoreFailure> {
         match self {
             Self::Folder(folder) => HostStore::open(folder),
@@ -44,7 +44,8 @@ impl Database {
         }
     }
 
-    /// As [`open`](Self::open), but goes on with what can be read of a damaged file. Returns a sentence about it then.
+    /// Like [`open`](Self::open), but recovers the readable rows of a damaged file, and then also returns a sentence
+    /// about it.
     pub(crate) fn open_or_salvage(&self) -> Result<(HostStore, Option<String>), StoreFailure> {
         match self {
             Self::Folder(folder) => HostStore::open_or_salvage(folder),
@@ -52,7 +53,7 @@ impl Database {
         }
     }
 
-    /// Opens a store that exists, to read from it.
+    /// Opens an existing store to read from it.
     pub(crate) fn open_to_read(&self) -> Result<HostStore, Error> {
         let store = match self {
             Self::Folder(folder) => HostStore::open_to_read(folder),
@@ -79,7 +80,7 @@ impl Database {
 }
 
 impl fmt::Debug for Database {
-    /// Without what may be secret.
+    /// Leaves out an address, because it may contain a password.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Folder(folder) => f.debug_tuple("Folder").field(folder).finish(),
@@ -88,7 +89,7 @@ impl fmt::Debug for Database {
     }
 }
 
-/// The error of a store that exists.
+/// The error for a failure of an existing store.
 #[expect(clippy::needless_pass_by_value, reason = "`map_err` passes a value")]
 pub(crate) fn failed(failure: StoreFailure) -> Error {
     Error::machine(failure.to_string())

@@ -1,4 +1,4 @@
-//! `cellcaster-server replay`: a recorded room is played again, and its rounds are told.
+//! `cellcaster-server replay`: plays a recorded room again, and prints its rounds.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,10 +13,10 @@ use crate::rooms::maps::HostMaps;
 use crate::rooms::replayed::{MOST_RECORDED_BYTES, replayed};
 use crate::rooms::room::Catalog;
 
-/// Writes a line for each round of the recording, and its standings.
+/// Prints each round of the recording with its standings and its checksum.
 ///
 /// # Errors
-/// If the file is no recording of a room, or is damaged or too long.
+/// If the file is not a recording of a room, or is damaged or too long.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let path = options.file.display().to_string().replace(char::is_control, "?");
     let cannot = |reason: &dyn std::fmt::Display| {
@@ -36,7 +36,7 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let rounds = replayed(&text, &catalog).map_err(|fault| cannot(&fault))?;
     let mut lines = String::new();
     for round in rounds {
-        // Memory accepts every byte.
+        // Writing to a string cannot fail.
         let (mode, level) = (round.mode.title(), catalog.title(&round.level));
         let time = of_steps(round.steps);
         _ = writeln!(lines, "round {}: {mode} in {level}, {time}", round.round);

@@ -14,13 +14,13 @@ use super::arguments::{Scores, ScoresFormat};
 use super::host_store::{Database, failed};
 use crate::accounts::{HostStore, LevelBoard, LevelScore, Name, StoreFailure};
 
-/// The entries of a board that are listed.
+/// The most entries that are listed for a board.
 const MOST: usize = 100;
 
-/// Boards with their entries.
+/// Boards, each with its entries.
 type Boards = Vec<(LevelBoard, Vec<LevelScore>)>;
 
-/// Writes the boards that `options` request.
+/// Prints the boards that `options` request.
 pub(crate) fn run(options: &Scores) -> Result<(), Error> {
     let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
     let database =
@@ -54,7 +54,7 @@ fn boards(store: &mut HostStore, options: &Scores) -> Result<Boards, StoreFailur
 fn table((board, scores): &(LevelBoard, Vec<LevelScore>)) -> String {
     let mut text = format!("{}, {}\n", board.level(), board.difficulty().name());
     let mut push = |place: &str, name: &str, time: &str, rank: &str| {
-        // A name may be wider than it has characters.
+        // A name can take more columns than it has characters.
         let blanks = " ".repeat(Name::MOST_COLUMNS.saturating_sub(name.width()));
         writeln!(text, "{place:>4}  {name}{blanks}  {time:<8}  {rank}")
             .expect("a string takes any text");

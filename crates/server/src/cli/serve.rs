@@ -74,7 +74,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             host.cluster = Some(cluster.map_err(Error::mistake)?);
         }
         let host = GameHost::start(host);
-        // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
+        // Creating the rooms takes a moment. Visitors and operators are answered at once.
         let text = invitation(address, &fingerprint);
         io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
         let mut services = JoinSet::new();
@@ -94,17 +94,17 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             () = server.run(host, signals.first()) => ending.await,
             () = signals.second() => {}
         }
-        // Else the process might end before the socket is removed.
+        // Otherwise the process might end before the socket is removed.
         services.shutdown().await;
         logging::ended();
         Ok(())
     });
-    // After a second signal, nothing is waited for.
+    // After a second signal, wait for nothing.
     runtime.shutdown_background();
     ended
 }
 
-/// The store. A damaged one is an error unless the operator accepts that it may be empty.
+/// Opens the store. A damaged store is an error unless the operator accepts that it may be empty.
 fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
     if accepts_empty {
@@ -114,7 +114,7 @@ fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Err
     }
 }
 
-/// What was opened, after a warning if it was damaged.
+/// Returns the opened value, and warns first if it was damaged.
 fn warned<T>((opened, damage): (T, Option<String>)) -> T {
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
@@ -122,8 +122,8 @@ fn warned<T>((opened, damage): (T, Option<String>)) -> T {
     opened
 }
 
-/// The address of the bus of the cluster that `options` name, with connections to the database of all hosts: one for leases
-/// and one for visits, so that they wait for nothing else.
+/// The address of the cluster's bus that `options` name, and two connections to the database of all hosts: one for
+/// leases and one for visits, so that neither waits for other calls.
 fn cluster(options: &Serve, store: &Database) -> Result<Option<(String, [HostStore; 2])>, Error> {
     let Some(address) = options.cluster() else { return Ok(None) };
     let Database::Address(store) = store else {
@@ -139,8 +139,8 @@ fn cluster(options: &Serve, store: &Database) -> Result<Option<(String, [HostSto
     Ok(Some((address, [open()?, open()?])))
 }
 
-/// What this host tells the others. Its name is the name of this machine with the port, which operators know, and a
-/// number that no other start of a host has.
+/// The information about this host for the others. The name consists of the machine's name with the port, which
+/// operators know, and a number that is unique to this start.
 fn notice(address: SocketAddr) -> HostNotice {
     #[cfg(unix)]
     let machine =
@@ -156,8 +156,8 @@ fn notice(address: SocketAddr) -> HostNotice {
     }
 }
 
-/// The socket for `cellcaster-server admin`. Without one the server runs, too, as in a folder with a name
-/// that is too long for a socket.
+/// The socket for `cellcaster-server admin`. The server also runs without one, for example if the name of the folder is
+/// too long for a socket.
 #[cfg(unix)]
 fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
     match AdminSocket::bind(folder) {
@@ -182,7 +182,7 @@ fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
     Error::mistake(format!("{address} can't be used: {error}"))
 }
 
-/// What people type to play.
+/// The lines that tell people how to play.
 fn invitation(address: SocketAddr, fingerprint: &str) -> String {
     let host = match address.ip() {
         ip if ip.is_unspecified() => "HOST".to_owned(),
@@ -201,14 +201,14 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
     )
 }
 
-/// Where the configuration comes from: the file and the maps that it names, read at the start; the file again at each
-/// hang-up.
+/// The sources of the configuration. The file and the maps that it names are read at the start, and the file again at
+/// each hang-up.
 struct Configuration {
     /// `None` if the system has no folder for it.
     file: Option<PathBuf>,
-    /// Whether the file was named, and so has to exist.
+    /// `true` if the command line names the file, which must then exist.
     is_named: bool,
-    /// What the command line says, which goes before the file.
+    /// From the command line, like the next two fields. They take precedence over the file.
     listen: Option<SocketAddr>,
     maps_folder: Option<PathBuf>,
     recordings: Option<PathBuf>,
@@ -217,7 +217,7 @@ struct Configuration {
 }
 
 impl Configuration {
-    /// Reads the file that `options` name, or else the default one, and the maps.
+    /// Reads the file that `options` name, or otherwise the default file, and the maps.
     fn begin(options: &Serve) -> Result<(Self, Config), Error> {
         let mut configuration = Self {
             file: options.config.clone().or_else(|| configuration_file("serve.toml")),
@@ -237,7 +237,7 @@ impl Configuration {
         Ok((configuration, config))
     }
 
-    /// Reads the file again at each hang-up. With a fault in it, the configuration stays as it is.
+    /// Reads the file again at each hang-up. If the file has a fault, the configuration stays unchanged.
     async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
         loop {
             hangups.next().await;
@@ -255,7 +255,7 @@ impl Configuration {
     fn read_again(&self) -> Result<Config, Error> {
         let text = self.text()?;
         let config = self.parse(&text)?;
-        // Other maps than those that were read have no effect until the next start.
+        // A change of the maps has no effect until the next start.
         self.check_levels(&text)?;
         Ok(config)
     }
@@ -272,7 +272,7 @@ impl Configuration {
         Ok(Config::check_levels(text, &self.file_name(), &self.maps.level_names())?)
     }
 
-    /// The content of the file; an empty one if the default file does not exist.
+    /// The content of the file; empty if the default file does not exist.
     fn text(&self) -> Result<String, Error> {
         let Some(file) = &self.file else { return Ok(String::new()) };
         match private::read_text(file, LARGEST) {
@@ -297,29 +297,29 @@ fn refused(error: MapsError) -> Error {
     }
 }
 
-/// The signals of this process, caught.
+/// The caught signals of this process.
 #[derive(Default)]
 struct Signals {
-    /// How often the server was asked to end.
+    /// How many times the server was asked to end.
     count: watch::Sender<u32>,
     drain: Arc<Notify>,
 }
 
-/// Hang-ups, one at a time. Elsewhere than on Unix there are none.
+/// Hang-ups, one at a time. Only Unix has them.
 struct Hangups {
     #[cfg(unix)]
     signal: tokio::signal::unix::Signal,
 }
 
 impl Signals {
-    /// Catches signals from now on. Call it within a runtime.
+    /// Starts to catch signals. Call this within a runtime.
     fn catch() -> io::Result<Self> {
         let signals = Self::default();
         listen(&signals.count)?;
         Ok(signals)
     }
 
-    /// What an operator notifies to end the server as a signal does.
+    /// The handle that an operator notifies to end the server as a signal does.
     fn drain(&self) -> Arc<Notify> {
         self.drain.clone()
     }
@@ -335,7 +335,7 @@ impl Signals {
         }
     }
 
-    /// Ready when a signal asks once more.
+    /// Ready when a signal asks a second time.
     fn second(&self) -> impl Future<Output = ()> + Send + use<> {
         self.asked(2)
     }
@@ -360,7 +360,7 @@ fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
     Ok(())
 }
 
-/// Ctrl-C alone.
+/// Catches only Ctrl-C.
 #[cfg(not(unix))]
 fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
     let count = count.clone();
@@ -373,7 +373,7 @@ fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
 }
 
 impl Hangups {
-    /// Catches them from now on. Call it within a runtime.
+    /// Starts to catch hang-ups. Call this within a runtime.
     fn catch() -> io::Result<Self> {
         #[cfg(unix)]
         use tokio::signal::unix::{SignalKind, signal};
@@ -383,7 +383,7 @@ impl Hangups {
         })
     }
 
-    /// Waits for the next one.
+    /// Waits for the next hang-up.
     async fn next(&mut self) {
         #[cfg(unix)]
         if self.signal.recv().await.is_some() {

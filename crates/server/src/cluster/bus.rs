@@ -2,15 +2,15 @@
 //!
 //! # Rules
 //!
-//! - **A room has a log.** A message is appended only if the writer names the number of the newest message
-//!   (compare and append). So a sequencer that was replaced cannot write, however late it notices.
+//! - **A room has a log.** A message is appended only if the writer states the number of the newest message (compare
+//!   and append). So a sequencer that was replaced cannot write, however late it notices.
 //! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
-//! - **A request reaches all present hosts**, or some of them; each answers for itself.
-//! - **A value has a key and a revision.** A host replaces only the revision that it saw last.
+//! - **A request reaches all present hosts**, or only some of them. Each host answers for itself.
+//! - **A value has a key and a revision.** A host can replace only the revision that it saw last.
 //!
-//! Rejected: a `JetStream` consumer for each room and host. It is state in the server, and notices a loss after seconds.
-//! Instead, the sequencer broadcasts the messages that it has appended, and a host reads the log only if a number is
-//! missing.
+//! Rejected: a `JetStream` consumer for each room and host. It is state in the server, and notices a loss after
+//! seconds. Instead, the sequencer broadcasts the messages that it has appended, and a host reads the log only if a
+//! number is missing.
 
 use std::pin::Pin;
 
@@ -21,8 +21,8 @@ use crate::rooms::summary::RoomId;
 
 /// The bus that the hosts of a cluster share.
 pub(crate) trait Bus: Send + Sync {
-    /// Appends a message to the log of a room, whose last message is number `last`, 0 for none; returns its
-    /// number.
+    /// Appends a message to the log of a room. `last` is the number of the log's last message, 0 for none. Returns the
+    /// number of the new message.
     fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
 
     /// The first message of a room's log after number `after`, with its number.
@@ -37,23 +37,23 @@ pub(crate) trait Bus: Send + Sync {
     /// Sends a message to all hosts that have subscribed to the room.
     fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()>;
 
-    /// The broadcasts to a room from now on.
+    /// Receives the broadcasts to a room from now on.
     fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
-    /// Asks all hosts, this one too; returns their answers.
+    /// Asks all hosts, including this one. Returns their answers.
     fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
-    /// The requests to all hosts from now on.
+    /// Receives the requests to all hosts from now on.
     fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>>;
 
     /// A number that was never returned before, on any host.
     fn next_number(&self) -> Answer<'_, u32>;
 
-    /// Replaces the value that this host has last read or put. If another host has put a value since, this is refused,
-    /// and the next call is not.
+    /// Replaces the value that this host last read or put. If another host has put a value since, this call is refused,
+    /// but the next one is not.
     fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
 
-    /// Keeps a value if there is none.
+    /// Stores a value if there is none.
     fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
 
     /// The value of a key.
@@ -62,7 +62,7 @@ pub(crate) trait Bus: Send + Sync {
     /// Removes the value of a key.
     fn remove(&self, key: Key) -> Answer<'_, ()>;
 
-    /// The records of all rooms, then their changes: `None` for a room that is closed.
+    /// The records of all rooms, and then their changes: `None` for a room that is closed.
     fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
 }
 
@@ -70,19 +70,19 @@ pub(crate) trait Bus: Send + Sync {
 #[derive(Debug)]
 pub(crate) struct HostRequest {
     pub(crate) bytes: Vec<u8>,
-    /// Dropped, it answers nothing.
+    /// If this is dropped, the request gets no answer.
     pub(crate) reply: oneshot::Sender<Vec<u8>>,
 }
 
-/// The answer of a bus, which comes in bounded time.
+/// The answer of a bus, which arrives in bounded time.
 pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
 
 /// The reason why a call failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BusFault {
-    /// The log goes on after the message that was named, or the key has a value. Nothing was kept.
+    /// The log continues after the stated message, or the key has another value. Nothing was stored.
     Refused,
-    /// There is no answer. The value may be kept or not, even later.
+    /// There is no answer. The value may be stored or not, even later.
     Unknown,
 }
 
@@ -95,6 +95,6 @@ pub(crate) enum Key {
     Checkpoint(RoomId),
     /// The number of a standing room.
     Standing(String),
-    /// Where the player with a key is: the room and the member.
+    /// The place of the player with a key: the room and the member.
     Place(AccountKey),
 }

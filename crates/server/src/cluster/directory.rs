@@ -1,18 +1,18 @@
-//! The directory of a cluster's rooms, on one of its hosts: it lists them, and starts a [`Replica`] of each that
-//! somebody enters here.
+//! The directory of a cluster's rooms on one of its hosts. It lists the rooms, and starts a [`Replica`] of each room
+//! that somebody enters here.
 //!
 //! # Rules
 //!
-//! - Every host knows the record of every room. The number of a room is never used again. A room takes no steps
-//!   until somebody enters it.
-//! - A standing room is made by the first host that has it in its configuration.
-//!   A host lists the standing rooms of its own configuration, and others while somebody is in them. Their records stay:
-//!   another host may have them in its configuration.
+//! - Every host knows the record of every room. The number of a room is never used again. A room takes no steps until
+//!   somebody enters it.
+//! - The first host with a standing room in its configuration creates it. A host lists the standing rooms of its own
+//!   configuration, and other standing rooms while somebody is in them. Their records stay, because another host may
+//!   have them in its configuration.
 //! - If the record of a running room has not changed for [`ABANDONED`], the room has lost its host. Any other host then
 //!   runs the room until it is empty.
-//! - The bus has the room and the member of each player with a key, so that any host finds them again. The entry is put
-//!   when the player joins, and removed when they leave; otherwise the room alone ends a member. So the entry may be out
-//!   of date, and the room decides.
+//! - The bus stores the room and the member of each player with a key, so that any host finds them again. The entry is
+//!   put when the player joins, and removed when they leave. Otherwise only the room ends a member. So the entry may be
+//!   out of date, and the room decides.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
@@ -35,18 +35,18 @@ use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomWish};
 use cellcaster::rng;
 
-/// The time without a change after which the record of a running room says that its host is gone.
+/// How long the record of a running room may stay unchanged before its host counts as gone.
 const ABANDONED: Duration = Duration::from_secs(15);
 /// The time between two rounds of maintenance.
 const MAINTENANCE_PERIOD: Duration = Duration::from_secs(5);
 /// The most requests to be a member that wait in one room.
 const MOST_REQUESTS: usize = 64;
-/// The time in which rooms are left to other hosts.
+/// The time limit for leaving the rooms to other hosts.
 const ENDING: Duration = Duration::from_secs(2);
-/// How often a request is tried if the replica ends at that moment.
+/// How many times a request is tried, because a replica may end at that moment.
 const TRIES: usize = 3;
 
-/// The rooms that a host shares. Clones are the same.
+/// The rooms that a host shares with other hosts. Clones refer to the same rooms.
 #[derive(Clone)]
 pub(crate) struct SharedRooms(Arc<Inner>);
 
@@ -55,14 +55,14 @@ struct Inner {
     /// The directory of rooms that lobbies show.
     rooms: Rooms,
     standing: Mutex<Vec<RoomWish>>,
-    /// The numbers of those rooms.
+    /// The numbers of the standing rooms.
     own_standing: Mutex<BTreeSet<RoomId>>,
     records: Mutex<BTreeMap<RoomId, Known>>,
-    /// Locked while a replica is made, so that a room has one at most.
+    /// Locked while a replica is created, so that a room has at most one.
     replicas: tokio::sync::Mutex<BTreeMap<RoomId, RoomHandle>>,
 }
 
-/// A record, and when it was received.
+/// A record, and the time when it was received.
 struct Known {
     record: Record,
     since: Instant,
@@ -79,7 +79,7 @@ struct RoomHandle {
 #[derive(Clone, Debug)]
 pub(crate) struct Entrant {
     pub(crate) name: Line,
-    /// The key of their account, with which they may return; `None` for a guest.
+    /// The key of their account, with which they can return; `None` for a guest.
     pub(crate) key: Option<AccountKey>,
 }
 
@@ -145,7 +145,7 @@ impl SharedRooms {
         &self.0.context.visits
     }
 
-    /// Announces this host, again and again.
+    /// Announces this host again and again.
     async fn announce(self) {
         let mut periods = interval(ANNOUNCED);
         while !*self.0.context.ending.borrow() {
@@ -164,14 +164,14 @@ impl SharedRooms {
         Ok(place)
     }
 
-    /// The room and the member in which a player's last host may have left them.
+    /// The room and the member in which a player's previous host may have left them.
     pub(crate) async fn place_of(&self, key: AccountKey) -> Option<(RoomId, MemberId)> {
         let bytes = self.0.context.bus.get(Key::Place(key)).await.ok()??;
         let (id, member) = str::from_utf8(&bytes).ok()?.split_once(' ')?;
         Some((RoomId(id.parse().ok()?), MemberId::parse(member)?))
     }
 
-    /// Takes a player back to the room and the member.
+    /// Brings a player back to the room and the member.
     pub(crate) async fn resume(
         &self,
         key: AccountKey,
@@ -186,14 +186,14 @@ impl SharedRooms {
 
     /// Forgets the place of a player who has left.
     pub(crate) async fn forget_place(&self, key: AccountKey) {
-        // Otherwise the room says later that they have left.
+        // If this fails, the room says later that they have left.
         _ = self.0.context.bus.remove(Key::Place(key)).await;
     }
 
     async fn note_place(&self, key: AccountKey, id: RoomId, member: MemberId) {
         let bus = &self.0.context.bus;
         let text = format!("{id} {member}");
-        // The first call is refused if another host has put the last entry. Without an entry, they cannot return.
+        // The first call is refused if another host has put the last entry. Without an entry, the player cannot return.
         for _ in 0..2 {
             if bus.put(Key::Place(key), text.clone().into_bytes()).await != Err(BusFault::Refused) {
                 return;
@@ -236,7 +236,7 @@ impl SharedRooms {
         Err(RoomRefusal::Gone)
     }
 
-    /// The handle of a room's replica, which is started if this host has none.
+    /// The handle of a room's replica. Starts the replica if this host has none.
     async fn handle(&self, id: RoomId) -> Result<RoomHandle, RoomRefusal> {
         let Inner { context, replicas, .. } = &*self.0;
         if *context.ending.borrow() {
@@ -272,7 +272,7 @@ impl SharedRooms {
     }
 
     fn note(&self, id: RoomId, bytes: Option<&[u8]>) {
-        // A record that cannot be read is of a room of another version, which does not exist for this host.
+        // A record that cannot be read belongs to a room of another version, which does not exist for this host.
         let record = bytes.and_then(|bytes| Record::parse(bytes).ok());
         let now = Instant::now();
         locked(&self.0.records, |records| match record {
@@ -282,8 +282,8 @@ impl SharedRooms {
         self.show();
     }
 
-    /// Makes the standing rooms, forgets replicas that have ended, and runs rooms that have lost their host,
-    /// again and again.
+    /// Creates the standing rooms, forgets replicas that have ended, and runs rooms that have lost their host, again
+    /// and again.
     async fn maintain(self) {
         let mut periods = interval(MAINTENANCE_PERIOD);
         loop {
@@ -301,7 +301,7 @@ impl SharedRooms {
         }
     }
 
-    /// Makes the standing rooms that are missing, and notes the ones of the configuration.
+    /// Creates the missing standing rooms, and notes which ones the configuration has.
     async fn make_standing(&self) {
         let standing = locked(&self.0.standing, |standing| standing.clone());
         let (mut own, mut is_known) = (BTreeSet::new(), true);
@@ -326,9 +326,9 @@ impl SharedRooms {
         self.show();
     }
 
-    /// Shows lobbies the rooms.
+    /// Shows the rooms to lobbies.
     fn show(&self) {
-        // Under the lock, so that an older list never replaces a newer one.
+        // The lock ensures that an older list never replaces a newer one.
         locked(&self.0.records, |records| {
             let own = locked(&self.0.own_standing, |own| own.clone());
             let summaries = records.iter().filter_map(|(id, known)| {
@@ -341,14 +341,14 @@ impl SharedRooms {
         });
     }
 
-    /// Makes a room, if it is missing; returns its number.
+    /// Creates a standing room if it is missing. Returns its number.
     async fn make_standing_room(
         &self,
         number: usize,
         header: Header,
     ) -> Result<Option<RoomId>, BusFault> {
         let bus = &self.0.context.bus;
-        // Rooms of another version do not exist for this host.
+        // The version is part of the key, because rooms of another version do not exist for this host.
         let Header { level, mode, difficulty, .. } = &header;
         let text = format!("{} {level} {} {}", version(), mode.name(), difficulty.name());
         let hash = rng::hash(number as u64, text.bytes().map(u64::from));
@@ -376,7 +376,7 @@ impl SharedRooms {
     fn abandoned(&self) -> Vec<RoomId> {
         let now = Instant::now();
         let catalog = &self.0.context.catalog;
-        // A host that does not have the level leaves the room to others.
+        // A host without the level leaves the room to other hosts.
         let is_abandoned = |known: &Known| {
             known.record.is_running
                 && now.duration_since(known.since) >= ABANDONED
@@ -388,7 +388,7 @@ impl SharedRooms {
         })
     }
 
-    /// The header of a new room. `None` if there is no such level.
+    /// The header of a new room; `None` if there is no such level.
     fn header(&self, wish: &RoomWish) -> Option<Header> {
         let catalog = &self.0.context.catalog;
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);

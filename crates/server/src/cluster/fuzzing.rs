@@ -12,13 +12,13 @@ use crate::accounts::HostStore;
 use crate::rooms::room::{Catalog, Entry, Header, Mode};
 use cellcaster::world::Difficulty;
 
-/// Read once: it takes longer than most inputs.
+/// Read once, because that takes longer than most inputs.
 static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::builtin()));
 
-/// The time of a lease.
+/// The duration of a lease.
 const LEASE: Duration = Duration::from_secs(5);
 
-/// A room on a host, which may become its sequencer.
+/// A room on a host that may become its sequencer.
 pub struct SharedRoom {
     state: RoomState,
     sequencer: Option<ClusterSequencer>,
@@ -38,7 +38,7 @@ impl SharedRoom {
         Self::of(Record::new(header, false)).expect("the level is built in")
     }
 
-    /// The room of a record; `None` if the bytes are no record, or one of an unknown level.
+    /// The room of a record; `None` if the bytes are not a record, or if its level is unknown.
     pub fn of_record(bytes: &[u8]) -> Option<Self> {
         Self::of(Record::parse(&versioned(bytes)).ok()?)
     }
@@ -53,13 +53,13 @@ impl SharedRoom {
         Self { state, sequencer: None, record, leases, now }
     }
 
-    /// The room of its own checkpoint, with another head.
+    /// Restores the room from its own checkpoint, with another head.
     ///
     /// # Errors
-    /// Why it is refused.
+    /// The reason why the checkpoint is refused.
     ///
     /// # Panics
-    /// If the restored room has a checkpoint that is refused.
+    /// If a checkpoint of the restored room is refused.
     pub fn restored(self, head: &[u8]) -> Result<Self, String> {
         let bytes = self.state.checkpoint();
         let mut input = reader(&bytes).expect("it has the versions");
@@ -70,14 +70,15 @@ impl SharedRoom {
         Ok(Self::with(state, self.record))
     }
 
-    /// A message of the log, without the versions.
+    /// Reads a message of the log, without the versions.
     pub fn read(&mut self, bytes: &[u8]) {
         let Ok(message) = LogMessage::parse(&versioned(bytes)) else { return };
         assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
         self.apply(self.state.number + 1, &message);
     }
 
-    /// A message of another sequencer with these entries, and the numbers that the room expects.
+    /// Applies a message of another sequencer with these entries, and with the numbers that the
+    /// room expects.
     pub fn follow(&mut self, steps: u64, entries: &str) {
         let message = LogMessage {
             epoch: self.state.epoch,
@@ -92,7 +93,7 @@ impl SharedRoom {
         }
     }
 
-    /// A broadcast, without the versions.
+    /// Receives a broadcast, without the versions.
     pub fn hear(&mut self, bytes: &[u8]) {
         let Ok(message) = PeerMessage::parse(&versioned(bytes)) else { return };
         assert_eq!(PeerMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
@@ -115,7 +116,7 @@ impl SharedRoom {
         }
     }
 
-    /// Has the host write a message of that many steps, as the sequencer.
+    /// Makes the host write a message of that many steps, as the sequencer.
     ///
     /// # Panics
     /// If the message does not read as it was written.
@@ -138,7 +139,7 @@ impl SharedRoom {
         }
     }
 
-    /// The record of the room now, which reads as it is written.
+    /// Updates the record of the room, which must read as it is written.
     ///
     /// # Panics
     /// If it does not.
@@ -158,7 +159,7 @@ impl SharedRoom {
     }
 }
 
-/// `bytes` after the versions that all messages begin with.
+/// `bytes` after the versions with which all messages begin.
 fn versioned(bytes: &[u8]) -> Vec<u8> {
     [version().as_bytes(), b"\n", bytes].concat()
 }

@@ -40,7 +40,7 @@ impl HostContext {
         locked(&self.chance, SplitMix64::bits)
     }
 
-    /// The state of a room in its newest checkpoint, and its record.
+    /// Loads a room's record, and its state from the newest checkpoint.
     pub(crate) async fn load_state(&self, id: RoomId) -> Result<(RoomState, Record), RoomRefusal> {
         let record = self.bus.get(Key::Room(id)).await.map_err(|_| RoomRefusal::NotNow)?;
         let record =
@@ -60,7 +60,7 @@ impl HostContext {
     }
 }
 
-/// The name of a host as operators read it, without the number of its start.
+/// The name of a host as operators see it, without the number of its start.
 pub(crate) fn shown_name(name: &str) -> &str {
     name.split_once(' ').map_or(name, |(shown, _)| shown)
 }

@@ -1,8 +1,8 @@
 //! The leases of a host's rooms.
 //!
-//! All rooms of a host ask for a renewal at the same time, and those that ask within [`GATHERED`] are one call of the
-//! store: each call costs a write to its disk. So a host with many rooms renews all of their leases in time, however
-//! long a write takes.
+//! All rooms of a host ask for a renewal at the same time. The requests within [`GATHERED`] become one call to the
+//! store, because each call costs a write to its disk. So a host with many rooms renews all of their leases in time,
+//! however long a write takes.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::accounts::worker::{Answer, StoreWorker};
 use crate::accounts::{Lease, StoreFailure};
 use crate::lock::locked;
 
-/// The time that a lease lasts without being renewed.
+/// How long a lease lasts without a renewal.
 pub(crate) const LEASE_TIME: Duration = Duration::from_secs(3);
 /// How long the first renewal waits for others.
 pub(crate) const GATHERED: Duration = Duration::from_millis(50);
@@ -32,17 +32,17 @@ pub(crate) struct Leases {
 /// The answer to a call; an error if it was not accepted.
 pub(crate) type Reply<T> = Answer<Result<T, StoreFailure>>;
 
-/// A lease that is to be renewed, and where the answer goes.
+/// A lease to renew, and the sender of the answer.
 pub(crate) type Renewal = (Lease, oneshot::Sender<Result<bool, StoreFailure>>);
 
 impl Leases {
-    /// Asks for the lease of a room, with an epoch above that of its log.
+    /// Asks for the lease of a room, with an epoch above the epoch of its log.
     pub(crate) fn acquire(&self, room: &str, epoch: u64) -> Reply<Option<Lease>> {
         let (room, host) = (room.to_owned(), self.host.clone());
         self.store.call(move |store| store.acquire(&room, &host, LEASE_TIME, epoch))
     }
 
-    /// Renews a lease, together with the other renewals that wait.
+    /// Renews a lease, together with the other waiting renewals.
     pub(crate) fn renew(&self, lease: &Lease) -> Reply<bool> {
         let (reply, answer) = oneshot::channel();
         locked(&self.renewals, |renewals| renewals.push((lease.clone(), reply)));
@@ -61,7 +61,7 @@ impl Leases {
             }
         });
         if !is_accepted {
-            // Nobody waits for an answer that does not come.
+            // Drop the senders, so that nobody waits for an answer that does not come.
             locked(&self.renewals, Vec::clear);
         }
         answer
@@ -107,7 +107,7 @@ mod tests {
         for (room, answer) in asking.join().unwrap().into_iter().enumerate() {
             assert_eq!(answer.blocking_recv().unwrap(), Ok(room != 7));
         }
-        // A thread that was not scheduled for a while may have sent some of them late.
+        // A thread that was not scheduled for a while may have sent some renewals late.
         assert!(calls <= 3, "{calls}");
     }
 }

@@ -1,13 +1,13 @@
 //! Messages and records: the bytes that the hosts of a cluster write for each other.
 //!
-//! They begin with the versions of the format and of the rules, and go on as a
-//! [stored game](cellcaster::game::stored) does: no byte makes a host fail.
+//! They begin with the versions of the format and of the rules, and continue like a
+//! [stored game](cellcaster::game::stored): no bytes make a host fail.
 //!
 //! - A [`LogMessage`] is a part of a room's log.
-//! - A [`PeerMessage`] is a broadcast to the replicas of a room. It may be lost, come twice, or come late. Claims and
-//!   requests are repeated; messages that were appended and are missing are read from the log; commands that are lost
-//!   are lost, as keys of a player whose connection stalls.
-//! - A [`Record`] tells hosts without a replica about a room.
+//! - A [`PeerMessage`] is a broadcast to the replicas of a room. It may be lost, duplicated or late. Claims and
+//!   requests are repeated. Missing messages of the log are read from the log. Lost commands stay lost, like the keys
+//!   of a player whose connection stalls.
+//! - A [`Record`] describes a room to hosts without a replica.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,26 +21,26 @@ use cellcaster::game::{PlayerColor, RULES_VERSION};
 
 /// The version of the format of messages, records and checkpoints.
 const FORMAT: u32 = 3;
-/// The most steps of a message: ten seconds.
+/// The most steps in a message: ten seconds.
 const MOST_STEPS: u64 = 600;
 
 /// A message of a room's log. A message without steps begins an epoch.
 ///
-/// Rejected: counting steps from the start of the round, since a sequencer would have to know when the round ends
-/// before it does.
+/// Rejected: counting steps from the start of the round. A sequencer would have to know the end of a round before the
+/// round ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LogMessage {
     /// The epoch of the sequencer.
     pub(crate) epoch: u64,
-    /// The number of the message before; 0 for none.
+    /// The number of the previous message; 0 for none.
     pub(crate) last: u64,
-    /// The steps that the room has taken before, in all its rounds.
+    /// The steps that the room took before this message, in all its rounds.
     pub(crate) tick: u64,
-    /// The steps that it takes.
+    /// The steps that this message adds.
     pub(crate) steps: u64,
     /// A checksum of the room, once a second.
     pub(crate) check: Option<Check>,
-    /// Their steps are counted from the first one of the message.
+    /// The entries. Their steps count from the first step of the message.
     pub(crate) entries: Vec<Entry>,
 }
 
@@ -56,34 +56,34 @@ pub(crate) struct Check {
 /// A broadcast to the replicas of a room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum PeerMessage {
-    /// A message that the log has, with its number.
+    /// A message of the log, with its number.
     Appended(u64, LogMessage),
     /// Commands of the members on a host that is not the sequencer.
     Commands(Vec<(MemberId, Command)>),
-    /// The members on the host that sends it.
+    /// The members on the sending host.
     Claim(Vec<MemberId>),
     /// A request to be a member.
     Request(Token, MemberWish),
-    /// The answer to a request to join: they are in the log.
+    /// The answer to a request to join: the member is in the log.
     Joined(Token, MemberId, PlayerColor),
-    /// The answer to a request that is refused. A request to return that is granted is answered by the log.
+    /// A refused request. The log itself answers a request to return that is granted.
     Refused(Token, RoomRefusal),
     /// The sender has released the lease of the room.
     Released,
 }
 
-/// The random number of a request to be a member. The log stores it if the member returns.
+/// The random number of a request to be a member. The log stores it when the member returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Token(#[serde(with = "bits")] pub(crate) u64);
 
-/// The member that somebody wants to be.
+/// The member that somebody asks to be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum MemberWish {
     /// A new member.
     Join {
         #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
         name: Line,
-        /// Whether the place is kept.
+        /// `true` if the seat is kept while the member is away.
         is_kept: bool,
     },
     /// A member who is away.
@@ -93,22 +93,22 @@ pub(crate) enum MemberWish {
 /// The record of a room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Record {
-    /// Whether the room is always there.
+    /// `true` for a standing room.
     pub(crate) stands: bool,
-    /// Whether a host runs it.
+    /// `true` while a host runs the room.
     pub(crate) is_running: bool,
-    /// The number of records before, which grows while a host runs the room.
+    /// The number of previous records, which grows while a host runs the room.
     heartbeat: u64,
     phase: Phase,
     names: Vec<Line>,
-    /// The level of the present round.
+    /// The level of the current round.
     pub(crate) level: String,
-    /// The header with which the log begins, as long as there is no checkpoint.
+    /// The header at the beginning of the log, while there is no checkpoint.
     pub(crate) header: Header,
 }
 
 impl LogMessage {
-    /// The message of those bytes.
+    /// Parses a message.
     pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
         let message: Self = parse(bytes)?;
         message.check()?;
@@ -120,12 +120,12 @@ impl LogMessage {
         check(self.entries.iter().all(|entry| entry.step < self.steps), "an entry")
     }
 
-    /// Whether `next` can follow in this message.
+    /// Returns true if `next` fits into this message.
     pub(crate) fn has_room(&self, next: &Self) -> bool {
         self.steps + next.steps <= MOST_STEPS
     }
 
-    /// Appends the steps of the message that follows. Its checksum is left out.
+    /// Appends the steps of the next message. Drops its checksum.
     pub(crate) fn merge(&mut self, next: Self) {
         let steps = self.steps;
         self.entries
@@ -135,7 +135,7 @@ impl LogMessage {
 }
 
 impl PeerMessage {
-    /// The message of those bytes.
+    /// Parses a message.
     pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
         let message = parse(bytes)?;
         if let Self::Appended(_, message) = &message {
@@ -153,7 +153,7 @@ impl Record {
         Self { stands, is_running: !stands, heartbeat: 0, phase, names, level, header }
     }
 
-    /// The record of those bytes.
+    /// Parses a record.
     pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
         let record: Self = parse(bytes)?;
         check(record.header.is_possible(), "the header")?;
@@ -161,14 +161,14 @@ impl Record {
         Ok(record)
     }
 
-    /// The next record, of the room as it is.
+    /// The next record of the room, in its present state.
     pub(crate) fn next(self, room: &Room, is_running: bool) -> Self {
         let (phase, names) = (room.phase(), room.names().cloned().collect());
         let level = room.header().level.clone();
         Self { is_running, heartbeat: self.heartbeat + 1, phase, names, level, ..self }
     }
 
-    /// The room as lobbies show it, without watchers.
+    /// The summary of the room for lobbies, without watchers.
     pub(crate) fn summary(&self, id: RoomId) -> RoomSummary {
         RoomSummary {
             id,
@@ -187,12 +187,12 @@ pub(crate) fn version() -> String {
     format!("{FORMAT}.{RULES_VERSION}")
 }
 
-/// The bytes of a message, a record, or the beginning of a checkpoint.
+/// The bytes of a message or a record, or the beginning of a checkpoint.
 pub(crate) fn to_bytes(value: &impl Serialize) -> Vec<u8> {
     appended((version() + "\n").into_bytes(), value)
 }
 
-/// The rest after the versions.
+/// A reader of the bytes after the versions.
 pub(crate) fn reader(bytes: &[u8]) -> Result<Reader<'_>, Unrestorable> {
     let rest = bytes.strip_prefix((version() + "\n").as_bytes());
     Reader::of(rest.ok_or(Unrestorable::OtherVersion)?)

@@ -3,15 +3,16 @@
 //! | what | where |
 //! |---|---|
 //! | logs | stream `CELLCASTER_LOG`, subject `cellcaster.log.ROOM` |
-//! | broadcasts to rooms | subject `cellcaster.peers.ROOM`, not kept |
-//! | requests to all hosts | subject `cellcaster.operator.1`, not kept; replies to an inbox |
+//! | broadcasts to rooms | subject `cellcaster.peers.ROOM`, not stored |
+//! | requests to all hosts | subject `cellcaster.operator.1`, not stored; replies to an inbox |
 //! | records, checkpoints, places | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH`, `place.KEY` |
 //! | numbers of rooms | stream `CELLCASTER_NUMBERS`: the number of its newest message |
 //!
-//! Streams and the bucket are made if they are missing; who wants copies on several servers makes them before.
+//! The streams and the bucket are created if they are missing. To have copies on several servers, create them
+//! beforehand.
 //!
-//! A call ends after [`PATIENCE`]. While there is no connection, it fails at once, so that nothing waits in
-//! memory that would be sent when it is out of date.
+//! A call ends after [`PATIENCE`]. Without a connection it fails at once, so that no message waits in memory until it
+//! is out of date.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -33,20 +34,20 @@ use super::bus::{Answer, Bus, BusFault, HostRequest, Key};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
-/// The most time that a call takes.
+/// The time limit for a call.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// The most time that the connection at the start takes.
+/// The time limit for the first connection.
 const FIRST_PATIENCE: Duration = Duration::from_secs(5);
-/// The time from one question whether the server is there to the next.
+/// The time between two pings of the server.
 const PINGS: Duration = Duration::from_secs(2);
-/// The most messages of a room's log: some minutes without a checkpoint.
+/// The most messages in a room's log: some minutes without a checkpoint.
 const MOST_MESSAGES: i64 = 20_000;
-/// The most broadcasts of a room, or changes in the list of rooms, that wait. The rest is lost.
+/// The most broadcasts of a room, or changes in the list of rooms, that wait. Further ones are lost.
 const MOST_QUEUED: usize = 1_024;
 
 const BUCKET: &str = "cellcaster";
 const NUMBERS: &str = "cellcaster.number";
-/// With the version of the format of requests.
+/// Contains the version of the format of requests.
 const OPERATOR: &str = "cellcaster.operator.1";
 const ROOMS: &str = "room.";
 
@@ -56,15 +57,15 @@ pub(crate) struct NatsBus {
     context: Context,
     log: Stream,
     store: Store,
-    /// Those of values that this host has seen last, by their keys.
+    /// The revisions of the values that this host saw last, by their keys.
     revisions: Mutex<BTreeMap<String, u64>>,
 }
 
 impl NatsBus {
-    /// The bus at an address such as `nats://host:4222`, or several with commas between them.
+    /// Connects to an address such as `nats://host:4222`, or to several with commas between them.
     ///
     /// # Errors
-    /// A sentence, which shows no password.
+    /// A sentence, which contains no password.
     pub(crate) async fn connect(address: &str) -> Result<Self, String> {
         let servers: Result<Vec<ServerAddr>, _> = address.split(',').map(str::parse).collect();
         let servers =
@@ -103,7 +104,7 @@ impl NatsBus {
         };
         let log = context.get_or_create_stream(log).await?;
         context.get_or_create_stream(numbers).await?;
-        // `create_key_value` asks for more of the account than the server 2.9 tells.
+        // `create_key_value` requires information about the account that server 2.9 does not send.
         let bucket = stream::Config {
             name: format!("KV_{BUCKET}"),
             subjects: vec![format!("$KV.{BUCKET}.>")],
@@ -119,7 +120,7 @@ impl NatsBus {
         Ok((log, context.get_key_value(BUCKET).await?))
     }
 
-    /// Does something in bounded time, and only with a connection.
+    /// Runs `act` in bounded time, and only with a connection.
     fn call<'a, T: Send + 'a>(
         &'a self,
         act: impl Future<Output = Result<T, BusFault>> + Send + 'a,
@@ -140,7 +141,7 @@ impl NatsBus {
         locked(&self.revisions, |revisions| _ = revisions.insert(key.to_owned(), revision));
     }
 
-    /// The value of a key, whose revision is noted.
+    /// Reads the value of a key, and notes its revision.
     async fn entry(&self, key: &str) -> Result<Option<Vec<u8>>, BusFault> {
         let entry = self.store.entry(key).await.map_err(unknown)?;
         self.note(key, entry.as_ref().map_or(0, |entry| entry.revision));
@@ -148,10 +149,10 @@ impl NatsBus {
         Ok(entry.map(|entry| entry.value.to_vec()))
     }
 
-    /// The messages on a subject from now on.
+    /// Subscribes to the messages on a subject from now on.
     async fn subscription(&self, subject: String) -> Result<Subscriber, BusFault> {
         let subscription = self.client.subscribe(subject).await.map_err(unknown)?;
-        // From now on, nothing is missed.
+        // After the flush, no message is missed.
         self.client.flush().await.map_err(unknown)?;
         Ok(subscription)
     }
@@ -185,7 +186,7 @@ impl Bus for NatsBus {
 
     fn drop_before(&self, room: RoomId, first: u64) -> Answer<'_, ()> {
         self.call(async move {
-            // The server takes 1 for no number, and would drop all.
+            // The server reads 1 as no number, and would drop all messages.
             if first <= 1 {
                 return Ok(());
             }
@@ -304,7 +305,7 @@ fn unknown<E>(_: E) -> BusFault {
     BusFault::Unknown
 }
 
-/// Sends what `make` makes of the messages, as long as somebody receives it.
+/// Forwards the messages, converted by `make`, until the receiver is dropped.
 fn forward<T: Send + 'static>(
     mut subscription: Subscriber,
     client: &Client,
@@ -317,7 +318,7 @@ fn forward<T: Send + 'static>(
             tokio::select! {
                 () = messages.closed() => return,
                 message = subscription.next() => match message {
-                    // The server has sent it, such as that nobody was asked.
+                    // A status comes from the server itself, for example because nobody received the request.
                     Some(message) if message.status.is_some() => {}
                     Some(message) => _ = messages.try_send(make(&client, message)),
                     None => return,
@@ -328,7 +329,7 @@ fn forward<T: Send + 'static>(
     receiver
 }
 
-/// A request, whose answer is sent back.
+/// Converts a message to a request, and sends the answer back.
 fn host_request(client: &Client, message: Message) -> HostRequest {
     let (reply, answer) = oneshot::channel::<Vec<u8>>();
     if let Some(inbox) = message.reply {
@@ -362,7 +363,7 @@ fn key_name(key: &Key) -> String {
 fn hex(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(2 * bytes.len());
     for byte in bytes {
-        // Memory accepts every byte.
+        // Writing to a string cannot fail.
         _ = write!(text, "{byte:02x}");
     }
     text

@@ -1,12 +1,12 @@
-//! Requests of an operator to one host, which asks all hosts of the cluster.
+//! Requests of an operator, which one host passes on to all hosts of the cluster.
 //!
 //! # Rules
 //!
-//! - A host asks the others over the bus, and waits until all present hosts have answered, for [`PATIENCE`] at most. The
-//!   database knows the present hosts.
-//! - A host answers for itself alone, with at most [`MOST_ROWS`] visitors, so that the answer is a message that
-//!   the bus takes.
-//! - Only some requests are asked of others: to end a host, its own operator has to ask.
+//! - A host asks the others over the bus, and waits until all present hosts have answered, but at most for
+//!   [`PATIENCE`]. The database lists the present hosts.
+//! - A host answers only for itself, with at most [`MOST_ROWS`] visitors, so that the bus accepts the answer as a
+//!   message.
+//! - Only some requests go to the other hosts. Only a host's own operator can end it.
 //!
 //! Rejected: one host that every operator asks. It would have to be found, and replaced.
 
@@ -23,21 +23,21 @@ use crate::accounts::HostRow;
 use crate::admin::{AdminReply, AdminRequest, HostInfo};
 use cellcaster::app::store::name_in_map_key;
 
-/// The most time that other hosts have for their answers.
+/// The time limit for the answers of other hosts.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// The most time in which the database says which hosts there are.
+/// The time limit for the database to list the hosts.
 const DATABASE_PATIENCE: Duration = Duration::from_secs(1);
-/// The time after which a bus that was away is asked again.
+/// The pause before a bus that did not answer is asked again.
 const PAUSE: Duration = Duration::from_secs(1);
-/// The most visitors in the answer of a host. Each is some 250 bytes, and NATS takes a megabyte.
+/// The most visitors in a host's answer. Each takes about 250 bytes, and NATS accepts a megabyte.
 const MOST_ROWS: usize = 2_000;
 
 /// The answers of the other hosts.
 #[derive(Default)]
 struct OtherHosts {
-    /// By the names of the hosts.
+    /// The replies by the names of the hosts.
     replies: BTreeMap<String, AdminReply>,
-    /// The reasons why an answer may be missing, and what hosts have left out.
+    /// The reasons why an answer may be missing or incomplete.
     remarks: Vec<String>,
 }
 
@@ -56,7 +56,7 @@ struct HostAnswer {
 }
 
 impl SharedRooms {
-    /// The name of this host among all that there ever were.
+    /// The name of this host, which is unique among all starts of all hosts.
     fn own_name(&self) -> &str {
         &self.context().notice.name
     }
@@ -72,7 +72,7 @@ impl SharedRooms {
         }
     }
 
-    /// Asks the other hosts, and returns their answers together with the answer of this host.
+    /// Asks the other hosts, and merges their answers with the answer of this host.
     pub(crate) async fn merged(&self, own: AdminReply, request: &AdminRequest) -> AdminReply {
         let (rows, OtherHosts { replies, mut remarks }) = self.ask_others(request).await;
         let reply = match own {
@@ -91,7 +91,7 @@ impl SharedRooms {
                 AdminReply::Visitors(visitors)
             }
             AdminReply::Hosts(own) => {
-                // A host that has not answered is listed as the database knows it.
+                // A host that has not answered is listed with its information from the database.
                 let mut hosts: BTreeMap<String, HostInfo> =
                     rows.iter().map(|row| (row.notice.name.clone(), info(row))).collect();
                 let own = (self.own_name().to_owned(), AdminReply::Hosts(own));
@@ -109,7 +109,7 @@ impl SharedRooms {
         AdminReply::AllHosts { reply: Box::new(reply), remarks }
     }
 
-    /// Asks the other hosts. Returns the hosts that the database knows, too.
+    /// Asks the other hosts. Also returns the hosts that the database lists.
     async fn ask_others(&self, request: &AdminRequest) -> (Vec<HostRow>, OtherHosts) {
         let context = self.context();
         let question = Question { from: self.own_name().to_owned(), request: request.clone() };
@@ -135,7 +135,7 @@ impl SharedRooms {
         (rows, others)
     }
 
-    /// A sentence about the differences between the maps of a host and of this host. `None` if there are none, or if the
+    /// A sentence about the differences between a host's maps and this host's maps. `None` if there are none, or if the
     /// host did not answer.
     fn map_difference(&self, host: &HostInfo) -> Option<String> {
         let own = self.context().catalog.map_keys().collect();
@@ -145,7 +145,7 @@ impl SharedRooms {
         Some(format!("host {other} has other maps than host {own}: it {difference}"))
     }
 
-    /// Warns of hosts with other maps, once this host has started.
+    /// Warns about hosts with other maps, once this host has started.
     pub(crate) async fn compare_maps(self) {
         sleep(PAUSE).await;
         let (_, others) = self.ask_others(&AdminRequest::Hosts).await;
@@ -158,7 +158,7 @@ impl SharedRooms {
         }
     }
 
-    /// Answers what other hosts ask, again and again.
+    /// Answers the requests of other hosts, again and again.
     pub(crate) async fn answer_others(
         self,
         answer: impl Fn(&AdminRequest) -> AdminReply + Send + Sync,
@@ -175,7 +175,7 @@ impl SharedRooms {
         }
     }
 
-    /// The answer to another host, if it asks something that is answered.
+    /// The answer to another host, if its request is one that this host answers.
     fn answer_to(
         &self,
         bytes: &[u8],
@@ -191,7 +191,7 @@ impl SharedRooms {
 }
 
 impl OtherHosts {
-    /// Waits for answers until `end`, or until all hosts have answered that are `there`.
+    /// Waits for answers until `end`, or until all hosts in `there` have answered.
     async fn hear(
         &mut self,
         answers: Option<mpsc::Receiver<Vec<u8>>>,
@@ -222,7 +222,7 @@ impl OtherHosts {
     }
 }
 
-/// A host's information about itself in the database, which does not tell its rooms.
+/// A host's information in the database, which does not include its rooms.
 fn info(row: &HostRow) -> HostInfo {
     HostInfo {
         host: shown_name(&row.notice.name).to_owned(),
@@ -235,7 +235,7 @@ fn info(row: &HostRow) -> HostInfo {
     }
 }
 
-/// The differences of the maps with the keys `theirs` from the maps with the keys `own`, in words after "it"; `None` if
+/// The differences of another host's maps from this host's maps, by their keys, in words that follow "it". `None` if
 /// there are none.
 fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
     let names = |keys: &BTreeSet<&str>, others: &BTreeSet<&str>| -> BTreeSet<String> {
@@ -256,7 +256,7 @@ fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("; it "))
 }
 
-/// A reply that the bus takes.
+/// Shortens a reply so that the bus accepts it.
 fn bounded(reply: AdminReply, host: &str) -> AdminReply {
     match reply {
         AdminReply::Visitors(mut rows) if rows.len() > MOST_ROWS => {

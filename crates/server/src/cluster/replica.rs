@@ -1,21 +1,21 @@
 //! Replicas: a room on one host of a cluster.
 //!
-//! A replica applies the room's log to its [`RoomState`], shows the room to the members and watchers of its host,
-//! and sends their commands to the sequencer. One of the replicas of a room is the sequencer: it has a
-//! [`ClusterSequencer`] as well.
+//! A replica applies the room's log to its [`RoomState`], shows the room to the members and watchers on its host, and
+//! sends their commands to the sequencer. One replica of each room is the sequencer, and has a [`ClusterSequencer`] as
+//! well.
 //!
 //! # Rules
 //!
-//! - A replica applies messages of the log, and nothing else.
-//! - A message has the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round trip to
-//!   the log; in a room of one process it waits for up to a step.
+//! - A replica applies only messages of the log.
+//! - A message contains the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round
+//!   trip to the log. In a room of one process, it waits for up to a step.
 //! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
 //! - A member is in the room once the log has their `join` entry.
 //! - Members who are not claimed for a while are away. A host that has ended claims nobody.
-//! - A member who was away has returned once the log has the token of the request. A host that has another token for a
+//! - A member who was away has returned once the log has the token of the request. A host with another token for the
 //!   member lets them go.
-//! - If the bus does not answer, a room goes on if all its members are on the host that has the lease; otherwise it
-//!   waits, or another host takes it over. Members are told. See [`alone`].
+//! - If the bus does not answer, a room goes on if all its members are on the host with the lease. Otherwise it waits,
+//!   or another host takes it over. Members are told. See [`alone`].
 
 mod alone;
 
@@ -45,27 +45,27 @@ use crate::rooms::sequencer::{
 use crate::rooms::summary::{RoomId, RoomRefusal};
 use cellcaster::game::PlayerColor;
 
-/// The time from one message of a sequencer to the next.
+/// The time between two messages of a sequencer.
 pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
-/// The steps in it.
+/// The steps in a message period.
 const STEPS: u32 = 2;
-/// The time without messages after which a replica reads the log.
+/// How long a replica receives no messages before it reads the log.
 const SILENCE: Duration = Duration::from_secs(1);
-/// The time without steps after which members are told.
+/// How long a room takes no steps before members are told.
 const STANDSTILL: Duration = Duration::from_millis(1_500);
-/// The least time that a replica exists without members and watchers.
+/// The least time for which a replica exists without members and watchers.
 const LEAST_STAY: Duration = Duration::from_secs(3);
 /// The time between two claims, and between two renewals of the lease.
 const SECOND: Duration = Duration::from_secs(1);
 /// The time after which a request is sent again.
 const REQUEST_RETRY: Duration = Duration::from_millis(500);
-/// The time after which a request fails. Another host takes over a room in less.
+/// The time after which a request fails. Another host takes over a room sooner.
 const TIMEOUT: Duration = Duration::from_secs(8);
-/// The most messages in which a host that ends waits for the log to have its last entries.
+/// The most messages for which a host that ends waits until the log has its last entries.
 const MOST_LAST_MESSAGES: usize = 15;
-/// The time from one checkpoint to the next.
+/// The time between two checkpoints.
 const CHECKPOINTS: Duration = Duration::from_secs(5);
-/// The time after which the lease is asked for again.
+/// The time between two requests for the lease.
 const LEASE_RETRY: Duration = Duration::from_millis(500);
 
 /// A room on one host.
@@ -86,22 +86,22 @@ pub(crate) struct Replica {
     tokens: BTreeMap<MemberId, Token>,
     leasing: Leasing,
     times: Times,
-    /// Whether it is unknown if the log has the message that was appended last.
+    /// `true` while it is unknown whether the log has the message that was appended last.
     is_append_unknown: bool,
     /// The messages of a room that goes on without the bus.
     alone: Option<Alone>,
-    /// Whether the state has messages that the log will not have.
+    /// `true` if the state contains messages that the log will not have.
     is_diverged: bool,
-    /// Whether the bus has answered when the log was last read without a sequencer.
+    /// `true` if the bus answered when this replica last read the log without a sequencer.
     reaches_bus: bool,
-    /// The progress that members were told last.
+    /// The progress that members were last told.
     told: Progress,
-    /// Whether the record of the room is out of date.
+    /// `true` if the record of the room is out of date.
     is_changed: bool,
     ending: watch::Receiver<bool>,
 }
 
-/// How the room goes on while the bus may not answer.
+/// The progress of the room while the bus may not answer.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Progress {
     Usual,
@@ -110,7 +110,7 @@ enum Progress {
 }
 
 impl Progress {
-    /// Shown to members when it begins.
+    /// The sentence that members see when it begins.
     const fn sentence(self) -> &'static str {
         match self {
             Self::Usual => "The hosts of this room reach each other again.",
@@ -120,9 +120,9 @@ impl Progress {
     }
 }
 
-/// When a replica last did what it does from time to time.
+/// The times when a replica last did its periodic work.
 struct Times {
-    /// The room has taken steps, or was found to rest.
+    /// When the room last took steps, or was found to rest.
     moved: Instant,
     read: Option<Instant>,
     restored: Option<Instant>,
@@ -132,14 +132,14 @@ struct Times {
     lease_ends: Option<Instant>,
     kept: Option<Instant>,
     published: Option<Instant>,
-    /// Somebody needed the replica.
+    /// When somebody last needed the replica.
     needed: Instant,
-    /// Up to when the sequencer has taken steps.
+    /// The time up to which the sequencer has taken steps.
     stepped: Instant,
 }
 
 impl Times {
-    /// Nothing was done yet but the start.
+    /// The times at the start, when nothing else has happened yet.
     fn new(now: Instant) -> Self {
         Self {
             moved: now,
@@ -163,28 +163,28 @@ struct Leasing {
     renewing: Option<Reply<bool>>,
 }
 
-/// Where the answer to a request goes.
+/// The sender of a request's answer.
 type MemberReply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
 
 /// A request to be a member, from a visitor of this host.
 pub(crate) type MemberRequest = (MemberWish, MemberReply);
 
-/// A request that is neither granted nor refused.
+/// A request that is neither granted nor refused yet.
 struct PendingRequest {
     token: Token,
     wish: MemberWish,
-    /// `None` for a member of this host, who was away since the host was cut off.
+    /// `None` for a member of this host who was away because the host was cut off.
     reply: Option<MemberReply>,
     since: Instant,
     sent: Instant,
 }
 
-/// The messages that the log does not have yet.
+/// The messages of a room that goes on alone, which the log does not have yet.
 struct Alone {
     since: Instant,
-    /// The log may have the first one, which is not changed any more.
+    /// The log may have the first one, so it stays unchanged.
     messages: VecDeque<LogMessage>,
-    /// Whether the bus answers again.
+    /// A task that asks whether the bus answers again.
     probe: Option<JoinHandle<bool>>,
     probed: Instant,
 }
@@ -227,7 +227,7 @@ impl Replica {
 
     /// Runs the room on this host, as long as it is needed here.
     pub(crate) async fn run(mut self) {
-        // Messages that were appended before it subscribed.
+        // Read the messages that were appended before this replica subscribed.
         self.reaches_bus = self.read().await.is_ok();
         let mut next = Instant::now();
         loop {
@@ -298,7 +298,6 @@ impl Replica {
         }
     }
 
-    /// Handles a broadcast.
     async fn receive_broadcast(&mut self, bytes: &[u8]) {
         let now = Instant::now();
         let message = match PeerMessage::parse(bytes) {
@@ -327,7 +326,7 @@ impl Replica {
                     self.broadcast(&answer).await;
                 }
             }
-            // Nobody has to wait until the room is silent.
+            // Ask for the lease at once, and do not wait until the room is silent.
             (PeerMessage::Released, None) => self.times.leased = None,
             (answer @ (PeerMessage::Joined(..) | PeerMessage::Refused(..)), _) => {
                 self.answer(&answer);
@@ -337,12 +336,12 @@ impl Replica {
         }
     }
 
-    /// Sends a message to the other hosts. A lost message is sent again, or read in the log.
+    /// Sends a message to the other hosts. A lost message is sent again, or read from the log.
     async fn broadcast(&mut self, message: &PeerMessage) {
         _ = self.context.bus.broadcast(self.id, to_bytes(message)).await;
     }
 
-    /// Passes on answers of the sequencer, on all hosts.
+    /// Passes on the sequencer's answers, on all hosts.
     async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
         for answer in answers {
             self.answer(&answer);
@@ -350,7 +349,7 @@ impl Replica {
         }
     }
 
-    /// Passes on an answer of the sequencer, if the request was made here.
+    /// Passes on an answer of the sequencer, if the request was made on this host.
     fn answer(&mut self, answer: &PeerMessage) {
         match *answer {
             PeerMessage::Joined(token, member, color) => self.admit(token, member, color),
@@ -359,8 +358,8 @@ impl Replica {
         }
     }
 
-    /// Takes a message of the log, and answers the requests that it fulfils. Returns whether the state had the messages
-    /// before it.
+    /// Takes a message of the log, and answers the requests that it fulfils. Returns false if the state does not have
+    /// the messages before it, or differs from the log.
     async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
         if self.is_ahead_of(message) {
             return true;
@@ -390,7 +389,7 @@ impl Replica {
         self.times.moved = Instant::now();
         let sequencer = self.sequencer.take_if(|sequencer| sequencer.epoch() >= message.epoch);
         let Some(mut sequencer) = sequencer else {
-            // Another host has the room now.
+            // Another host runs the room now.
             self.sequencer = None;
             return true;
         };
@@ -400,7 +399,7 @@ impl Replica {
         true
     }
 
-    /// Applies a message, and shows the room after it. A fault ends the room on this host.
+    /// Applies a message, and shows the room after it. A panic ends the room on this host.
     fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
         let apply = || {
@@ -440,13 +439,13 @@ impl Replica {
                 return Err(BusFault::Unknown);
             };
             if !self.take(number, &message).await {
-                // The messages before it were dropped, since a checkpoint has their effects.
+                // The messages before it were dropped, because a checkpoint contains their effects.
                 self.restore().await?;
             }
         }
     }
 
-    /// Replaces the state by the newest checkpoint.
+    /// Replaces the state with the newest checkpoint.
     async fn restore(&mut self) -> Result<(), BusFault> {
         let now = Instant::now();
         if !is_due(self.times.restored, now, SECOND) {
@@ -458,7 +457,7 @@ impl Replica {
         self.interface.replace_view(|| (state.room.view(), ()));
         self.state = state;
         self.is_diverged = false;
-        // Its lease may have ended long ago.
+        // The lease of the sequencer may have ended long ago.
         self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch);
         self.is_changed = true;
         Ok(())
@@ -483,7 +482,7 @@ impl Replica {
         now.duration_since(self.times.moved) >= SILENCE
     }
 
-    /// Whether the replica is not needed any more.
+    /// Returns true if the replica is no longer needed.
     fn is_over(&mut self) -> bool {
         let now = Instant::now();
         let has_work = self
@@ -505,12 +504,12 @@ impl Replica {
 }
 
 impl PendingRequest {
-    /// Whether it asks to return to a member who has left.
+    /// Returns true if it asks to return to a member who has left.
     fn is_lost(&self, room: &Room) -> bool {
         matches!(self.wish, MemberWish::Return(member) if room.has_lost(member))
     }
 
-    /// The member to whom `room` lets it return.
+    /// The member that `room` lets it return to.
     fn granted(&self, room: &Room) -> Option<MemberId> {
         let MemberWish::Return(member) = self.wish else { return None };
         let kept = room.kept_place(member)?;
@@ -526,8 +525,8 @@ impl PendingRequest {
 
 /// Requests to be a member, from visitors of this host, and the seats of this host's members.
 ///
-/// A request has a token, by which its answer is found. A request to return is granted once the log has the token,
-/// whichever host has written it.
+/// A request has a token, which identifies its answer. A request to return is granted once the log has the token,
+/// whichever host wrote it.
 impl Replica {
     async fn receive_request(&mut self, (wish, reply): MemberRequest) {
         if let MemberWish::Return(member) = wish
@@ -562,7 +561,7 @@ impl Replica {
         }
     }
 
-    /// Sends requests without an answer again.
+    /// Sends unanswered requests again.
     async fn repeat_requests(&mut self, now: Instant) {
         self.settle_requests(now);
         let is_due =
@@ -576,7 +575,7 @@ impl Replica {
         }
     }
 
-    /// Notes which requests the log has granted, and fails those that are too old.
+    /// Notes which requests the log has granted, and fails the requests that are too old.
     fn settle_requests(&mut self, now: Instant) {
         let Self { pending, state, tokens, interface, .. } = self;
         let room = &state.room;
@@ -600,7 +599,7 @@ impl Replica {
         }
     }
 
-    /// Gives a seat to the visitor who has asked for it here.
+    /// Gives a seat to the visitor of this host who asked for it.
     fn admit(&mut self, token: Token, member: MemberId, color: PlayerColor) {
         let Some(pending) = self.take_pending(token) else { return };
         self.interface.inbox.admit(member, color);
@@ -609,9 +608,9 @@ impl Replica {
         }
     }
 
-    /// Refuses a request that was made here.
+    /// Refuses a request that was made on this host.
     fn refuse_request(&mut self, token: Token, refusal: RoomRefusal) {
-        // The log may have granted it since.
+        // The log may have granted it in the meantime.
         self.settle_requests(Instant::now());
         if let Some(pending) = self.take_pending(token) {
             pending.refuse(refusal);
@@ -623,7 +622,7 @@ impl Replica {
         Some(self.pending.swap_remove(index))
     }
 
-    /// Asks to return for the members of this host who were away while it was cut off.
+    /// Asks to return for this host's members who were away while it was cut off.
     async fn return_own(&mut self, now: Instant) {
         self.settle_requests(now);
         let is_pending = |member: &MemberId| {
@@ -641,7 +640,7 @@ impl Replica {
     /// now.
     fn dismiss_lost(&mut self) {
         for member in self.interface.inbox.seated() {
-            // The log has not let in numbers from the next one on yet.
+            // A member whose join is not in the log yet does not count as lost.
             if self.state.room.has_lost(member) || !self.is_own(member) {
                 self.interface.inbox.dismiss(member);
             }
@@ -650,13 +649,13 @@ impl Replica {
         self.tokens.retain(|member, _| seated.contains(member));
     }
 
-    /// Whether nobody has returned to a member elsewhere, as far as the log is known.
+    /// Returns true if nobody has returned to the member on another host, as far as this replica knows the log.
     fn is_own(&self, member: MemberId) -> bool {
         let token = self.state.room.kept_place(member).map_or(0, |kept| kept.token);
         token == self.tokens.get(&member).map_or(0, |token| token.0)
     }
 
-    /// Marks the members of this host away, since it ends. If it is the sequencer, the log has that afterwards.
+    /// Marks this host's members away because the host ends. If it is the sequencer, the log has that afterwards.
     async fn part_with_members(&mut self) {
         for member in self.interface.inbox.seated() {
             self.interface.inbox.part(member);
@@ -672,9 +671,9 @@ impl Replica {
     }
 }
 
-/// The duties of the sequencer: the lease, the messages, the checkpoints.
+/// The duties of the sequencer: the lease, the messages and the checkpoints.
 impl Replica {
-    /// Renews the lease, or asks for it if nobody seems to have it.
+    /// Renews the lease, or asks for it if no host seems to have it.
     async fn keep_lease(&mut self, now: Instant) {
         if let Some(reply) = &mut self.leasing.renewing {
             match reply.try_recv() {
@@ -684,7 +683,7 @@ impl Replica {
                     self.note_lease();
                     self.leasing.renewing = None;
                 }
-                // Without the database nobody else gets the lease; and the log refuses a host that has lost it.
+                // Without the database no other host gets the lease, and the log refuses a host that has lost it.
                 _ => self.leasing.renewing = None,
             }
         }
@@ -722,18 +721,18 @@ impl Replica {
         }
     }
 
-    /// Whether a second of the host has begun since the lease was asked for. So all rooms of a host renew their
+    /// Returns true if a second of the host has begun since the lease was asked for. So all rooms of a host renew their
     /// leases at the same time.
     fn is_next_second(&self, now: Instant) -> bool {
         let second = |time: Instant| time.duration_since(self.context.begun).as_secs();
         self.times.leased.is_none_or(|leased| second(leased) < second(now))
     }
 
-    /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
+    /// Becomes the sequencer. Its first message begins a new epoch at the end of the log.
     async fn take_over(&mut self, lease: Lease) {
         let is_read = self.read().await.is_ok();
         if self.state.epoch >= lease.epoch {
-            // The answer has come so late that others have had the room since.
+            // The answer came so late that other hosts have run the room since.
             return;
         }
         let now = Instant::now();
@@ -744,7 +743,7 @@ impl Replica {
         self.is_changed = true;
     }
 
-    /// Notes that the lease lasts from when it was asked for.
+    /// Notes that the lease lasts from the time of the request.
     fn note_lease(&mut self) {
         self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_TIME);
     }
@@ -789,10 +788,10 @@ impl Replica {
         }
     }
 
-    /// Keeps a checkpoint every few seconds, and the record of the room when it changes.
+    /// Stores a checkpoint and the record of the room every few seconds, and the record also when it changes.
     async fn keep(&mut self, now: Instant) {
         let is_time = is_due(self.times.kept, now, CHECKPOINTS);
-        // A host that was replaced and has not noticed has appended nothing now, and must not keep an old state.
+        // A host that was replaced and has not noticed has appended nothing now, and must not store an old state.
         let is_surely_sequencer = self.times.published == Some(now);
         if self.sequencer.is_none() || self.is_append_unknown || !(is_time || self.is_changed) {
             return;
@@ -830,11 +829,11 @@ impl Replica {
             let is_empty = self.state.room.len() == 0;
             let (context, mut is_gone) = (Arc::clone(&self.context), false);
             if is_broken || is_empty && !self.record.stands {
-                // A standing room is made again under its number, and others may go on with a room that is broken or
-                // was not removed.
+                // The lease keeps the epochs of a standing room, which is created again under its number, and of a room
+                // that is broken or was not removed, because other hosts may go on with it.
                 is_gone = self.close().await.is_ok() && !is_broken && !self.record.stands;
             } else {
-                // The first call is refused if the predecessor has put the last checkpoint.
+                // The first call is refused if the predecessor put the last checkpoint.
                 for _ in 0..2 {
                     if self.keep_checkpoint().await.is_ok() {
                         break;
@@ -855,7 +854,7 @@ impl Replica {
         self.interface.close(sentence);
     }
 
-    /// Removes everything of the room.
+    /// Removes everything that the bus stores about the room.
     async fn close(&mut self) -> Result<(), BusFault> {
         let bus = &self.context.bus;
         let mut removed = Ok(());
@@ -866,7 +865,7 @@ impl Replica {
     }
 }
 
-/// The steps that are due since `stepped`, which is moved on.
+/// The steps that are due since `stepped`. Moves `stepped` forward.
 fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
     const MOST: u64 = MOST_CAUGHT_UP as u64;
     let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
@@ -874,7 +873,7 @@ fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
     due.min(MOST)
 }
 
-/// Whether `pause` has passed since `last`.
+/// Returns true if `pause` has passed since `last`.
 fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
     last.is_none_or(|last| now.duration_since(last) >= pause)
 }

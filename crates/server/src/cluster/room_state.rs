@@ -1,8 +1,8 @@
-//! The state of a room on one host, which only messages of the log change.
+//! The state of a room on one host. Only messages of the log change it.
 //!
-//! It is a function of a checkpoint, or of the room's first header, and the messages of the log after that. Each is
-//! applied once, in the order of the log. Once a second the state keeps its checksum; the message with the
-//! sequencer's checksum comes later, so that both are known then.
+//! The state is a function of a checkpoint, or of the room's first header, and of the messages of the log after that.
+//! Each message is applied once, in the order of the log. The state stores its checksum once a second. The message
+//! with the sequencer's checksum comes later, so that both are known then.
 
 use std::collections::VecDeque;
 use std::io::{Read, Write};
@@ -20,10 +20,10 @@ use cellcaster::game::stored::{MOST_BYTES, Unrestorable};
 
 /// The steps between two checksums.
 const CHECKED: u64 = STEPS_PER_SECOND as u64;
-/// The checksums that are remembered.
+/// The most checksums that are remembered.
 const MOST_SUMS: usize = 8;
 
-/// A room, and how far the log is applied to it.
+/// A room, and the position up to which the log is applied.
 pub(crate) struct RoomState {
     pub(crate) room: Room,
     log: RoundLog,
@@ -33,7 +33,7 @@ pub(crate) struct RoomState {
     pub(crate) tick: u64,
     /// The epoch of the newest message.
     pub(crate) epoch: u64,
-    /// Oldest first.
+    /// The latest checksums, oldest first.
     sums: VecDeque<Check>,
 }
 
@@ -42,11 +42,11 @@ pub(crate) struct RoomState {
 pub(crate) enum Position {
     /// It is the next one.
     Next,
-    /// It was applied.
+    /// It was already applied.
     Known,
     /// Messages before it are missing.
     Later,
-    /// It is the next one, but the sequencer's state was another one. It is a bug of the program.
+    /// It is the next one, but the sequencer's state was different. That is a bug of the program.
     Differs,
 }
 
@@ -83,8 +83,8 @@ impl RoomState {
         }
     }
 
-    /// Applies the next message, which has no number as long as the log does not have it. A message of an older epoch
-    /// changes nothing.
+    /// Applies the next message. The message has no number while the log does not have it. A message of an older
+    /// epoch changes nothing.
     pub(crate) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
         let mut all = Changes::default();
         self.number = number.unwrap_or(self.number);
@@ -117,15 +117,15 @@ impl RoomState {
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
         let head = to_bytes(&(self.number, self.tick, self.epoch));
         let mut encoder = ZlibEncoder::new(head, Compression::fast());
-        // Memory accepts every byte.
+        // Writing to memory cannot fail.
         _ = encoder.write_all(&self.room.checkpoint());
         encoder.finish().unwrap_or_default()
     }
 
-    /// The state of a checkpoint.
+    /// Restores a state from a checkpoint.
     ///
     /// # Errors
-    /// A sentence: the bytes are damaged, of another version, or of a level that the catalog does not have.
+    /// A sentence, if the bytes are damaged or of another version, or if the catalog does not have the level.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let sentence = |error: Unrestorable| error.to_string();
         let mut input = reader(bytes).map_err(sentence)?;
@@ -170,7 +170,7 @@ mod tests {
         let next = message(&state, 1, None);
         assert_eq!(state.position(9, &LogMessage { last: 8, ..next.clone() }), Position::Later);
         assert_eq!(state.position(9, &LogMessage { tick: 3, ..next.clone() }), Position::Differs);
-        // Of an older epoch, it only counts.
+        // A message of an older epoch only advances the number.
         state.epoch = 2;
         state.apply(Some(9), &next);
         assert_eq!((state.number, state.tick), (9, 2));

@@ -1,17 +1,17 @@
-//! The sequencer of a room of a cluster: it orders the commands of the members on all hosts into messages.
+//! The sequencer of a room in a cluster. It orders the commands of the members on all hosts into messages.
 //!
-//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which has
-//! a seat for each member and the limits of a room in one process. A message that was sent to the log is kept,
-//! unchanged, until it is known whether the log has it: another message in its place could be the second one with its
-//! number.
+//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which
+//! has a seat for each member, and the same limits as a room in one process. A message that was sent to the log stays
+//! unchanged until it is known whether the log has it. Otherwise another message in its place could become the second
+//! one with its number.
 //!
-//! Somebody may ask to return to a member, who may have a host:
+//! When somebody asks to return to a member, the member may still have a host:
 //!
 //! - A member who is away has no host.
-//! - A member who was not claimed for [`UNHEARD`] since the request has no host, almost certainly: the log does not show
+//! - A member who was not claimed for [`UNHEARD`] since the request almost certainly has no host; the log does not show
 //!   yet that the host is gone. If there is a host nevertheless, it sees that the token is not its own, and lets the
 //!   member go.
-//! - A member who is claimed has a host: nobody takes the place of a member who plays.
+//! - A member who is claimed has a host, and the request is refused: nobody takes the place of a member who plays.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
@@ -34,25 +34,26 @@ const UNHEARD: Duration = Duration::from_millis(2_500);
 /// The most requests of each kind that are remembered, with their answers.
 const MOST_REQUESTS: usize = 64;
 
-/// The commands that wait, the members who are claimed, and the message that is being appended.
+/// The waiting commands, the claimed members, and the message that is being appended.
 pub(crate) struct ClusterSequencer {
     pub(crate) lease: Lease,
     inbox: Inbox,
-    /// When each member was claimed last.
+    /// When each member was last claimed.
     claimed: BTreeMap<MemberId, Instant>,
-    /// The members who are away, and need no claim.
+    /// The members who are away and need no claim.
     away: BTreeSet<MemberId>,
     /// The requests to join, oldest first.
     joining: VecDeque<Joining>,
     /// The requests to return, oldest first.
     returning: VecDeque<Returning>,
-    /// Whether the log has the first message of the epoch.
+    /// `true` once the log has the first message of the epoch.
     is_begun: bool,
-    /// Whether messages are applied that the log does not have yet. A member who is let in must be in the log.
+    /// `true` while messages are applied that the log does not have yet. Nobody joins meanwhile, because a new member
+    /// must be in the log.
     is_alone: bool,
-    /// The message that was sent, as long as it is unknown whether the log has it.
+    /// The message that was sent, while it is unknown whether the log has it.
     sending: Option<LogMessage>,
-    /// The step of the checksum that was sent last.
+    /// The step of the last checksum that was sent.
     checked: u64,
 }
 
@@ -60,9 +61,9 @@ pub(crate) struct ClusterSequencer {
 struct Joining {
     token: Token,
     member: MemberId,
-    /// Set once a message has the new member.
+    /// Set once a message contains the new member.
     color: Option<PlayerColor>,
-    /// Whether the log has that message.
+    /// `true` once the log has that message.
     is_in: bool,
 }
 
@@ -82,8 +83,8 @@ enum Decision {
 }
 
 impl ClusterSequencer {
-    /// The sequencer of an epoch whose first message is still to be appended. Commands until then are lost: the
-    /// predecessor may still append messages that change who is in the room.
+    /// Starts the sequencer of an epoch whose first message must still be appended. Commands until then are lost,
+    /// because the predecessor may still append messages that change who is in the room.
     pub(crate) fn new(lease: Lease, state: &RoomState) -> Self {
         let room = &state.room;
         let inbox = Inbox::new(room.header().mode, room.next_member());
@@ -107,11 +108,11 @@ impl ClusterSequencer {
         self.lease.epoch
     }
 
-    /// The message that is being appended; otherwise the next one, of `steps` steps.
+    /// The message that is being appended, or otherwise the next one, of `steps` steps.
     pub(crate) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let message = match self.sending.take() {
             Some(sent) if sent.last == state.number => sent,
-            // The predecessor has written before it was fenced off.
+            // The predecessor wrote before it was fenced off.
             Some(sent) => LogMessage { last: state.number, tick: state.tick, check: None, ..sent },
             None => self.message(state, steps),
         };
@@ -119,12 +120,12 @@ impl ClusterSequencer {
         message
     }
 
-    /// Whether a message is being appended.
+    /// Returns true while a message is being appended.
     pub(crate) fn is_sending(&self) -> bool {
         self.sending.is_some()
     }
 
-    /// Notes that the log has a message, which was applied to `state`; returns the answers to the requests that it
+    /// Notes that the log has a message, which was applied to `state`. Returns the answers to the requests that it
     /// fulfils.
     pub(crate) fn note(
         &mut self,
@@ -143,20 +144,20 @@ impl ClusterSequencer {
         self.answers()
     }
 
-    /// Goes on alone, if the epoch has begun; returns the message that the log may have.
+    /// Goes on alone if the epoch has begun. Returns the message that the log may have.
     pub(crate) fn begin_alone(&mut self) -> Option<LogMessage> {
         let message = self.sending.take_if(|_| self.is_begun)?;
         self.is_alone = true;
         Some(message)
     }
 
-    /// Goes on as usual, once the log has all messages; returns the answers to the requests that they fulfil.
+    /// Goes on as usual once the log has all messages. Returns the answers to the requests that they fulfil.
     pub(crate) fn end_alone(&mut self) -> Vec<PeerMessage> {
         self.is_alone = false;
         self.answers()
     }
 
-    /// The answers to requests to join that are in the log now.
+    /// The answers to the requests to join that are now in the log.
     fn answers(&mut self) -> Vec<PeerMessage> {
         let mut answers = Vec::new();
         for joining in self.joining.iter_mut().filter(|joining| !joining.is_in) {
@@ -166,7 +167,7 @@ impl ClusterSequencer {
         answers
     }
 
-    /// Handles a request to be a member; returns the answer if it is known.
+    /// Handles a request to be a member. Returns the answer if it is known.
     pub(crate) fn request(
         &mut self,
         token: Token,
@@ -241,12 +242,12 @@ impl ClusterSequencer {
         match command {
             Command::Leave => self.leave(member),
             Command::Away => self.set_away(member, now),
-            // Commands that come too often were refused on the member's own host.
+            // The member's own host has refused the commands that came too often.
             command => _ = self.inbox.act(member, command),
         }
     }
 
-    /// Notes that a host has these members. Requests to return to them are refused; returns the answers.
+    /// Notes that a host has these members. Refuses the requests to return to them, and returns the answers.
     pub(crate) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
         for member in members {
             self.claimed.entry(*member).and_modify(|time| *time = now);
@@ -260,7 +261,7 @@ impl ClusterSequencer {
         refused.collect()
     }
 
-    /// Marks members away who are not claimed any more.
+    /// Marks members away who are no longer claimed.
     pub(crate) fn set_unclaimed_away(&mut self, now: Instant) {
         let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
         let lost: Vec<MemberId> =
@@ -270,17 +271,17 @@ impl ClusterSequencer {
         }
     }
 
-    /// Whether nobody is in the room, and no message is being appended.
+    /// Returns true if nobody is in the room and no message is being appended.
     pub(crate) fn is_empty(&self) -> bool {
         self.sending.is_none() && self.inbox.is_empty()
     }
 
-    /// Whether the log has all that members have done.
+    /// Returns true if the log has all actions of the members.
     pub(crate) fn is_settled(&self) -> bool {
         self.sending.is_none() && !self.inbox.has_moves()
     }
 
-    /// Begins the epoch with the present members, who must be claimed within the usual time.
+    /// Begins the epoch with the present members. They must be claimed within the usual time.
     fn begin(&mut self, state: &RoomState, now: Instant) {
         let room = &state.room;
         self.is_begun = true;
@@ -331,7 +332,7 @@ impl ClusterSequencer {
         }
     }
 
-    /// The next message, of `steps` steps.
+    /// Builds the next message, of `steps` steps.
     pub(crate) fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let mut entries = Vec::new();
         let Self { inbox, joining, .. } = self;

@@ -1,20 +1,21 @@
-//! Three hosts with players, a bus and a database in simulated time, whose links have faults.
+//! Three hosts with players, a bus and a database in simulated time. Their links have faults.
 //!
 //! Players enter rooms, walk, talk and leave. Hosts are cut off from the bus or the database, stand still, drain,
-//! or are killed, and their players connect to other hosts; some connect twice. Answers and what is said are
-//! delayed and lost. After each run, everything that was broken and not
-//! killed is well again for a while. Then:
+//! or are killed. Their players then connect to other hosts, and some connect twice. Answers and broadcasts are
+//! delayed and lost. After each run, all faults except killed hosts are repaired, and nothing breaks for a while.
+//! Then:
 //!
-//! - no epoch has had two sequencers, and none follows a later one in the log;
-//! - what each host shows is what the log gives that is played from its beginning, bit for bit;
+//! - no epoch has had two sequencers, and no epoch follows a later one in the log;
+//! - each host shows the same room as a replay of the log from its beginning, bit for bit;
 //! - no checksum has differed on any host;
-//! - each player who was let in is in the log, once, under a number of their own;
-//! - the members of rooms who are not away are those who are there, and each room with members goes on;
-//! - whoever has returned is the member that they were, and no connection has a place that another one has taken;
-//! - nobody takes the place of one who plays.
+//! - each player who was let in is in the log once, under a number of their own;
+//! - the members who are not away are the players who are present, and each room with members goes on;
+//! - a player who has returned is the same member as before, and no connection holds a place that another one has
+//!   taken;
+//! - nobody takes the place of a player who plays.
 //!
-//! A failed run prints its seed; `SEED=n cargo test --features cluster-tests --lib cluster::simulation`
-//! repeats it. `CLUSTER_SEEDS=1000` plays a thousand seeds instead of some.
+//! A failed run prints its seed. `SEED=n cargo test --features cluster-tests --lib cluster::simulation` repeats
+//! it. `CLUSTER_SEEDS=1000` plays a thousand seeds instead of [`SEEDS`].
 
 mod bus;
 mod findings;
@@ -49,23 +50,23 @@ const HOSTS: usize = 3;
 const PLAYERS: usize = 5;
 /// The time with faults, in milliseconds.
 const FAULTS: u64 = 12_000;
-/// The time without, after which nothing of them is left.
+/// The time without faults, after which none of their effects is left.
 const CALM: Duration = Duration::from_secs(25);
-/// Long enough for a configuration to be followed, and for a room to end on its host.
+/// Long enough for hosts to apply a configuration, and for a room to end on its host.
 const CONFIGURED: Duration = Duration::from_secs(12);
-/// The seeds of a usual run.
+/// The number of seeds in a usual run.
 const SEEDS: u64 = 60;
 
-/// A run.
+/// A run of one seed.
 struct Run {
     world: World,
     chance: SplitMix64,
     catalog: Arc<Catalog>,
     hosts: Vec<Host>,
     players: Vec<Player>,
-    /// All who were ever let in.
+    /// All members who were ever let in.
     let_in: Vec<(RoomId, MemberId)>,
-    /// How often a player has returned.
+    /// How many times players have returned.
     returns: u64,
 }
 
@@ -74,9 +75,9 @@ struct Host {
     shared: SharedRooms,
     visitors: Visitors,
     metrics: Arc<Metrics>,
-    /// Whether it was killed, or has ended.
+    /// `true` once it was killed or has ended.
     is_killed: bool,
-    /// When its faults are over.
+    /// The time when its faults are over.
     well_at: Instant,
 }
 
@@ -111,7 +112,7 @@ impl Run {
         self.assert_nobody_is_displaced().await;
     }
 
-    /// Now and then, something breaks.
+    /// Breaks something now and then.
     fn disturb(&mut self) {
         if !self.chance.one_in(12) {
             return;
@@ -136,7 +137,7 @@ impl Run {
         self.hosts[host].well_at = Instant::now() + Duration::from_millis(time);
     }
 
-    /// The host ends as its operator wants it.
+    /// Ends a host as its operator would.
     fn drain(&mut self, host: usize) {
         for player in self.players.iter_mut().filter(|player| player.host == host) {
             player.part();
@@ -180,8 +181,8 @@ fn wish() -> RoomWish {
     RoomWish { level: "hall".to_owned(), mode: Mode::Tag, difficulty: Difficulty::Normal }
 }
 
-/// Plays a seed; returns how many checksums were compared, how many steps rooms have taken alone, and how often
-/// players have returned.
+/// Plays a seed. Returns how many checksums were compared, how many steps rooms took alone, and how many times
+/// players returned.
 fn play(seed: u64) -> [u64; 3] {
     let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
     runtime.block_on(async {
@@ -215,7 +216,7 @@ fn hosts_agree_whatever_breaks() {
             }
         }
     }
-    // In some runs, no two hosts are in a room together, no room goes on alone, or no host ends.
+    // In a single run, it is possible that no two hosts share a room, no room goes on alone, or no host ends.
     let has_all = figures.iter().all(|figure| *figure > 0);
     assert!(has_all || number("SEED").is_some(), "checksums, steps alone and returns: {figures:?}");
 }
@@ -233,7 +234,7 @@ fn a_standing_room_that_is_taken_out_is_listed_while_somebody_is_in_it() {
         let limits = RoomLimits { standing: Vec::new(), ..one.rooms.limits() };
         one.shared.set_limits(limits);
         sleep(CONFIGURED).await;
-        // The other hosts have it in their configurations.
+        // The other hosts still have it in their configurations.
         assert_eq!([0, 1, 2].map(listed), [0, 1, 1]);
         let entrant = Entrant { name: Line::of("ada", 16).unwrap(), key: None };
         let place = other.shared.enter(id, &entrant).await.unwrap();

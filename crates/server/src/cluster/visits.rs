@@ -1,15 +1,15 @@
-//! The visits of all hosts, so that limits of connections hold for all of them together.
+//! The visits of all hosts, counted together for the limits on connections.
 //!
 //! # Rules
 //!
-//! - A visit begins in the database when it is known who the visitor is, and ends with their session.
-//! - A host announces itself each second. The visits of a host that was silent for [`THERE`] do not count.
-//! - A visitor may be over a limit because of their own visit on a host that was just killed. So a visitor over a
-//!   limit waits until each host of the earlier visits has announced itself again, or its visits no longer count.
-//! - While the database is away nobody begins a visit, and running visits go on. Visits that end meanwhile are ended in
-//!   the database later.
+//! - A visit begins in the database once the visitor is known, and ends with their session.
+//! - A host announces itself each second. The visits of a host that has been silent for [`THERE`] do not count.
+//! - A visitor may be over a limit because of their own visit on a host that was just killed. So a visitor over a limit
+//!   waits until each host of the earlier visits has announced itself again, or until its visits no longer count.
+//! - While the database is unavailable, no visit begins, and running visits go on. Visits that end meanwhile are ended
+//!   in the database later.
 //!
-//! Rejected: a new visit in place of an earlier one. Two clients that connect again by themselves would end each other's
+//! Rejected: a new visit in place of an earlier one. Two clients that reconnect automatically would end each other's
 //! visits for ever.
 
 #[cfg(test)]
@@ -28,22 +28,22 @@ use crate::admission::{Refusal, counted_address};
 use crate::lock::locked;
 use crate::logging;
 
-/// The time from one announcement of a host to the next.
+/// The time between two announcements of a host.
 pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);
-/// The time in which a host that has announced itself is there.
+/// How long a host counts as present after an announcement.
 pub(crate) const THERE: Duration = Duration::from_secs(5);
 /// The time after which a visitor over a limit is counted again.
 const AGAIN: Duration = Duration::from_millis(250);
-/// The visits of this host. Clones are the same.
+/// The visits of this host. Clones share them.
 #[derive(Clone, Debug)]
 pub(crate) struct Visits(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
     store: StoreWorker,
-    /// Locked by calls of the store alone.
+    /// Locked only by calls to the store.
     registry: Mutex<Registry>,
-    /// The visits that are still to be ended in the database.
+    /// The visits that must still be ended in the database.
     ended: Mutex<Vec<VisitId>>,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct CountedVisit {
     visits: Visits,
 }
 
-/// A visit that is to begin, and the most there may be.
+/// A visit that is to begin, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewVisit {
     /// `None` for a guest.
@@ -66,16 +66,16 @@ pub(crate) struct NewVisit {
     pub(crate) per_address: u32,
 }
 
-/// Why a visit does not begin.
+/// The reason why a visit does not begin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum VisitRefusal {
-    /// There are too many, on all hosts together.
+    /// There are too many visits, on all hosts together.
     TooMany(Refusal),
     /// The database was not asked, or has not answered.
     NotNow(String),
 }
 
-/// A limit that is reached, counting only hosts that have announced themselves in the time `ago`.
+/// A limit that is reached even if only hosts count that have announced themselves in the time `ago`.
 #[derive(Debug)]
 struct TooMany {
     reason: Refusal,
@@ -88,15 +88,15 @@ struct Registry {
     notice: HostNotice,
     /// The visits that count and have not ended.
     counting: BTreeSet<VisitId>,
-    /// Whether the database may have visits of this host that nobody here has.
+    /// `true` if the database may have visits of this host that no session holds.
     is_unsure: bool,
-    /// Whether the last call to the database failed.
+    /// `true` if the last call to the database failed.
     is_away: bool,
     has_left: bool,
 }
 
 impl Visits {
-    /// No visit yet, for the host of `notice`.
+    /// Starts without visits, for the host of `notice`.
     pub(crate) fn new(store: StoreWorker, notice: HostNotice) -> Self {
         let counting = BTreeSet::new();
         let registry =
@@ -110,7 +110,7 @@ impl Visits {
         loop {
             let waited = came.elapsed();
             let visits = self.clone();
-            // The guard is made by the call: a visitor who has gone before the answer counts no more.
+            // The call creates the guard, so that the visit of a visitor who leaves before the answer no longer counts.
             let begun = self.call(move |registry, store| {
                 let begun = registry.begin(store, &new_visit)?;
                 Ok::<_, StoreFailure>(begun.map(|ids| CountedVisit { ids, visits }))
@@ -127,13 +127,13 @@ impl Visits {
         }
     }
 
-    /// Announces the host with so many visitors.
+    /// Announces the host with `load` visitors.
     pub(crate) fn announce(&self, load: usize) {
         let load = u32::try_from(load).unwrap_or(u32::MAX);
         drop(self.call(move |registry, store| registry.announce(store, load)));
     }
 
-    /// The hosts that are there; `None` if the database does not say.
+    /// The present hosts; `None` if the database does not answer.
     pub(crate) async fn hosts(&self) -> Option<Vec<HostRow>> {
         self.call(|_, store| store.hosts(THERE)).await.ok()?.ok()
     }
@@ -148,7 +148,7 @@ impl Visits {
         _ = left.await;
     }
 
-    /// Ends the visits whose sessions have ended, and acts.
+    /// Ends the visits whose sessions have ended, and then runs `act`.
     fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut Registry, &mut HostStore) -> T + Send + 'static,
@@ -164,7 +164,7 @@ impl Visits {
 }
 
 impl NewVisit {
-    /// The key and the address that the visit counts against, each with its limit and the reason of a refusal.
+    /// The key and the address that the visit counts against, each with its limit and the reason for a refusal.
     fn limits(&self) -> impl Iterator<Item = (String, u32, Refusal)> {
         let by_key = self.key.map(|key| (key.to_string(), self.per_key, Refusal::Key));
         let address = counted_address(self.address).to_string();
@@ -180,7 +180,7 @@ impl Drop for CountedVisit {
 }
 
 impl Registry {
-    /// Begins a visit by the key and by the address, or neither.
+    /// Begins a visit by the key and by the address, or by neither.
     fn begin(
         &mut self,
         presence: &mut HostStore,
@@ -209,7 +209,7 @@ impl Registry {
 
     fn end_all(&mut self, presence: &mut HostStore, ids: Vec<VisitId>) {
         for id in ids {
-            // One that this host has left has ended with all others.
+            // When this host left, the visit ended with all others.
             if self.counting.remove(&id) && (self.is_away || presence.end_visit(id).is_err()) {
                 self.is_unsure = true;
             }
@@ -228,7 +228,7 @@ impl Registry {
         }
     }
 
-    /// Ends the visits of this host that nobody has, since a call has failed.
+    /// Ends the visits of this host that no session holds, after a call has failed.
     fn end_unknown(&mut self, presence: &mut HostStore) -> Result<(), StoreFailure> {
         for visit in presence.visits(THERE)? {
             if visit.host == self.notice.name && !self.counting.contains(&visit.id) {
@@ -238,7 +238,7 @@ impl Registry {
         Ok(())
     }
 
-    /// Notes whether the database answers, and logs that it does not any more.
+    /// Notes whether the database answers, and logs when it stops answering.
     fn note(&mut self, answer: Result<(), StoreFailure>) {
         let was_away = std::mem::replace(&mut self.is_away, answer.is_err());
         if let Err(failure) = answer

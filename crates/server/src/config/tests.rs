@@ -29,7 +29,7 @@ fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
     Ok(())
 }
 
-/// The range of a number, as its fault tells it.
+/// The range of a number, as the message of its fault states it.
 fn range(key: &str) -> [u64; 2] {
     let faults = faults(&format!("{key} = 99999999999"));
     let range = faults.split("a whole number from ").nth(1).and_then(|it| it.lines().next());

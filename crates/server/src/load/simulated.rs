@@ -1,10 +1,10 @@
-//! The worker of a host in simulated time, in which computing would take no time.
+//! The worker of a host in simulated time. Without it, computation would take no time.
 //!
-//! After each piece of work, the clock goes on by what the work costs, before anything else runs: so does it on a
-//! host with one processor. What one visitor causes then delays all others, and a turn that is too long shows.
+//! After each piece of work, the clock advances by the cost of the work before anything else runs, as on a host with
+//! one processor. So the work for one visitor delays all others, and a turn that is too long shows.
 //!
-//! A lock that work holds while it sleeps was refused: the task that works would let others run, which is what a turn
-//! that is too long does not.
+//! Rejected: a lock that work holds while it sleeps. The sleeping task would let other tasks run, but a turn that is
+//! too long does not.
 
 use std::pin::pin;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use tokio::time::advance;
 use super::Load;
 use crate::metrics::Metrics;
 
-/// What each piece of work costs.
+/// The cost of each kind of work.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Worker {
     arrival: Duration,
@@ -28,7 +28,7 @@ pub(crate) struct Worker {
 /// A piece of work.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Work {
-    /// A session has taken so many bytes that arrived together.
+    /// A session has received this many bytes at once.
     Arrival(usize),
     /// A session has drawn a frame.
     Frame,
@@ -37,19 +37,19 @@ pub(crate) enum Work {
 }
 
 impl Load {
-    /// That of a host in simulated time, of which only the steps of rooms are measured.
+    /// The load of a host in simulated time. Only the delays of steps are measured.
     pub(crate) fn simulated(metrics: Arc<Metrics>, worker: Worker) -> Self {
         Self { worker, ..Self::with(metrics, 1.0, || Duration::ZERO) }
     }
 
-    /// Lets the time of `work` that is done pass, in simulated time.
+    /// Advances simulated time by the cost of `work`.
     pub(crate) fn spend(&self, work: Work) {
         self.worker.spend(work);
     }
 }
 
 impl Worker {
-    /// One that takes 10 µs for a byte. What was measured is 3 µs for a typed letter and 7 µs for one that combines.
+    /// A worker that takes 10 µs for a byte. Measured: 3 µs for a typed letter, and 7 µs for a combining one.
     pub(crate) const SLOW: Self = Self {
         arrival: Duration::from_micros(100),
         byte: Duration::from_micros(10),
@@ -57,7 +57,7 @@ impl Worker {
         step: Duration::from_micros(100),
     };
 
-    /// Lets the time of `work` pass.
+    /// Advances simulated time by the cost of `work`.
     pub(crate) fn spend(self, work: Work) {
         let time = match work {
             Work::Arrival(bytes) => self.arrival + self.byte * bytes as u32,
@@ -65,7 +65,7 @@ impl Worker {
             Work::Step => self.step,
         };
         if time > Duration::ZERO {
-            // The clock goes on at the first look. At the second one, others would have run.
+            // The first poll advances the clock. A second poll would let other tasks run first.
             _ = pin!(advance(time)).poll(&mut Context::from_waker(Waker::noop()));
         }
     }

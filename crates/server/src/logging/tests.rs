@@ -8,7 +8,7 @@ use super::*;
 use crate::accounts::AccountKey;
 use crate::admission::{Outcome, Refusal};
 
-/// Keeps what is written.
+/// A writer that stores its input.
 #[derive(Clone, Default)]
 struct Kept(Arc<Mutex<Vec<u8>>>);
 
@@ -23,7 +23,7 @@ impl Write for Kept {
     }
 }
 
-/// What is logged while `act` runs, by this thread.
+/// The lines that this thread logs while `act` runs.
 pub(crate) fn logged(format: LogFormat, filter: &str, act: impl FnOnce(&Logging)) -> String {
     let kept = Kept::default();
     let writer = kept.clone();
@@ -33,7 +33,7 @@ pub(crate) fn logged(format: LogFormat, filter: &str, act: impl FnOnce(&Logging)
     String::from_utf8(kept.0.lock().unwrap().clone()).unwrap()
 }
 
-/// Ends the line, forges another one, and clears the screen.
+/// A text that ends the line, forges another one, and clears the screen.
 const EVIL: &str = "a\n2026 ERROR host: fault\u{1b}[2J\u{9b}2J\u{202e}\"";
 
 fn name_evilly(_: &Logging) {
@@ -130,8 +130,8 @@ proptest! {
     }
 }
 
-/// The lines of a second in which `connections` are accepted, of so many networks, and leave early; the
-/// others are refused.
+/// The log lines of one second with `connections` from `networks`. Every third connection is refused.
+/// The others are accepted and leave early.
 fn lines(connections: u32, networks: u32) -> Vec<serde_json::Value> {
     let text = logged(LogFormat::Json, "info", |_| {
         let mut throttle = Throttle::default();
@@ -147,7 +147,7 @@ fn lines(connections: u32, networks: u32) -> Vec<serde_json::Value> {
             }
         }
         throttle.end_second();
-        // Nothing is left for the next one.
+        // The next second has nothing left to log.
         throttle.end_second();
     });
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::admission::Refusal;
 
-/// The samples of a text, and a check of its form.
+/// Parses the samples of a text, and checks its format.
 fn samples(text: &str) -> BTreeMap<String, f64> {
     let mut samples = BTreeMap::new();
     let mut name = "";
@@ -57,7 +57,7 @@ fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
     let metrics = Metrics::default();
     metrics.host.set("a \"b\"\\".to_owned()).unwrap();
     let [old, new] = [0; 2].map(|_| metrics.add_room(7));
-    // A room that was replaced takes nothing with it.
+    // When a replaced room is dropped, its successor stays.
     drop(old);
     new.members.set(3);
     new.checks(false).inc();

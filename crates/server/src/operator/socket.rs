@@ -1,4 +1,4 @@
-//! The socket `admin.sock` of a data folder: the server's end, and the operator's.
+//! The socket `admin.sock` in a data folder: the server's end and the operator's end.
 
 use std::fs::{self, Permissions};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
@@ -16,14 +16,14 @@ use crate::admin::{AdminReply, AdminRequest};
 use crate::service::serve_each;
 use cellcaster::fault::printable_path;
 
-/// A socket at which an operator can ask. It is removed when this is dropped.
+/// A socket for an operator's requests. It is removed when this value is dropped.
 #[derive(Debug)]
 pub struct AdminSocket {
     listener: UnixListener,
     path: PathBuf,
 }
 
-/// Why a server has not answered.
+/// The reason why a server has not answered.
 #[derive(Debug, Error)]
 pub enum AdminFailure {
     /// No server runs with this data folder.
@@ -42,19 +42,19 @@ pub enum AdminFailure {
     Failed(PathBuf, io::Error),
 }
 
-/// In bytes: the longest line of a request.
+/// The longest line of a request, in bytes.
 const MOST_REQUEST: u64 = 4096;
-/// In bytes: the longest line of a reply. A hundred thousand visitors are less.
+/// The longest line of a reply, in bytes. A hundred thousand visitors take less.
 const MOST_REPLY: u64 = 32 << 20;
-/// The time in which a server has to answer a request.
+/// The time limit for a request, on the server.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(5);
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl AdminSocket {
-    /// Listens in a data folder. A socket that a killed server has left there is replaced.
+    /// Listens in a data folder. Replaces a socket that a killed server left there.
     ///
     /// # Errors
-    /// [`ErrorKind::AddrInUse`] if a server listens there; otherwise that of the system.
+    /// [`ErrorKind::AddrInUse`] if a server listens there; otherwise the system's error.
     pub fn bind(folder: &Path) -> io::Result<Self> {
         let path = socket_of(folder);
         if BlockingStream::connect(&path).is_ok() {
@@ -87,14 +87,14 @@ impl Drop for AdminSocket {
 
 async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()> {
     let user = stream.peer_cred()?.uid();
-    // Between its creation and the change of its mode, others may have connected.
+    // Others may have connected between the creation of the socket and the change of its mode.
     if user != 0 && user != rustix::process::geteuid().as_raw() {
         return Ok(());
     }
     answer(&mut stream, operator).await
 }
 
-/// Answers the one request of a connection.
+/// Answers the only request of a connection.
 pub(crate) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result<()>
 where
     S: AsyncRead + AsyncWrite + Unpin,
@@ -109,7 +109,7 @@ where
     stream.write_all(&line).await
 }
 
-/// The first line; `None` if it is too long or has no end.
+/// The first line without its end; `None` if it is too long or has no end.
 async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec<u8>>> {
     let mut line = Vec::new();
     let mut stream = tokio::io::BufReader::new(stream.take(MOST_REQUEST));
@@ -117,7 +117,7 @@ async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec
     Ok((line.pop() == Some(b'\n')).then_some(line))
 }
 
-/// Asks the server of a data folder.
+/// Sends a request to the server of a data folder.
 ///
 /// # Errors
 /// [`AdminFailure`], which is one sentence.

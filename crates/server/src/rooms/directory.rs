@@ -1,9 +1,11 @@
-//! The directory of rooms: it lists them, and visitors enter them by it.
+//! The directory of rooms: lists the rooms and lets visitors in.
 //!
-//! Each room is a task, which a [`Sequencer`] runs. The directory gives out [`Place`]s in rooms; a visitor leaves a room
-//! when their place is dropped. Lobbies watch a list of [`RoomSummary`], which is replaced when a room changes for them.
+//! Each room is a task, which a [`Sequencer`] runs. The directory issues [`Place`]s in rooms; a visitor
+//! leaves a room when their place is dropped. Lobbies watch a list of [`RoomSummary`], which is replaced
+//! whenever a change of a room is visible in the lobby.
 //!
-//! A standing room that ends by a panic is opened again; its members are in the lobby then.
+//! If a standing room panics, the directory opens a new one in its place. The members of the old room go back
+//! to the lobby.
 
 mod recording;
 #[cfg(test)]
@@ -27,23 +29,23 @@ pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use cellcaster::rng::SplitMix64;
 
-/// The time in which rooms end.
+/// How long [`Rooms::end`] waits for the rooms to close.
 const ENDING: Duration = Duration::from_secs(1);
 /// Shown to a member who was removed.
 const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
 
-/// The rooms of a server. Clones are the same rooms.
+/// The rooms of a server. Clones share the same rooms.
 #[derive(Clone, Debug)]
 pub(crate) struct Rooms(Arc<Directory>);
 
-/// A host's limits of rooms.
+/// A host's limits for its rooms.
 #[derive(Clone, Debug)]
 pub(crate) struct RoomLimits {
-    /// The most rooms.
+    /// The maximum number of rooms.
     pub(crate) most: usize,
-    /// The most watchers of a room.
+    /// The maximum number of watchers per room.
     pub(crate) most_watchers: usize,
-    /// The time without members after which a room is closed.
+    /// How long a room stays open without members.
     pub(crate) closes_after: Duration,
     /// The rooms that are always open.
     pub(crate) standing: Vec<RoomWish>,
@@ -57,7 +59,7 @@ struct Directory {
     load: Arc<Load>,
     open: Mutex<OpenRooms>,
     summaries: watch::Sender<Arc<[RoomSummary]>>,
-    /// The rooms that this host shares with others.
+    /// The rooms that this host shares with other hosts.
     shared: Mutex<Vec<RoomSummary>>,
 }
 
@@ -69,20 +71,20 @@ struct OpenRooms {
     rooms: BTreeMap<RoomId, OpenRoom>,
 }
 
-/// A room that does not run yet.
+/// A room that is not running yet.
 type NewRoom = (RoomId, Room, Arc<RoomInterface>);
 
 #[derive(Debug)]
 struct OpenRoom {
     interface: Arc<RoomInterface>,
-    /// Without the number of watchers.
+    /// The summary, without the number of watchers.
     summary: RoomSummary,
-    /// The standing room that it was opened as, even if it does not stand any more.
+    /// The standing room for which it was opened, even if that wish has been withdrawn since.
     stood_for: Option<RoomWish>,
 }
 
 impl Rooms {
-    /// Opens the standing rooms on the current runtime. All chance in rooms comes from `seed`.
+    /// Opens the standing rooms on the current runtime. `seed` determines all chance in the rooms.
     pub(crate) fn new(
         limits: RoomLimits,
         catalog: Arc<Catalog>,
@@ -104,20 +106,20 @@ impl Rooms {
         rooms
     }
 
-    /// The levels that rooms can be in.
+    /// The levels that a room can be played in.
     pub(crate) fn catalog(&self) -> &Arc<Catalog> {
         &self.0.catalog
     }
 
-    /// The rooms, as lobbies show them.
+    /// The list of rooms that lobbies show.
     pub(crate) fn summaries(&self) -> watch::Receiver<Arc<[RoomSummary]>> {
         self.0.summaries.subscribe()
     }
 
-    /// Opens a room, and joins it.
+    /// Opens a room and joins it.
     pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
         let (id, room, interface) = self.add(wish, false)?;
-        // Before the room runs: a room for a single member is closed as soon as nobody is in it.
+        // Join before the room runs: a room for a single member closes as soon as it is empty.
         let member = interface.inbox.join(name)?;
         let place = Place::member(id, member, Arc::clone(&interface));
         self.spawn((id, room, interface));
@@ -160,26 +162,26 @@ impl Rooms {
         }
     }
 
-    /// The limits of the host.
+    /// The host's limits.
     pub(crate) fn limits(&self) -> RoomLimits {
         locked(&self.0.limits, |limits| limits.clone())
     }
 
-    /// Replaces the limits of the host. New standing rooms open. Rooms that do not stand any more close when nobody is
-    /// in them, as other rooms do. The other limits apply from now on.
+    /// Replaces the host's limits. New standing rooms open. Rooms that are no longer standing close once they
+    /// are empty, like any other room. The other limits apply from now on.
     pub(crate) fn set_limits(&self, limits: RoomLimits) {
         locked(&self.0.limits, |it| *it = limits);
         self.open_standing();
         self.publish();
     }
 
-    /// Shows lobbies the rooms that this host shares with others, too.
+    /// Adds the rooms that this host shares with other hosts to the lobby's list.
     pub(crate) fn show_shared(&self, rooms: Vec<RoomSummary>) {
         locked(&self.0.shared, |shared| *shared = rooms);
         self.publish();
     }
 
-    /// Closes all rooms, and waits until their recordings are written, for [`ENDING`] at most.
+    /// Closes all rooms and waits until their recordings are written, for at most [`ENDING`].
     pub(crate) async fn end(&self) {
         let interfaces: Vec<Arc<RoomInterface>> = locked(&self.0.open, |open| {
             open.rooms.values().map(|room| Arc::clone(&room.interface)).collect()
@@ -192,7 +194,7 @@ impl Rooms {
         _ = timeout(ENDING, all_closed).await;
     }
 
-    /// Opens the standing rooms that are missing, and lets the superfluous ones close.
+    /// Opens the missing standing rooms, and lets those that are no longer wanted close.
     fn open_standing(&self) {
         let (mut missing, closes_after) =
             locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));
@@ -217,7 +219,7 @@ impl Rooms {
         }
     }
 
-    /// Adds a room, which does not run yet.
+    /// Adds a room without running it.
     fn add(&self, wish: &RoomWish, stands: bool) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
         let (most, closes_after) = locked(limits, |it| (it.most, it.closes_after));
@@ -243,7 +245,7 @@ impl Rooms {
         })
     }
 
-    /// Runs a room until it is closed.
+    /// Runs a room until it closes.
     fn spawn(&self, (id, room, interface): NewRoom) {
         let header = room.header();
         logging::room_opened(id.0, &header.level, header.mode.name());
@@ -266,7 +268,7 @@ impl Rooms {
         });
     }
 
-    /// Records that a room has changed for lobbies.
+    /// Updates a room's summary, and logs the end of a round.
     fn change(&self, id: RoomId, room: &Room) {
         let is_over = |phase| matches!(phase, Phase::Over { .. });
         let summary = RoomSummary::of(id, room);
@@ -283,13 +285,13 @@ impl Rooms {
         self.publish();
     }
 
-    /// Shows all lobbies the present rooms.
+    /// Publishes the current rooms to all lobbies.
     fn publish(&self) {
         let summary = |room: &OpenRoom| RoomSummary {
             watchers: room.interface.watchers(),
             ..room.summary.clone()
         };
-        // Under the lock, so that an older list never replaces a newer one.
+        // Sent under the lock, so that an older list never replaces a newer one.
         locked(&self.0.open, |open| {
             let rooms = open.rooms.values().map(summary);
             let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
@@ -303,16 +305,17 @@ impl Rooms {
     }
 }
 
-/// A visitor's place in a room, as a member or to watch. They leave when it is dropped, or are away if their host ends.
+/// A visitor's place in a room, as a member or a watcher. Dropping it takes the visitor out of the room, or
+/// marks them away if their host is shutting down.
 #[derive(Debug)]
 pub(crate) struct Place {
     room: RoomId,
     role: Role,
     interface: Arc<RoomInterface>,
-    /// The number of the member's seat. A member who was removed and has returned by another connection has another
-    /// seat.
+    /// The number of the member's seat. A member who was removed and returns through another connection gets
+    /// another seat.
     seat: Option<u64>,
-    /// Whether the member is away, and does not leave, when the place is dropped.
+    /// Whether dropping the place marks the member away instead of leaving.
     is_kept: bool,
     closed: watch::Receiver<Option<Arc<str>>>,
 }
@@ -341,7 +344,7 @@ impl Place {
         self.room
     }
 
-    /// The number of the member; `None` if the visitor watches.
+    /// The member's number; `None` for a watcher.
     pub(crate) fn member_id(&self) -> Option<MemberId> {
         match self.role {
             Role::Member(member) => Some(member),
@@ -349,37 +352,37 @@ impl Place {
         }
     }
 
-    /// The newest snapshot; `None` after a fault of the room.
+    /// The latest snapshot; `None` after a fault of the room.
     pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
         self.closed.mark_unchanged();
         self.interface.view()
     }
 
-    /// Why the room is closed, if it is: a sentence.
+    /// The sentence that says why the room is closed to this visitor, if it is.
     pub(crate) fn closed(&self) -> Option<Arc<str>> {
         let closed = self.closed.borrow().clone();
         closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()))
     }
 
-    /// Whether the member was removed from the room, which goes on.
+    /// Returns true if the member was removed while the room goes on.
     fn is_dismissed(&self) -> bool {
         self.member_id().is_some_and(|member| {
             self.seat.is_none() || self.interface.inbox.seat_number(member) != self.seat
         })
     }
 
-    /// Sets whether the room keeps the place when it is dropped, since the host ends.
+    /// Sets whether the room keeps the seat when the place is dropped because the host is shutting down.
     pub(crate) fn set_kept(&mut self, is_kept: bool) {
         self.is_kept = is_kept;
     }
 
-    /// Waits until there is a newer snapshot than the last [`Place::view`], or the room is closed.
+    /// Waits for a snapshot newer than the last [`Place::view`], or for the room to close.
     pub(crate) async fn changed(&mut self) {
-        // The place holds the sender.
+        // This cannot fail, because the place owns the sender.
         _ = self.closed.changed().await;
     }
 
-    /// Gives a command in the room.
+    /// Submits a command to the room.
     pub(crate) fn act(&self, command: Command) -> Result<(), CommandRefusal> {
         let member = self.member_id().ok_or(CommandRefusal::Impossible)?;
         if self.is_dismissed() {
@@ -388,7 +391,7 @@ impl Place {
         self.interface.inbox.act(member, command)
     }
 
-    /// The run that the visitor has finished since the last call.
+    /// The run that the visitor has finished since the last call, if any.
     pub(crate) fn finished(&self) -> Option<FinishedRun> {
         self.interface.inbox.finished(self.member_id()?)
     }

@@ -1,11 +1,11 @@
-//! Ghosts: the best runs of a level, which walk along as see-through figures.
+//! Ghosts: the best runs of a level, shown as translucent figures that walk along.
 //!
-//! A ghost is a picture and no more. It is outside of the room: nobody can touch it, and a room is the same, bit for
-//! bit, whether somebody sees ghosts or not.
+//! A ghost is only drawn. It is not part of the room's state: no player can touch it, and the room is the
+//! same, bit for bit, with and without ghosts.
 //!
-//! The script of a run is played once, on the thread of the store, into a [`Pose`] for every second step. Rejected: a
-//! game for each session that plays the script beside the room. A session would step a second game with its guards 60
-//! times a second, and could not begin in the middle of a round.
+//! The store's thread plays the script of a run once and keeps a [`Pose`] for every second step. Rejected: a
+//! second game in each session that replays the script. Each session would step another game with guards 60
+//! times a second, and could not start in the middle of a round.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,17 +18,17 @@ use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
 use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
 
-/// The most steps of a run that are shown: ten minutes, the longest race.
+/// The longest part of a run that is shown, in steps: ten minutes, the length of the longest race.
 const MOST_STEPS: usize = 10 * 60 * 60;
-/// A pose is kept for each of these steps.
+/// The number of steps per stored pose.
 const EVERY: usize = 2;
-/// How much of a ghost shows, of 255: as much as at home.
+/// The opacity of a ghost, of 255; the same as at home.
 const OPACITY: u8 = 96;
-/// The colour of the best run, which is the last but one that members get.
+/// The colour of the best run. It is the second to last colour that members are assigned.
 const BEST: PlayerColor = PlayerColor::Orange;
-/// The most runs that are kept: at most 10 MB.
+/// The maximum number of cached runs, 10 MB in all.
 const MOST_KEPT: usize = 32;
-/// The headings in a turn.
+/// The number of headings in a full turn.
 const HEADINGS: f64 = 65_536.0;
 
 /// The poses of a run.
@@ -37,8 +37,8 @@ pub(crate) struct Run {
     poses: Box<[Pose]>,
 }
 
-/// The position and the look of a player in a step, in 16 bytes. Coordinates are rounded to single precision, a few millionths of a cell, and headings to
-/// 65,536ths of a turn.
+/// A player's position and appearance in a step, in 16 bytes. Coordinates are rounded to single precision, a
+/// few millionths of a cell, and headings to 65,536ths of a turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
     position: [f32; 2],
@@ -47,16 +47,16 @@ struct Pose {
     frame: u8,
 }
 
-/// A run that a visitor sees.
+/// A run that is shown to a visitor.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ghost {
     run: Arc<Run>,
-    /// Whose run it is; `None` for the visitor's own.
+    /// The runner's name; `None` for the visitor's own run.
     name: Option<Line>,
 }
 
 impl Run {
-    /// The run of `script` in `world`, until its first exit.
+    /// Plays `script` in `world` until the player first reaches the exit.
     fn played(world: World, rules: Rules, script: &Script) -> Self {
         let mut game = Game::with_rules(world, rules);
         let mut walked = 0.0;
@@ -77,14 +77,14 @@ impl Run {
 }
 
 impl Pose {
-    /// The pose of the player of `game`, who has walked so many cells.
+    /// The pose of the player of `game` after walking `walked` cells.
     fn of(game: &Game, walked: f64) -> Self {
         let camera = game.camera(FieldOfView::default());
         let turns = camera.heading.degrees() / 360.0;
         Self {
             position: camera.position().to_array().map(|coordinate| coordinate as f32),
             feet: game.feet() as f32,
-            // The cast maps a whole turn to 65,535.
+            // The cast saturates: a full turn becomes 65,535.
             heading: (turns * HEADINGS).round() as u16,
             frame: game.frame_of_figure(walked),
         }
@@ -106,12 +106,12 @@ impl Pose {
 }
 
 impl Ghost {
-    /// Somebody's run; `None` for the visitor's own.
+    /// A ghost with the runner's name; `None` for the visitor's own run.
     pub(crate) fn new(run: Arc<Run>, name: Option<Line>) -> Self {
         Self { run, name }
     }
 
-    /// What stands above the figure.
+    /// The label above the figure.
     pub(crate) fn label(&self) -> String {
         match &self.name {
             Some(name) => format!("{name}'s best"),
@@ -119,7 +119,7 @@ impl Ghost {
         }
     }
 
-    /// The colour of the figure: the visitor's `own` for their own run.
+    /// The colour of the figure. The visitor's own run has their colour, `own`.
     pub(crate) fn color(&self, own: Option<PlayerColor>) -> PlayerColor {
         own.filter(|_| self.name.is_none()).unwrap_or(BEST)
     }
@@ -131,18 +131,18 @@ impl Ghost {
     }
 }
 
-/// The runs of boards, played once and kept for the next round, oldest first.
+/// A cache of runs from the boards, oldest first. Each run is played once and reused in later rounds.
 #[derive(Debug, Default)]
 pub(crate) struct KeptRuns {
     runs: VecDeque<((LevelBoard, AccountId, u64), Arc<Run>)>,
 }
 
 impl KeptRuns {
-    /// The ghosts of a level: the best run of the board, and the best run of the visitor's `own` account, if it is
-    /// another one.
+    /// The ghosts of a level: the best run on the board, and the best run of the visitor's account `own` if
+    /// that is a different run.
     ///
     /// # Errors
-    /// If the store can't be read.
+    /// Fails if the store cannot be read.
     pub(crate) fn ghosts(
         &mut self,
         store: &mut HostStore,
@@ -168,7 +168,7 @@ impl KeptRuns {
         Ok(ghosts)
     }
 
-    /// The run of an account that took so many steps.
+    /// The run of an account that took `steps` steps.
     fn run(
         &mut self,
         store: &mut HostStore,
@@ -176,7 +176,7 @@ impl KeptRuns {
         board: &LevelBoard,
         (account, steps): (AccountId, u64),
     ) -> Result<Option<Arc<Run>>, StoreFailure> {
-        // An account's fastest run of a level takes fewer steps than the one before it.
+        // This key is unique: each new best run of an account takes fewer steps than its previous one.
         let key = (board.clone(), account, steps);
         if let Some((_, run)) = self.runs.iter().find(|(known, _)| *known == key) {
             return Ok(Some(Arc::clone(run)));
@@ -209,7 +209,7 @@ mod tests {
     const CELLAR: (&str, Difficulty) = ("cellar", Difficulty::Normal);
 
     impl Ghost {
-        /// The run of a script of these lines in `world`.
+        /// The ghost of a script with these lines in `world`.
         pub(crate) fn of_script(world: &World, script: &str, name: Option<&str>) -> Self {
             let script = Script::parse(script, "it").unwrap_or_else(|faults| panic!("{faults}"));
             let run = Run::played(world.clone(), Rules::default(), &script);
@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(labels(&mut store, CELLAR, Some(jon)), ["Mara's best", "your best"]);
         assert_eq!(labels(&mut store, ("cellar", Difficulty::Hard), Some(jon)), [""; 0]);
         assert_eq!(labels(&mut store, ("no such", Difficulty::Normal), Some(jon)), [""; 0]);
-        // Each script was played once: one that is played is kept.
+        // Each script was played once: the runs are cached.
         assert_eq!(kept.runs.len(), 2);
     }
 

@@ -1,19 +1,19 @@
-//! The host's own maps: levels beside the built-in ones.
+//! The host's own maps: levels in addition to the built-in ones.
 //!
-//! Every `*.toml` file of a folder is a map, which is read once, when the server starts. All faults of all maps are
-//! reported in one run, as `cellcaster check` reports them.
+//! Every `*.toml` file in a folder is a map. The maps are read once, when the server starts. All faults in
+//! all maps are reported in one run, in the format of `cellcaster check`.
 //!
 //! # Rules
 //!
-//! - A map has a grid: nobody else could be met among bodies.
-//! - Its name is the file name without the ending: 1 to 32 of the characters a to z, 0 to 9, `-` and
-//!   `_`. It is no name of a built-in level.
-//! - Logs, scripts and boards call it by its [key](map_key), which has a hash of its text: results of a map
-//!   that has changed since do not compare with the new ones.
-//! - There are at most [`MOST_MAPS`] maps, of at most [`MOST_MAP_BYTES`] each and [`MOST_BYTES`] together.
+//! - A map must have a grid. Players cannot meet each other in a space of bodies.
+//! - A map's name is its file name without the extension: 1 to 32 characters from a to z, 0 to 9, `-` and
+//!   `_`. It must not be the name of a built-in level.
+//! - Logs, scripts and boards refer to a map by its [key](map_key), which contains a hash of its text.
+//!   Results from before a change to the map are therefore not compared with newer ones.
+//! - There are at most [`MOST_MAPS`] maps, of at most [`MOST_MAP_BYTES`] each and [`MOST_BYTES`] in total.
 //!
-//! Rejected: maps that are read again while the server runs. The rooms in them, and the boards, would have two maps of
-//! one name.
+//! Rejected: reloading maps while the server runs. Open rooms and the boards would then refer to two maps
+//! with the same name.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -26,38 +26,38 @@ use cellcaster::map::{self, Folder, builtin};
 use cellcaster::world::World;
 use thiserror::Error;
 
-/// The most maps of a host.
+/// The maximum number of a host's maps.
 pub const MOST_MAPS: usize = 100;
-/// The largest map of a host, in bytes.
+/// The maximum size of one map, in bytes.
 pub const MOST_MAP_BYTES: u64 = 256 << 10;
-/// The most bytes of all maps of a host.
+/// The maximum total size of a host's maps, in bytes.
 pub const MOST_BYTES: u64 = 4 << 20;
 
-/// The host's own maps, in the order of their names.
+/// The host's own maps, ordered by name.
 #[derive(Clone, Debug, Default)]
 pub struct HostMaps(pub(crate) Vec<HostMap>);
 
 #[derive(Clone, Debug)]
 pub(crate) struct HostMap {
-    /// The name of the file, without its ending.
+    /// The file name without its extension.
     pub(crate) name: String,
     pub(crate) key: String,
     pub(crate) world: Arc<World>,
 }
 
-/// Why maps cannot be taken.
+/// An error while reading maps.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MapsError {
     /// A sentence.
     #[error("{0}")]
     Sentence(String),
-    /// Several sentences, or reports as `cellcaster check` writes them, in lines.
+    /// Several sentences, or reports in the format of `cellcaster check`, one per line.
     #[error("{0}")]
     Report(String),
 }
 
 impl HostMaps {
-    /// The maps of a folder, or of one map file.
+    /// Reads the maps of a folder, or a single map file.
     ///
     /// # Errors
     /// All faults of all maps, or the reason why the folder cannot be read.
@@ -98,7 +98,7 @@ impl HostMaps {
 }
 
 impl MapsError {
-    /// One error for all; `None` if there are none.
+    /// Joins all errors into one; `None` if there are none.
     fn of_all(mut errors: Vec<Self>) -> Option<Self> {
         if errors.len() <= 1 {
             return errors.pop();
@@ -114,7 +114,7 @@ impl From<Faults> for MapsError {
     }
 }
 
-/// The map files in a folder, sorted by name; a file alone.
+/// The map files in a folder, sorted by name; or `path` itself if it is not a folder.
 fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
     let unreadable = |error| {
         MapsError::Sentence(format!("the maps in {} can't be read: {error}", printable_path(path)))
@@ -139,12 +139,12 @@ fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
     Ok(files)
 }
 
-/// A map, and its length in bytes.
+/// Reads a map; returns it with its length in bytes.
 fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     let name = map_name(path)?;
     let shown = printable_path(path);
     let unreadable = |error| MapsError::Sentence(format!("{shown} can't be read: {error}"));
-    // Opening a pipe would wait for its other end.
+    // Opening a pipe would block until its other end is opened.
     if !fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err(MapsError::Sentence(format!("{shown} is no file")));
     }
@@ -164,7 +164,7 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     Ok((HostMap { name, key, world }, length))
 }
 
-/// The name of the map in a file, if it may have it.
+/// The name of the map in a file, or an error if the name is not allowed.
 fn map_name(path: &Path) -> Result<String, MapsError> {
     const LONGEST: usize = 32;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();

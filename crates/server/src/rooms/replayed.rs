@@ -1,4 +1,4 @@
-//! Recorded rooms, played again.
+//! Replaying recorded rooms.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use crate::rooms::room::{
     Catalog, Entry, Header, Mode, Room, is_of_other_version, no_level, parse_log,
 };
 
-/// The largest recording of a room that is written, and that is played again.
+/// The maximum size of a room's recording, both written and replayed, in bytes.
 pub(crate) const MOST_RECORDED_BYTES: u64 = 64 << 20;
 
 /// The result of a recorded round.
@@ -16,23 +16,23 @@ pub(crate) struct RoundReport {
     pub(crate) round: u32,
     pub(crate) level: String,
     pub(crate) mode: Mode,
-    /// The length of what was recorded, in steps.
+    /// The length of the recorded round, in steps.
     pub(crate) steps: u64,
-    /// The names with the points of the round, the winner first; all members, if the round did not end.
+    /// The names with their points in the round, winner first. If the round did not end: all members, with 0 points.
     pub(crate) standings: Vec<(String, u32)>,
-    /// The checksum of the room's last state. It is the same wherever the recording is played.
+    /// The checksum of the room's last state. It is the same on every machine.
     pub(crate) checksum: u64,
 }
 
-/// The most steps of a recorded round: two hours, or 20 seconds in a fuzz target.
+/// The maximum length of a recorded round: two hours, or 20 seconds in a fuzz target.
 const MOST_STEPS: u64 = if cfg!(feature = "fuzzing") { 20 * 60 } else { 2 * 60 * 60 * 60 };
 
-/// Plays the rounds of a recording again. A round lasts until the next one begins, and the last one
-/// until its last entry.
+/// Replays the rounds of a recording. Each round lasts until the next one begins, and the last round until
+/// its last entry.
 ///
 /// # Errors
-/// A part of a sentence: the text is no recording, or one of another version, or of a level that the catalog does not
-/// have.
+/// A sentence fragment, if the text is not a recording, has another version, or needs a level that is not in
+/// the catalog.
 pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>) -> Result<Vec<RoundReport>, String> {
     if is_of_other_version(text) {
         return Err(

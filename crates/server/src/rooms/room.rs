@@ -1,15 +1,16 @@
-//! A room: a game that several people play, as a deterministic state machine.
+//! A room: a multiplayer game as a deterministic state machine.
 //!
-//! A room changes by the entries of its [log] and by steps, and by nothing else: the header of a round, its
-//! entries and the number of steps give the room, bit for bit, on every machine. It has no clock, no thread and no
-//! connection. The [sequencer](crate::rooms::sequencer) decides in which step an entry takes effect.
+//! Only the entries of its [log] and steps change a room. The header of a round, its entries and the number
+//! of steps therefore determine the room, bit for bit, on every machine. A room has no clock, no thread and
+//! no connection. The [sequencer](crate::rooms::sequencer) decides in which step an entry takes effect.
 //!
-//! Sessions draw from a [`RoomView`], which shares the game: a step copies it only if a session still draws from the
-//! step before. Rejected: a lock around the game, since one slow picture would delay everybody's step.
+//! Sessions draw from a [`RoomView`], which shares the game with the room. A step copies the game only if a
+//! session is still drawing from the previous step. Rejected: a lock around the game. One slow frame would
+//! delay every member's step.
 //!
-//! A member with an account may return from another host, so their place is kept: when their host is gone they stand
-//! still, for [`AWAY`] at most. Each return has a token, by which hosts know who plays for the member
-//! now: a host that was cut off may still think that it does.
+//! A member with an account may return from another host, so the room keeps their seat. While their host is
+//! gone the member stands still, for at most [`AWAY`]. Each return has a token, which tells the hosts which
+//! of them now plays for the member. A host that was cut off may still believe that it does.
 
 mod catalog;
 mod checkpoint;
@@ -39,12 +40,11 @@ use crate::line::Line;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 
-/// How long an emotion is shown, in steps.
+/// How long an emote is shown, in steps.
 const EMOTE: u64 = 3 * SECOND;
-/// How many chat lines a room remembers.
+/// The number of chat lines that a room keeps.
 const SAID: usize = 8;
 
-/// A room.
 #[derive(Clone, Debug)]
 pub(crate) struct Room {
     catalog: Arc<Catalog>,
@@ -54,7 +54,7 @@ pub(crate) struct Room {
     members: Vec<Member>,
     next_member: u32,
     step: u64,
-    /// The members who want to begin the round again.
+    /// The members who want to restart the round.
     again: BTreeSet<MemberId>,
     emotes: Vec<(MemberId, Emote, u64)>,
     said: VecDeque<Said>,
@@ -63,25 +63,25 @@ pub(crate) struct Room {
     standings: Arc<[Standing]>,
 }
 
-/// An immutable snapshot of a room. It shares the game with the room, which copies it only if a
+/// An immutable snapshot of a room. It shares the game with the room, which copies the game only if a
 /// snapshot still exists in the next step.
 #[derive(Clone, Debug)]
 pub(crate) struct RoomView {
-    /// The game of the present round.
+    /// The game of the current round.
     pub(crate) game: Arc<Game>,
-    /// The state at the start of the round: the level, the mode, and its number.
+    /// The state at the start of the round, including the level, the mode and the round's number.
     pub(crate) header: Arc<Header>,
-    /// The step of the round.
+    /// The current step of the round.
     pub(crate) step: u64,
     /// The phase of the round.
     pub(crate) phase: Phase,
-    /// The step in which the play began, while it goes on in a mode that ends at the exit.
+    /// The step in which the play began; `None` unless the round is being played in a mode that ends at the exit.
     pub(crate) begun: Option<u64>,
-    /// The members, in the order in which they joined.
+    /// The members, in the order of joining.
     pub(crate) members: Vec<MemberView>,
     /// The members' intents in the last step, in the same order.
     pub(crate) acted: Vec<Intents>,
-    /// The standings of the round, the winner first; empty before its end.
+    /// The standings of the round, winner first; empty until the round ends.
     pub(crate) standings: Arc<[Standing]>,
     /// The latest chat lines, oldest first.
     pub(crate) said: Arc<[Said]>,
@@ -93,33 +93,32 @@ pub(crate) struct MemberView {
     pub(crate) id: MemberId,
     pub(crate) name: Line,
     pub(crate) color: PlayerColor,
-    /// The player in the game; `None` if there was no place for one.
+    /// The member's player in the game; `None` if the game had no free slot.
     pub(crate) player: Option<PlayerId>,
     pub(crate) role: Role,
     /// The finish, if the member has reached the exit.
     pub(crate) finish: Option<Finish>,
     pub(crate) points: u32,
-    /// Whether the member sees nothing at present, since the others hide.
+    /// Whether the member's view is blank because the others are hiding.
     pub(crate) is_blind: bool,
-    /// The latest emotion, for as long as it is shown.
+    /// The latest emote, while it is shown.
     pub(crate) emote: Option<Emote>,
-    /// Whether their host is gone, so that they stand still.
+    /// Whether the member's host is gone. The member stands still meanwhile.
     pub(crate) is_away: bool,
 }
 
 /// A line of chat, or a remark of the room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Said {
-    /// The number in the room, from 1, so that a session knows what is new.
+    /// The line's number in the room, from 1, by which sessions recognise new lines.
     pub(crate) number: u64,
-    /// The member's name and colour; `None` for a remark of the room.
+    /// The speaker's name and colour; `None` for a remark of the room.
     pub(crate) by: Option<(Line, PlayerColor)>,
     pub(crate) text: String,
 }
 
 impl Room {
-    /// The room at the start of the round that `header` describes. `None` if the catalog has no such
-    /// level.
+    /// The room at the start of the round that `header` describes. `None` if the catalog does not contain the level.
     pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
         let mut room = Self::without_members(catalog, header)?;
         let header = Arc::clone(&room.header);
@@ -152,7 +151,7 @@ impl Room {
         })
     }
 
-    /// The header of the next round, after which the log of this one is not needed.
+    /// The header of the next round. The log of the current round is not needed after it.
     pub(crate) fn next_header(&self) -> Header {
         let level = &self.header.level;
         let moves_on = self.header.mode.moves_on() && !self.standings.is_empty();
@@ -174,14 +173,13 @@ impl Room {
         }
     }
 
-    /// Begins the next round.
     pub(crate) fn begin_next(&mut self) {
         let Some(next) = Self::new(&self.catalog, self.next_header()) else { return };
         let (said, said_count) = (std::mem::take(&mut self.said), self.said_count);
         *self = Self { said, said_count, ..next };
     }
 
-    /// The step of the round: entries of this step take effect before it.
+    /// The current step of the round. Entries with this step take effect before it.
     pub(crate) fn step(&self) -> u64 {
         self.step
     }
@@ -191,22 +189,20 @@ impl Room {
         &self.header
     }
 
-    /// The phase of the round.
     pub(crate) fn phase(&self) -> Phase {
         self.round.phase
     }
 
-    /// The game of the round.
     pub(crate) fn game(&self) -> &Game {
         &self.game
     }
 
-    /// The members' names, in the order in which they joined.
+    /// The members' names, in the order of joining.
     pub(crate) fn names(&self) -> impl Iterator<Item = &Line> {
         self.members.iter().map(|member| &member.name)
     }
 
-    /// The first member, their player, and what they wanted in the last step.
+    /// The first member, their player, and their intents in the last step.
     pub(crate) fn first_member(&self) -> Option<(MemberId, PlayerId, Intents)> {
         let member = self.members.first()?;
         Some((member.id, member.player?, member.acted))
@@ -222,17 +218,17 @@ impl Room {
         self.members.len()
     }
 
-    /// Whether nobody else may join.
+    /// Returns true if no further member may join.
     pub(crate) fn is_full(&self) -> bool {
         self.members.len() >= self.header.mode.most()
     }
 
-    /// The number of the next member who joins.
+    /// The number that the next new member gets.
     pub(crate) fn next_member(&self) -> MemberId {
         MemberId(self.next_member)
     }
 
-    /// Whether the next round is due.
+    /// Returns true when the next round must begin.
     pub(crate) fn is_over(&self) -> bool {
         self.round.is_over(self.step) || self.all_wish_again()
     }
@@ -242,8 +238,8 @@ impl Room {
         !self.again.is_empty() && here.all(|member| self.again.contains(&member.id))
     }
 
-    /// Applies an entry. An entry of a member who is not in the room has no effect, nor has one that a host sends late
-    /// for a member who is away.
+    /// Applies an entry. An entry has no effect if its member is not in the room, or if it arrives late for a
+    /// member who is away.
     pub(crate) fn apply(&mut self, entry: &Entry) {
         let id = entry.member;
         match &entry.command {
@@ -254,7 +250,7 @@ impl Room {
             Command::Return { token } => self.take_back(id, *token),
             _ if self.is_away(id) => {}
             Command::Intents { seen, intents } => {
-                // Nobody has seen a step that is yet to come.
+                // No member can have seen a future step.
                 let seen = (*seen).min(self.game.steps());
                 if let Some(member) = self.member_mut(id) {
                     (member.seen, member.intents) = (seen, *intents);
@@ -298,7 +294,7 @@ impl Room {
         }
     }
 
-    /// A snapshot.
+    /// A snapshot of the room.
     pub(crate) fn view(&self) -> RoomView {
         let emote = |id| self.emotes.iter().find(|it| it.0 == id).map(|it| it.1);
         let member = |member: &Member| MemberView {
@@ -326,17 +322,17 @@ impl Room {
         }
     }
 
-    /// Whether a member is away.
+    /// Returns true if a member is away.
     pub(crate) fn is_away(&self, id: MemberId) -> bool {
         self.member(id).is_some_and(Member::is_away)
     }
 
-    /// The place that is kept for a member; `None` for a guest.
+    /// The seat that is kept for a member; `None` for a guest.
     pub(crate) fn kept_place(&self, id: MemberId) -> Option<KeptPlace> {
         self.member(id)?.kept
     }
 
-    /// Whether a member has left the room.
+    /// Returns true if a member was in the room and has left.
     pub(crate) fn has_lost(&self, id: MemberId) -> bool {
         id < self.next_member() && self.member(id).is_none()
     }
@@ -376,14 +372,14 @@ impl Room {
         self.announce(format!("{} leaves.", member.name));
     }
 
-    /// Keeps a member's place from now on.
+    /// Keeps a member's seat from now on.
     fn keep(&mut self, id: MemberId) {
         if let Some(member) = self.member_mut(id) {
             member.kept.get_or_insert_default();
         }
     }
 
-    /// Marks a member away, whose host is gone. They leave if their place is not kept.
+    /// Marks a member away because their host is gone. A member without a kept seat leaves.
     fn go_away(&mut self, id: MemberId) {
         let Some(member) = self.member_mut(id) else { return };
         let Some(kept) = &mut member.kept else { return self.leave(id) };
@@ -396,7 +392,7 @@ impl Room {
         }
     }
 
-    /// Has a member go on, on another host.
+    /// Brings a member back, on another host.
     fn take_back(&mut self, id: MemberId, token: u64) {
         let Some(member) = self.member_mut(id) else { return };
         let Some(kept) = &mut member.kept else { return };
@@ -407,7 +403,7 @@ impl Room {
         }
     }
 
-    /// Counts a step for the members who are away. Those who were away too long leave.
+    /// Counts down the time of members who are away, and removes those whose time is up.
     fn count_away(&mut self) {
         let kept = self.members.iter_mut().filter_map(|member| member.kept.as_mut());
         for left in kept.filter_map(|kept| kept.away.as_mut()) {
@@ -437,7 +433,7 @@ impl Room {
         self.remember(None, text);
     }
 
-    /// Tells everybody that a member has reached the exit.
+    /// Announces that a member has reached the exit.
     fn announce_finish(&mut self, id: MemberId) {
         let Some((finish, member)) = self.round.finish(id).zip(self.member(id)) else { return };
         match self.header.mode {
@@ -459,7 +455,7 @@ impl Room {
 }
 
 impl RoomView {
-    /// A member.
+    /// The member with this number.
     pub(crate) fn member(&self, id: MemberId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.id == id)
     }
@@ -470,13 +466,13 @@ impl RoomView {
         self.acted.get(index).copied()
     }
 
-    /// The winner, if the round has ended and they are still there.
+    /// The winner, if the round has ended and the winner is still in the room.
     pub(crate) fn winner(&self) -> Option<&MemberView> {
         let first = self.standings.first().filter(|standing| standing.steps.is_some());
         self.member(first?.member)
     }
 
-    /// The member with that player.
+    /// The member who controls `player`.
     pub(crate) fn member_of(&self, player: PlayerId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.player == Some(player))
     }

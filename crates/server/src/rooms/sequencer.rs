@@ -1,16 +1,16 @@
-//! The sequencer of a room: it decides in which step each command of a member takes effect.
+//! The sequencer of a room: decides in which step each member's command takes effect.
 //!
 //! # Rules
 //!
-//! - A room takes a step each [`STEP`]. If a step is late, at most [`MOST_CAUGHT_UP`] follow at once; further ones are
-//!   left out, so that the room's time slips.
-//! - A room is changed by entries of its [log](RoundLog) alone. Commands that come too often are refused or delayed
-//!   before they become entries, see [`Inbox`].
-//! - A room without members takes no steps and has no timer. After a while it is closed, unless it is a standing room.
-//! - A fault in a room, even a panic, ends this room with a sentence to its members, and no other.
-//! - A recording that cannot be written is reported, and the room goes on.
+//! - A room takes a step every [`STEP`]. After a delay it catches up on at most [`MOST_CAUGHT_UP`] steps at
+//!   once. It skips the rest, so the room's time falls behind.
+//! - Only entries of its [log](RoundLog) change a room. The [`Inbox`] rejects or delays excessive commands
+//!   before they become entries.
+//! - A room without members takes no steps and has no timer. It closes after a while, unless it is a standing room.
+//! - A fault in a room, even a panic, ends only this room. Its members are told in a sentence.
+//! - If a recording cannot be written, the error is logged and the room goes on.
 //!
-//! Rejected: a thread for each room. Rooms sleep most of the time, and their steps take microseconds.
+//! Rejected: a thread per room. Rooms sleep most of the time, and their steps take microseconds.
 
 use std::any::Any;
 use std::collections::VecDeque;
@@ -35,7 +35,7 @@ use cellcaster::game::{
     self, Intents, LevelName, Outcome, PlayerColor, Recorder, Rules, STEPS_PER_SECOND, Stretch,
 };
 
-/// The most steps that follow at once after a delay.
+/// The maximum number of steps to catch up on after a delay.
 pub(crate) const MOST_CAUGHT_UP: u32 = 6;
 /// Shown to members after a fault.
 pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
@@ -43,24 +43,24 @@ pub(crate) const FAULT: &str = "The room has ended because of a fault of this se
 /// The interface between a room and its members: commands in, snapshots out.
 #[derive(Debug)]
 pub(crate) struct RoomInterface {
-    /// The commands of the members.
+    /// The members' commands.
     pub(crate) inbox: Inbox,
-    /// The newest snapshot.
-    /// The newest snapshot. Locked during a step, so that those who look during it wait for the next one.
+    /// The latest snapshot. It is locked during a step, so a reader that arrives during the step waits for
+    /// the new snapshot.
     ///
-    /// The snapshot before is dropped before a step, so that the step copies the game only if a session draws from it at
-    /// that moment. Rejected: a `watch` channel of snapshots, which would keep the snapshot, so that each step would copy
-    /// the game.
+    /// The previous snapshot is dropped before the step, so the step copies the game only if a session is
+    /// drawing from it at that moment. Rejected: a `watch` channel of snapshots. The channel would keep the
+    /// snapshot alive, and every step would copy the game.
     view: Mutex<Option<Arc<RoomView>>>,
-    /// Why the room is closed. It is marked as changed with each snapshot, too.
+    /// The reason why the room is closed, if it is. Each new snapshot also marks this channel as changed.
     closed: watch::Sender<Option<Arc<str>>>,
-    /// How long the room stays open without members; `None` if it always does.
+    /// How long the room stays open without members; `None` if it never closes.
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
     /// The number of watchers.
     watchers: AtomicUsize,
 }
 
-/// A room with its log, which the sequencer alone changes.
+/// A room with its log. Only the sequencer changes them.
 pub(crate) struct Sequencer {
     pub(crate) room: Room,
     pub(crate) log: RoundLog,
@@ -69,10 +69,10 @@ pub(crate) struct Sequencer {
 }
 
 impl Sequencer {
-    /// Runs the room until it is closed. `on_change` is called when a lobby would show the room differently.
+    /// Runs the room until it closes. Calls `on_change` when the room's entry in the lobby changes.
     ///
     /// # Errors
-    /// The message of a panic, after which the room is closed.
+    /// The message of a panic. The room is closed then.
     pub(crate) async fn run(
         mut self,
         mut on_change: impl FnMut(&Room) + Send,
@@ -98,7 +98,7 @@ impl Sequencer {
         }
     }
 
-    /// Waits until somebody joins; returns whether the room still exists then.
+    /// Waits until somebody joins; returns false if the room has closed instead.
     async fn somebody_joins(&mut self) -> bool {
         self.log.flush();
         let RoomInterface { inbox, closes_after, .. } = &*self.interface;
@@ -108,7 +108,7 @@ impl Sequencer {
             tokio::select! {
                 biased;
                 () = inbox.joined() => return !inbox.is_closed(),
-                // The sender is in the interface.
+                // This cannot fail, because the interface owns the sender.
                 _ = patience.changed() => {}
                 () = sleep(wait.unwrap_or_default()), if wait.is_some() => {
                     if inbox.close_if_empty() {
@@ -120,7 +120,7 @@ impl Sequencer {
         }
     }
 
-    /// Takes the steps that are due, and moves `next` to the time of the one after them.
+    /// Takes the steps that are due, and advances `next` to the time of the following step.
     fn catch_up(&mut self, next: &mut Instant, on_change: &mut impl FnMut(&Room)) {
         let now = Instant::now();
         self.load.note_lateness(now.saturating_duration_since(*next));
@@ -153,12 +153,12 @@ impl Sequencer {
 }
 
 impl RoomInterface {
-    /// The interface of `room`, which nobody has entered yet. A room that is not `standing` closes after that time
-    /// without members.
+    /// The interface of `room`, which has no members yet. Unless `is_standing`, the room closes after
+    /// `closes_after` without members.
     pub(crate) fn new(room: &Room, is_standing: bool, closes_after: Duration) -> Arc<Self> {
         let mode = room.header().mode;
         let closes_after = match mode {
-            // Nobody else can go on with a game that a member plays alone.
+            // Nobody else can continue a game that a member plays alone.
             Mode::Alone => Some(Duration::ZERO),
             _ => (!is_standing).then_some(closes_after),
         };
@@ -171,7 +171,7 @@ impl RoomInterface {
         })
     }
 
-    /// Closes the room for everybody, with a sentence.
+    /// Closes the room for everybody. `sentence` states the reason.
     pub(crate) fn close(&self, sentence: &str) {
         self.inbox.close();
         self.closed.send_modify(|closed| {
@@ -179,17 +179,17 @@ impl RoomInterface {
         });
     }
 
-    /// The newest snapshot. During a step, it waits for the next one. `None` after a fault.
+    /// The latest snapshot. During a step, waits for the next one. `None` after a fault.
     pub(crate) fn view(&self) -> Option<Arc<RoomView>> {
         locked(&self.view, |view| view.clone())
     }
 
-    /// Changes with the next snapshot, and when the room is closed.
+    /// A channel that changes with each snapshot and when the room closes.
     pub(crate) fn closed(&self) -> watch::Receiver<Option<Arc<str>>> {
         self.closed.subscribe()
     }
 
-    /// Replaces the snapshot by the one after `step`.
+    /// Runs `step` and replaces the snapshot with its result.
     pub(crate) fn replace_view<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
         let result = locked(&self.view, |shown| {
             *shown = None;
@@ -201,18 +201,16 @@ impl RoomInterface {
         result
     }
 
-    /// The number of watchers.
     pub(crate) fn watchers(&self) -> usize {
         self.watchers.load(Ordering::Acquire)
     }
 
-    /// Adds a watcher, if there are fewer than `most`; returns whether it did.
+    /// Adds a watcher if there are fewer than `most`; returns whether it did.
     pub(crate) fn add_watcher(&self, most: usize) -> bool {
         let more = |count| (count < most).then_some(count + 1);
         self.watchers.fetch_update(Ordering::AcqRel, Ordering::Acquire, more).is_ok()
     }
 
-    /// Removes a watcher.
     pub(crate) fn remove_watcher(&self) {
         self.watchers.fetch_sub(1, Ordering::AcqRel);
     }
@@ -233,35 +231,35 @@ pub(crate) trait Recording: Send {
     /// If the header cannot be written.
     fn begin(&mut self, header: &Header) -> io::Result<()>;
 
-    /// Adds an entry, whose step is not before the step of the last entry.
+    /// Appends an entry, whose step is not before the step of the previous entry.
     ///
     /// # Errors
     /// If the entry cannot be written.
     fn append(&mut self, entry: &Entry) -> io::Result<()>;
 
-    /// Writes out what waits in memory.
+    /// Writes out the entries that are buffered in memory.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If they cannot be written.
     fn flush(&mut self) -> io::Result<()>;
 }
 
-/// The log of a round, by which a room takes its steps. It may be recorded: all entries of a step are, before they change
-/// the room.
+/// The log of a round, by which a room takes its steps. If the room is recorded, all entries of a step are
+/// written before they change the room.
 pub(crate) struct RoundLog {
     recording: Option<Box<dyn Recording>>,
-    /// Whether a fault was reported, so that a full disk is reported once.
+    /// Whether a write error was reported. A full disk is reported only once.
     has_failed: bool,
     run: Run,
 }
 
-/// A level that somebody has won alone.
+/// A level that a member has won while playing alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FinishedRun {
     pub(crate) member: MemberId,
     /// The name of the level.
     pub(crate) level: String,
-    /// The script, which is still to be verified.
+    /// The script, not verified yet.
     pub(crate) script: String,
 }
 
@@ -270,32 +268,30 @@ pub(crate) struct FinishedRun {
 pub(crate) struct Changes {
     /// The number of entries.
     pub(crate) entries: u64,
-    /// Whether a lobby would show the room otherwise.
+    /// Whether the room's entry in the lobby changes.
     pub(crate) summary: bool,
     pub(crate) finished: Option<FinishedRun>,
 }
 
-/// The intents of a member who plays alone, from the start of the round.
+/// The intents of a member who plays alone, since the start of the round.
 #[derive(Debug, Default)]
 struct Run {
     stretches: Vec<Stretch>,
     is_finished: bool,
 }
 
-/// The steps after which a recording is written out: a killed server loses at most the entries of a
-/// second.
+/// The number of steps between flushes of a recording. A killed server loses at most the entries of one second.
 const FLUSHED: u64 = STEPS_PER_SECOND as u64;
 
 impl RoundLog {
-    /// Begins the log of the round that `room` is in.
+    /// Begins the log of the current round of `room`.
     pub(crate) fn new(recording: Option<Box<dyn Recording>>, room: &Room) -> Self {
         let mut log = Self { recording, has_failed: false, run: Run::default() };
         log.begin(room);
         log
     }
 
-    /// Takes a step: the commands that `take` passes on become entries, the entries change the room, and the room
-    /// advances.
+    /// Takes a step: turns the commands from `take` into entries, applies them to the room, and advances it.
     pub(crate) fn step(
         &mut self,
         room: &mut Room,
@@ -331,7 +327,7 @@ impl RoundLog {
         changes
     }
 
-    /// Writes out what waits in memory.
+    /// Writes out the entries that are buffered in memory.
     pub(crate) fn flush(&mut self) {
         self.record(|recording| recording.flush());
     }
@@ -353,7 +349,7 @@ impl RoundLog {
 }
 
 impl Changes {
-    /// Adds the changes of a later step.
+    /// Merges the changes of a later step into these.
     pub(crate) fn add(&mut self, later: Self) {
         self.entries += later.entries;
         self.summary |= later.summary;
@@ -362,7 +358,7 @@ impl Changes {
 }
 
 impl Run {
-    /// Records the step that the room has taken; returns the run when it has reached the exit.
+    /// Records the step that the room has taken; returns the run once the member has reached the exit.
     fn step(&mut self, room: &Room) -> Option<FinishedRun> {
         let (member, player, intents) = room.first_member().filter(|_| !self.is_finished)?;
         self.record(intents);
@@ -393,7 +389,7 @@ impl Run {
         let mut text = Vec::new();
         let mut recorder = Recorder::with_header(&mut text, header);
         for stretch in &self.stretches {
-            // Memory accepts every byte.
+            // Writing to memory cannot fail.
             _ = recorder.record(stretch.intents, u64::from(stretch.steps));
         }
         drop(recorder);
@@ -401,35 +397,36 @@ impl Run {
     }
 }
 
-/// The time of a step.
+/// The duration of a step.
 pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
-/// The lines that a member may say at once.
+/// The number of chat lines that a member may send in one burst.
 const CHAT_BURST: f64 = 4.0;
-/// The most changes of intents that wait.
+/// The maximum number of queued changes of intents per member.
 const MOST_INTENTS: usize = 8;
-/// The most arrivals and departures that wait, each of which takes effect in the next step.
+/// The maximum number of queued arrivals and departures, all of which take effect in the next step.
 const MOST_MOVES: usize = 64;
 
-/// The commands of a room's members, until the sequencer takes them.
+/// The commands of a room's members that the sequencer has not taken yet.
 ///
-/// Each member has a bounded queue of their own, so that a flood of one member's commands never delays those of
-/// another. Rejected: one queue for all members, since one of them could fill it. A member may say [`CHAT_BURST`]
-/// lines at once and show one emotion, and one of each a second.
+/// Each member has a bounded queue, so that a flood from one member never delays another. Rejected: one queue
+/// for all members. A single member could fill it. A member may send [`CHAT_BURST`] chat lines and one emote
+/// at once, and after that one of each per second.
 ///
-/// Intents take effect in the order in which they came, one change in a step, so that a tap begins and ends in steps of
-/// its own. If [`MOST_INTENTS`] changes wait, the newest replaces the last one. Sessions limit the rate of changes.
+/// Intents take effect in the order of arrival, one change per step, so that a tap begins and ends in
+/// separate steps. If [`MOST_INTENTS`] changes are queued, a new one replaces the last. Sessions limit the
+/// rate of changes.
 #[derive(Debug)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,
     joined: Notify,
 }
 
-/// Why a command was not accepted.
+/// The reason why a command was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CommandRefusal {
-    /// The member does such things too often.
+    /// The member sends such commands too often.
     TooOften,
-    /// There is no such member, or members do not give such commands.
+    /// There is no such member, or members cannot send this command.
     Impossible,
 }
 
@@ -438,12 +435,12 @@ struct Waiting {
     is_closed: bool,
     most: usize,
     next: u32,
-    /// Members who have joined, whether the room knows it or not.
+    /// Members who have joined, including those that the room does not know yet.
     seats: Vec<Seat>,
-    /// The seats that were ever taken.
+    /// The number of seats that were ever taken.
     seats_taken: u64,
     moves: VecDeque<(MemberId, Command)>,
-    /// The time of the steps in all rounds.
+    /// The total time of all steps in all rounds.
     time: Duration,
     finished: Option<FinishedRun>,
 }
@@ -451,7 +448,7 @@ struct Waiting {
 #[derive(Debug)]
 struct Seat {
     id: MemberId,
-    /// A member who loses their seat and returns has another number.
+    /// A number unique to this seat. A member who loses their seat and returns gets another one.
     number: u64,
     color: PlayerColor,
     intents: VecDeque<Command>,
@@ -483,7 +480,7 @@ impl Inbox {
         Ok(id)
     }
 
-    /// Gives a seat to a member who has joined elsewhere.
+    /// Assigns a seat to a member who has joined on another host.
     pub(crate) fn admit(&self, id: MemberId, color: PlayerColor) {
         locked(&self.waiting, |waiting| {
             waiting.next = waiting.next.max(id.0.saturating_add(1));
@@ -491,7 +488,7 @@ impl Inbox {
         });
     }
 
-    /// Takes the seat of a member who is not in the room any more.
+    /// Removes the seat of a member who is no longer in the room.
     pub(crate) fn dismiss(&self, id: MemberId) {
         locked(&self.waiting, |waiting| waiting.seats.retain(|seat| seat.id != id));
     }
@@ -501,12 +498,12 @@ impl Inbox {
         locked(&self.waiting, |waiting| waiting.seats.iter().map(|seat| seat.id).collect())
     }
 
-    /// Takes the seat of a member, who leaves.
+    /// Removes a member's seat and lets the member leave.
     pub(crate) fn leave(&self, id: MemberId) {
         self.unseat(id, Command::Leave);
     }
 
-    /// Takes the seat of a member whose host ends. The room keeps their place.
+    /// Removes the seat of a member whose host is shutting down. The room keeps their place.
     pub(crate) fn part(&self, id: MemberId) {
         self.unseat(id, Command::Away);
     }
@@ -521,7 +518,7 @@ impl Inbox {
         });
     }
 
-    /// Accepts a command of a member.
+    /// Accepts a member's command.
     pub(crate) fn act(&self, id: MemberId, command: Command) -> Result<(), CommandRefusal> {
         locked(&self.waiting, |waiting| {
             let time = waiting.time;
@@ -530,19 +527,19 @@ impl Inbox {
         })
     }
 
-    /// The number of a member's seat, which no other seat ever has; `None` if they have none.
+    /// The number of a member's seat, which is never reused; `None` if they have no seat.
     pub(crate) fn seat_number(&self, id: MemberId) -> Option<u64> {
         locked(&self.waiting, |waiting| {
             waiting.seats.iter().find(|seat| seat.id == id).map(|seat| seat.number)
         })
     }
 
-    /// Whether somebody is about to join or leave.
+    /// Returns true if a member is about to join or leave.
     pub(crate) fn has_moves(&self) -> bool {
         locked(&self.waiting, |waiting| !waiting.moves.is_empty())
     }
 
-    /// Marks a member away. They have their seat until the room removes them.
+    /// Marks a member away. They keep their seat until the room removes them.
     pub(crate) fn set_away(&self, id: MemberId) {
         locked(&self.waiting, |waiting| {
             if let Some(seat) = waiting.seats.iter_mut().find(|seat| seat.id == id) {
@@ -553,22 +550,22 @@ impl Inbox {
         });
     }
 
-    /// Keeps the place of a member who has just joined.
+    /// Keeps the seat of a member who has just joined.
     pub(crate) fn keep(&self, id: MemberId) {
         locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Keep)));
     }
 
-    /// Has a member go on, on another host.
+    /// Brings a member back, on another host.
     pub(crate) fn take_back(&self, id: MemberId, token: u64) {
         locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Return { token })));
     }
 
-    /// Whether nobody is in the room, and nobody is about to join or leave it.
+    /// Returns true if the room has no members and nobody is about to join or leave.
     pub(crate) fn is_empty(&self) -> bool {
         locked(&self.waiting, |waiting| waiting.seats.is_empty() && waiting.moves.is_empty())
     }
 
-    /// Waits until somebody joins, or the room is closed.
+    /// Waits until somebody joins or the room closes.
     pub(crate) async fn joined(&self) {
         while self.is_empty() && !self.is_closed() {
             self.joined.notified().await;
@@ -579,13 +576,13 @@ impl Inbox {
         locked(&self.waiting, |waiting| waiting.is_closed)
     }
 
-    /// Nobody may join any more.
+    /// Closes the room to new members.
     pub(crate) fn close(&self) {
         locked(&self.waiting, |waiting| waiting.is_closed = true);
         self.joined.notify_one();
     }
 
-    /// Closes the room, unless somebody joins; returns whether it is closed.
+    /// Closes the room if it has no members; returns whether it is closed.
     pub(crate) fn close_if_empty(&self) -> bool {
         locked(&self.waiting, |waiting| {
             waiting.is_closed |= waiting.seats.is_empty();
@@ -593,17 +590,17 @@ impl Inbox {
         })
     }
 
-    /// Keeps a run until its member takes it.
+    /// Stores a run until its member collects it.
     pub(crate) fn finish(&self, run: FinishedRun) {
         locked(&self.waiting, |waiting| waiting.finished = Some(run));
     }
 
-    /// The run that a member has finished since the last call.
+    /// The run that a member has finished since the last call, if any.
     pub(crate) fn finished(&self, id: MemberId) -> Option<FinishedRun> {
         locked(&self.waiting, |waiting| waiting.finished.take_if(|run| run.member == id))
     }
 
-    /// Passes on the commands that take effect in the next step, in their order.
+    /// Passes on the commands that take effect in the next step, in order.
     pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Command)) {
         locked(&self.waiting, |waiting| {
             waiting.moves.drain(..).for_each(|(id, command)| pass(id, command));

@@ -1,4 +1,4 @@
-//! Rooms as visitors see them from outside.
+//! Summaries of rooms, as lobbies show them.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use crate::line::Line;
 use crate::rooms::room::{Mode, Phase, Room};
 use cellcaster::world::Difficulty;
 
-/// The number of a room. It is not used again after the room is closed.
+/// A room's number. It is never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct RoomId(pub(crate) u32);
 
 impl RoomId {
-    /// The room as a place where somebody is.
+    /// The text that names the room as a visitor's location.
     pub(crate) fn place(self) -> String {
         format!("room {self}")
     }
@@ -27,7 +27,7 @@ impl fmt::Display for RoomId {
     }
 }
 
-/// A room, as lobbies show it.
+/// A room as shown in lobbies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RoomSummary {
     pub(crate) id: RoomId,
@@ -36,7 +36,7 @@ pub(crate) struct RoomSummary {
     pub(crate) mode: Mode,
     pub(crate) difficulty: Difficulty,
     pub(crate) phase: Phase,
-    /// The names of the members, in the order in which they joined.
+    /// The names of the members, in the order of joining.
     pub(crate) members: Arc<[Line]>,
     /// The number of watchers.
     pub(crate) watchers: usize,
@@ -57,13 +57,13 @@ impl RoomSummary {
         }
     }
 
-    /// Whether nobody else may join.
+    /// Returns true if no further member may join.
     pub(crate) fn is_full(&self) -> bool {
         self.members.len() >= self.mode.most()
     }
 }
 
-/// A room that a visitor would like to open.
+/// A request to open a room.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RoomWish {
     /// The name of the level in the catalog.
@@ -72,28 +72,28 @@ pub struct RoomWish {
     pub difficulty: Difficulty,
 }
 
-/// The reason why somebody cannot be in a room.
+/// The reason why a visitor cannot enter or open a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Error)]
 pub(crate) enum RoomRefusal {
-    /// There is no such room any more.
+    /// The room no longer exists.
     #[error("This room is closed.")]
     Gone,
     /// It is full.
     #[error("This room is full.")]
     Full,
-    /// One plays alone in it.
+    /// The room is for a single player.
     #[error("Somebody plays alone in this room; you can watch.")]
     Alone,
-    /// There are as many rooms as the host allows.
+    /// The host has reached its limit of rooms.
     #[error("There are as many rooms as this server allows; enter one of them.")]
     TooMany,
-    /// This host does not have the level.
+    /// The host does not have the level's map.
     #[error("This host does not have the map of this room.")]
     NoLevel,
-    /// The member is somewhere else.
+    /// The member is already in a room through another connection.
     #[error("You are in a room by another connection, and stay there.")]
     Taken,
-    /// The hosts cannot agree now.
+    /// The hosts cannot agree at the moment.
     #[error("The room does not answer now; try again.")]
     NotNow,
 }

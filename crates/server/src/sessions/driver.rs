@@ -1,16 +1,16 @@
-//! Drivers: each connects the link of a visitor with a session, a room and the store.
+//! Drivers: each connects a visitor's link with a session, a room and the store.
 //!
 //! # Rules
 //!
-//! - A frame is drawn only when the one before has left, from the newest snapshot. Between frames, a
-//!   driver holds no snapshot, so that steps do not copy the game.
-//! - Frames of large windows are drawn on threads of their own, at most one for two processors at a time. On the
-//!   threads of the runtime, one session with a window of 500×200 cells delayed the keys of others by up to a whole
-//!   frame, since the drawing thread may be the thread that waits for sockets.
-//! - Rooms step whether anybody draws or not, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
-//! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
-//! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
-//!   is away or full, waits in a file or in memory, and is recorded later.
+//! - A frame is drawn from the latest snapshot, and only after the previous frame has left. Between frames, a
+//!   driver holds no snapshot, so steps need not copy the game.
+//! - Frames of large windows are drawn outside of the runtime's threads, at most one per two processors at a
+//!   time. On the runtime's threads, a session with a window of 500×200 cells delayed other visitors' keys by
+//!   up to a whole frame, because the drawing thread may be the thread that polls the sockets.
+//! - Rooms step whether or not a session draws them, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
+//! - The store runs on its own thread. A driver waits for it only at the start of a visit.
+//! - A result counts once the store's thread has replayed its script. If the store is unreachable or full,
+//!   the result waits in a file or in memory, and is recorded later.
 
 mod login;
 mod results;
@@ -48,7 +48,7 @@ use crate::rooms::summary::RoomSummary;
 use crate::ssh::{Departure, Host, Link, Visitor};
 use crate::visitors::Visitors;
 
-/// The host of the game: rooms, accounts, and a session for each visitor.
+/// The host of the game: the rooms, the accounts, and a session per visitor.
 pub struct GameHost {
     shared: Arc<Shared>,
 }
@@ -60,26 +60,26 @@ struct Shared {
     visitors: Visitors,
     begun: Instant,
     rooms: Rooms,
-    /// In a cluster, the ways into rooms.
+    /// The shared rooms of a cluster; `None` outside of a cluster.
     cluster: Option<SharedRooms>,
     store: StoreWorker,
     recorder: Recorder,
-    /// The runs of boards that walk along. Only the thread of the store uses them.
+    /// A cache of the best runs on the boards. Only the store's thread uses it.
     runs: Arc<Mutex<KeptRuns>>,
     load: Arc<Load>,
-    /// The large frames that may be drawn at a time.
+    /// Limits the number of large frames drawn at the same time.
     large_frames: Arc<Semaphore>,
     next_guest: AtomicU32,
 }
 
-/// The time between two decisions of the governor.
+/// The interval between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
-/// The most calls of the store that wait.
+/// The maximum number of queued calls to the store.
 const MOST_CALLS: usize = 256;
-/// The most time that the store has for its end.
+/// How long the store may take to shut down.
 const STORE_END: Duration = Duration::from_secs(10);
 
-/// The parts of a [`GameHost`], before it runs.
+/// The parts from which a [`GameHost`] is started.
 pub struct HostParts {
     pub(crate) live: LiveConfig,
     pub(crate) metrics: Arc<Metrics>,
@@ -88,20 +88,20 @@ pub struct HostParts {
     pub(crate) recordings: Recordings,
     pub(crate) load: Load,
     pub(crate) store: StoreWorker,
-    /// The results that wait for the store. Those that come while it is away wait there, too.
+    /// Results that wait for the store. New results are added here while the store is unreachable.
     pub(crate) waiting: Option<WaitingResults>,
-    /// The seed of all chance in rooms.
+    /// The seed for all chance in rooms.
     pub(crate) seed: u64,
-    /// The cluster whose rooms the host shares.
+    /// The cluster with which the host shares its rooms.
     pub(crate) cluster: Option<Cluster>,
 }
 
 impl HostParts {
-    /// The parts of a host that keeps accounts and results in `store`, with the built-in levels. It adds to
-    /// `metrics`, and its sessions are among `visitors`.
+    /// The parts of a host with the built-in levels that keeps accounts and results in `store`. The host
+    /// counts in `metrics` and lists its sessions in `visitors`.
     ///
     /// # Errors
-    /// If no thread can be started.
+    /// Fails if the store's thread cannot be started.
     pub fn new(
         live: LiveConfig,
         metrics: Arc<Metrics>,
@@ -115,7 +115,7 @@ impl HostParts {
             load: Load::new(Arc::clone(&metrics)),
             store: StoreWorker::start("store", MOST_CALLS, store)?,
             waiting: None,
-            // Without random numbers from the system there would be no keys, either.
+            // If the system had no random numbers, the server would have no keys either.
             seed: getrandom::u64().unwrap_or_default(),
             metrics,
             live,
@@ -125,13 +125,13 @@ impl HostParts {
 }
 
 impl GameHost {
-    /// A host of these parts.
+    /// Starts a host from these parts.
     ///
-    /// It is to be called within a runtime, on which the rooms run.
+    /// Must be called within a runtime, on which the rooms then run.
     pub fn start(parts: HostParts) -> Self {
         let HostParts { live, metrics, visitors, .. } = parts;
         let (mut limits, load) = (live.get().room_limits(), Arc::new(parts.load));
-        // The rooms of a cluster stand on the bus.
+        // In a cluster, the standing rooms are shared ones.
         let shared_standing = parts
             .cluster
             .as_ref()
@@ -175,8 +175,8 @@ impl GameHost {
         Self { shared }
     }
 
-    /// Ends the rooms after the last session, so that their recordings are whole, and then the store, after
-    /// all that was asked of it.
+    /// Shuts down after the last session: first the rooms, so that their recordings are complete, then the
+    /// store, after all queued calls.
     pub fn ending(&self) -> impl Future<Output = ()> + use<> {
         let shared = Arc::clone(&self.shared);
         async move {
@@ -190,13 +190,13 @@ impl GameHost {
         }
     }
 
-    /// An operator of this host, who notifies `drain` to end it.
+    /// An operator of this host. The operator notifies `drain` to shut the host down.
     pub fn operator(&self, drain: Arc<Notify>) -> Operator {
         let Shared { visitors, cluster, .. } = &*self.shared;
         Operator::new(visitors.clone(), self.room_rows(), drain, cluster.clone())
     }
 
-    /// Lists the rooms, for an operator.
+    /// A function that lists the rooms for an operator.
     pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
         let summaries = self.shared.rooms.summaries();
         let catalog = Arc::clone(self.shared.rooms.catalog());
@@ -238,13 +238,13 @@ impl Host for GameHost {
 }
 
 impl Shared {
-    /// The time since the server began.
+    /// The time since the server started.
     fn now(&self) -> Duration {
         self.begun.elapsed()
     }
 }
 
-/// Tells somebody who may not play why, and returns their `departure`.
+/// Tells a visitor why they may not play, and returns `departure`.
 async fn refuse(link: Link, sentence: &str, departure: Departure) -> Departure {
     let Link { mut outbox, .. } = link;
     _ = outbox.try_send(format!("{sentence}\r\n").into_bytes());
@@ -252,7 +252,7 @@ async fn refuse(link: Link, sentence: &str, departure: Departure) -> Departure {
     departure
 }
 
-/// Tells the rooms what the host allows, whenever the configuration is read again.
+/// Passes new limits on to the rooms whenever the configuration is reloaded.
 async fn follow_limits(
     mut config: watch::Receiver<Arc<Config>>,
     rooms: Rooms,
@@ -267,7 +267,7 @@ async fn follow_limits(
     }
 }
 
-/// Sets the frame rate as long as the host exists.
+/// Adjusts the frame rate for as long as the host exists.
 async fn govern(shared: Weak<Shared>) {
     let mut governor = Governor::new();
     let mut ticks = interval(GOVERNED);

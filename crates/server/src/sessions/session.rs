@@ -1,20 +1,21 @@
-//! A visitor's session: what they see, and what their keys do.
+//! A visitor's session: draws the visitor's screen and handles their keys.
 //!
-//! A session has no connection, no clock and no room. The driver passes it what arrives and when,
-//! takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows it the newest
-//! [snapshot](RoomView) of the room. The order of calls:
+//! A session owns neither the connection nor the clock nor the room. Its driver passes it input with the time
+//! of arrival, takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows
+//! it the latest [snapshot](RoomView) of the room. The driver calls it in this order:
 //!
 //! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`notify`](Session::notify),
-//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and [`output`](Session::output);
+//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and
+//!   [`output`](Session::output);
 //! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
 //!
-//! A frame is drawn only while the terminal has answered the ones before and something on it has
-//! changed. So a session of a client that does not read keeps one frame, and a visitor who does
-//! nothing among others who do nothing costs no bytes.
+//! A frame is drawn only if the terminal has acknowledged the previous ones and the picture has changed. The
+//! session of a client that does not read therefore holds one frame, and visitors who all stand still cost no
+//! bytes.
 //!
-//! Keys that are pressed faster than anybody types are dropped, since some open a page or change a setting, which
-//! takes a hundred times as long as to decode them.
+//! Keys pressed faster than anybody types are dropped. Some open a page or change a setting, which takes a
+//! hundred times as long as decoding them.
 
 mod draw;
 mod endings;
@@ -42,49 +43,50 @@ use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
 use cellcaster::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 
-/// The keys that a visitor may press in a second. A held key repeats some 30 times a second.
+/// The number of keys that a visitor may press per second. A held key repeats about 30 times a second.
 const KEYS: f64 = 200.0;
-/// The keys that they may press at once: more than a line of chat that is pasted has characters.
+/// The number of keys that a visitor may press in a burst: more than a pasted line of chat has characters.
 const KEYS_AT_ONCE: f64 = 300.0;
-/// A frame with more cells is large. One of 200×60 cells takes 1.2 ms, and one of 500×200 eight times as long.
+/// The number of cells above which a frame is large. A frame of 200×60 cells takes 1.2 ms, one of 500×200
+/// eight times as long.
 const LARGE: usize = 12_000;
-/// The least round-trip time of a link that is not local.
+/// The shortest round-trip time of a link that is not local.
 const FAR: Duration = Duration::from_millis(3);
 
-/// The session of a visitor.
+/// A visitor's session.
 pub(crate) struct Session {
     protocol: Protocol,
     ui: Ui,
     ending: Ending,
     pace: Pace,
-    /// The keys that the visitor may press now.
+    /// Limits the rate of keys.
     keys: Bucket,
-    /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
+    /// Whether the next frame answers a key, and the room's step in which the key was pressed.
     answers_key: Option<u64>,
-    /// When the oldest key came that no frame has answered.
+    /// The keys that no frame has answered yet.
     unanswered: Unanswered,
-    /// When the oldest key came that the last frame answers.
+    /// The arrival time of the oldest key that the last frame answers.
     answered: Option<Duration>,
-    /// The step of the room in the last frame.
+    /// The room's step in the last frame.
     drawn_step: u64,
     meter: Meter,
-    /// Whether the link has made pictures of a room coarser; `None` if there was none yet.
+    /// Whether the link has made pictures of a room coarser; `None` if no room has been shown yet.
     is_limited: Option<bool>,
 }
 
-/// How far the session has ended.
+/// The progress of the session's end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Ending {
-    /// It goes on.
+    /// The session goes on.
     Not,
-    /// The terminal is asked to answer all that was sent; then it shows this sentence.
+    /// The terminal has been asked to acknowledge all output; then it shows this sentence.
     Asked(String),
-    /// All is in the output.
+    /// The session has ended, and all its output is ready.
     Over,
 }
 
 impl Session {
-    /// A session with a terminal that has these `options`.
+    /// A session on a terminal with these `options`.
     pub(crate) fn new(
         identity: Identity,
         options: Options,
@@ -113,26 +115,26 @@ impl Session {
         session
     }
 
-    /// Interprets bytes from the terminal. They may be cut at any place.
+    /// Handles bytes from the terminal, which may be split anywhere.
     pub(crate) fn receive(&mut self, bytes: &[u8], now: Duration) {
         self.protocol.receive(bytes, now);
         self.handle_events(now);
     }
 
-    /// Records a new size of the window.
+    /// Records a new window size.
     pub(crate) fn resize(&mut self, size: WindowSize, now: Duration) {
         self.protocol.resize(size, now);
         self.handle_events(now);
     }
 
-    /// Records what the driver brings.
+    /// Records an event from the driver.
     pub(crate) fn notify(&mut self, event: SessionEvent, now: Duration) {
         self.ui.advance(now);
         self.ui.notify(event);
         self.finish(now);
     }
 
-    /// Does what is due at `now` without bytes and events.
+    /// Handles everything that is due at `now` without input.
     pub(crate) fn wake(&mut self, now: Duration) {
         self.protocol.wake(now);
         self.handle_events(now);
@@ -140,12 +142,12 @@ impl Session {
         self.finish(now);
     }
 
-    /// When the oldest key came that the frames since the last call answer; `None` if they answer none.
+    /// The arrival time of the oldest key that the frames since the last call answer; `None` if they answer none.
     pub(crate) fn answered(&mut self) -> Option<Duration> {
         self.answered.take()
     }
 
-    /// Looks at the newest snapshot of the room, so that a key by which nothing has changed there waits for no frame.
+    /// Looks at the latest snapshot. A key that has changed nothing in the room no longer waits for a frame.
     pub(crate) fn look_at(&mut self, room: &RoomView) {
         if self.has_acted(room) && !self.ui.is_stale(Some(room)) {
             self.unanswered.forget_wanted();
@@ -156,23 +158,23 @@ impl Session {
         self.ui.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
     }
 
-    /// The requests of the session since the last call.
+    /// Takes the session's requests since the last call.
     pub(crate) fn requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.ui.requests)
     }
 
-    /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
+    /// Returns true if the driver should call [`draw`](Self::draw) now, with `room` as the latest snapshot.
     pub(crate) fn is_due(&self, room: Option<&RoomView>, now: Duration) -> bool {
         self.due_at(room, now).is_some_and(|due| due <= now)
     }
 
-    /// Whether a frame may take longer than others should wait for their turn.
+    /// Returns true if drawing a frame may take longer than other tasks should have to wait.
     pub(crate) fn is_large(&self) -> bool {
         let WindowSize { columns, rows, .. } = self.protocol.size();
         usize::from(columns) * usize::from(rows) > LARGE
     }
 
-    /// Adds a frame to the output.
+    /// Draws a frame into the output.
     pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
         if self.ui.is_stale(room) {
             self.draw_anew(room, now);
@@ -187,7 +189,7 @@ impl Session {
     }
 
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
-        // Before the picture, which shows the newest figures then.
+        // Measured before drawing, so that the picture shows the newest figures.
         self.measure(now);
         let has_acted = room.is_none_or(|room| self.has_acted(room));
         let answered = self.unanswered.answer(has_acted);
@@ -208,7 +210,7 @@ impl Session {
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
     }
 
-    /// Measures the frames so far.
+    /// Updates the statistics of the frames.
     fn measure(&mut self, now: Duration) {
         let Self { protocol, ui, meter, .. } = self;
         if let Some(mut stats) = meter.measure(protocol, now) {
@@ -224,36 +226,36 @@ impl Session {
         self.protocol.output(now)
     }
 
-    /// Records that all bytes so far have left.
+    /// Records that all bytes taken from the output have been sent.
     pub(crate) fn written(&mut self, now: Duration) {
         self.protocol.written(now);
     }
 
-    /// The time at which to [`wake`](Self::wake) the session and to ask again whether a frame
-    /// [is due](Self::is_due), if nothing happens before; `None` for never.
+    /// The time of the next [`wake`](Self::wake), and the next check whether a frame [is due](Self::is_due),
+    /// if nothing happens before; `None` for never.
     pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
         let ui = self.ui.wakes_at().filter(|_| self.ending == Ending::Not);
         self.due_at(room, now).into_iter().chain(ui).chain(self.protocol.wakes_at()).min()
     }
 
-    /// The time from which on a newer snapshot may bring a frame; `None` until the terminal answers or
-    /// [`wakes_at`](Self::wakes_at).
+    /// The earliest time at which a newer snapshot may lead to a frame; `None` until the terminal replies or
+    /// [`wakes_at`](Self::wakes_at) is reached.
     pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
         let looks = self.ending == Ending::Not && self.protocol.is_ready(now);
         looks.then(|| self.pace.next(self.answers_key.is_some()))
     }
 
-    /// Sets the time between two frames.
+    /// Sets the interval between frames.
     pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
         self.pace.set_frame_time(frame_time);
     }
 
-    /// Whether the session has ended, and the connection may be closed after the output is sent.
+    /// Returns true once the session has ended. The driver may then send the output and close the connection.
     pub(crate) fn is_over(&self) -> bool {
         self.ending == Ending::Over
     }
 
-    /// The time of the next frame; `None` if nothing has changed or the terminal is not ready.
+    /// The time of the next frame; `None` if the picture has not changed or the terminal is not ready.
     fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
         if self.ending != Ending::Not || !self.protocol.is_ready(now) {
             return None;
@@ -267,7 +269,7 @@ impl Session {
         Some(self.pace.next(is_prompt).max(now))
     }
 
-    /// Handles the events of the terminal.
+    /// Handles the terminal's events.
     fn handle_events(&mut self, now: Duration) {
         self.ui.answered = self.protocol.frames_answered();
         self.ui.wants_compression = self.wants_compression();
@@ -288,7 +290,7 @@ impl Session {
         self.finish(now);
     }
 
-    /// Handles a key, and records what it changes.
+    /// Handles a key, and records whether it changes the screen or the visitor's intents.
     fn press(&mut self, key: Event, now: Duration) {
         self.ui.advance(now);
         let was_stale = std::mem::take(&mut self.ui.is_stale);
@@ -303,26 +305,26 @@ impl Session {
         self.ui.stay.as_ref().map(|stay| stay.intents.newest())
     }
 
-    /// Whether a key counts. Releases do, whatever was pressed, so that no key is held for ever.
+    /// Returns true if a key counts. Releases always count, so that no key is held forever.
     fn takes_key(&mut self, event: KeyEvent, now: Duration) -> bool {
         event.phase == Phase::Release || self.keys.takes_one(now)
     }
 
-    /// Whether compression would make pictures finer. Before the first pictures of a room have shown
-    /// that, it may on every link that is not local.
+    /// Returns true if compression would make pictures finer. Until pictures of a room have been measured,
+    /// this is assumed for every link that is not local.
     fn wants_compression(&self) -> bool {
         let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
         !self.ui.host.compresses && self.is_limited.unwrap_or(is_far)
     }
 
-    /// Requests what the visitor has chosen from the terminal.
+    /// Applies the visitor's choices to the terminal.
     fn show_choices(&mut self) {
         let Self { protocol, ui, .. } = self;
         protocol.set_mouse(ui.pointer.is_on());
         protocol.set_ascii(ui.is_ascii());
     }
 
-    /// Takes over what is known of the terminal.
+    /// Adopts the terminal's detected properties.
     fn follow_terminal(&mut self) {
         let Self { protocol, ui, .. } = self;
         ui.terminal = TerminalLook::of(protocol);
@@ -331,8 +333,7 @@ impl Session {
         ui.pointer.set_columns(protocol.size().columns);
     }
 
-    /// Ends the session if it should, and gives the screen back once the terminal has answered all
-    /// that it was asked.
+    /// Ends the session if it should end, and restores the screen once the terminal has acknowledged all output.
     fn finish(&mut self, now: Duration) {
         if self.ending == Ending::Not
             && let Some(sentence) = self.ui.farewell.take()

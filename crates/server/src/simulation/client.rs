@@ -1,4 +1,4 @@
-//! Clients: a terminal emulator at the far end of a pipe, under conditions that tests change.
+//! Clients: a terminal emulator at the far end of a pipe, under conditions that tests can change.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -15,7 +15,7 @@ use crate::ssh::{FarEnd, Parts, Visitor, pipe};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{Detected, WindowSize};
 
-/// A client and the session that serves it.
+/// A client, with a handle to its session.
 pub(crate) struct Client {
     pub(crate) visiting: Visiting,
     end: FarEnd,
@@ -25,20 +25,20 @@ pub(crate) struct Client {
     metrics: Arc<Metrics>,
 }
 
-/// How a client and its link behave.
+/// The behaviour of a client and its link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conditions {
-    /// Whether it takes what arrives.
+    /// Whether the client reads.
     pub(crate) reads: bool,
-    /// Whether its terminal's answers leave.
+    /// Whether the terminal's replies are sent.
     pub(crate) answers: bool,
-    /// The time that all takes that it sends.
+    /// The latency of everything that the client sends.
     pub(crate) latency: Duration,
-    /// In bytes a second, what arrives; `None` for no limit.
+    /// The rate at which the client receives, in bytes per second; `None` for no limit.
     pub(crate) rate: Option<u32>,
 }
 
-/// A guest of that name whose connection compresses.
+/// A guest with this name, whose connection is compressed.
 pub(crate) fn guest(name: &str, (columns, rows): (u16, u16)) -> Visitor {
     Visitor {
         peer: ([192, 0, 2, 1], 22).into(),
@@ -58,11 +58,11 @@ struct Terminal {
     arrivals: Vec<Arrived>,
 }
 
-/// When something has arrived, and how many bytes have arrived by then.
+/// The time of an arrival, and the total number of bytes received by then.
 type Arrived = (Instant, usize);
 
 impl Client {
-    /// Connects to a host, in a runtime.
+    /// Connects to a host. Must be called within a runtime.
     pub(crate) fn come(
         host: &Simulated,
         visitor: Visitor,
@@ -93,7 +93,7 @@ impl Client {
         Self { visiting, end, terminal, conditions_changed, sent, metrics }
     }
 
-    /// Sends bytes, which arrive after the latency, in a runtime.
+    /// Sends bytes, which arrive after the latency. Must be called within a runtime.
     pub(crate) fn send(&self, bytes: &[u8]) {
         let latency = locked(&self.terminal, |terminal| terminal.conditions.latency);
         _ = self.sent.send((Instant::now() + latency, bytes.to_vec()));
@@ -104,19 +104,19 @@ impl Client {
         self.conditions_changed.notify_one();
     }
 
-    /// Changes the size of the window, which may have no cells.
+    /// Resizes the window, possibly to zero cells.
     pub(crate) fn resize(&self, columns: u16, rows: u16) {
         let size = (columns.max(1), rows.max(1));
         locked(&self.terminal, |terminal| terminal.emulator.resize(size.0, size.1));
         self.end.resize(WindowSize::of_cells(columns, rows));
     }
 
-    /// The server is about to end.
+    /// Announces that the server is about to shut down.
     pub(crate) fn drain(&self) {
         self.end.drain();
     }
 
-    /// The connection has noticed that the link is cut.
+    /// Cuts the link, as noticed by the connection.
     pub(crate) fn cut(&self) {
         self.end.end();
         self.set(|conditions| conditions.reads = true);
@@ -126,27 +126,27 @@ impl Client {
         locked(&self.terminal, |terminal| look(&terminal.emulator))
     }
 
-    /// The number of bytes that were sent to it, taken or not.
+    /// The number of bytes sent to the client, received or not.
     pub(crate) fn bytes(&self) -> u64 {
         self.metrics.frame_bytes.get()
     }
 
-    /// The number of frames that were sent to it, taken or not.
+    /// The number of frames sent to the client, received or not.
     pub(crate) fn frames(&self) -> u64 {
         self.metrics.frames.get()
     }
 
-    /// Whether it has taken all that was sent to it.
+    /// Returns true if the client has received all bytes sent to it.
     pub(crate) fn has_all(&self) -> bool {
         self.look(|emulator| emulator.bytes().len() as u64 == self.bytes())
     }
 
-    /// When something arrived.
+    /// The times of all arrivals.
     pub(crate) fn arrivals(&self) -> Vec<Instant> {
         locked(&self.terminal, |it| it.arrivals.iter().map(|arrived| arrived.0).collect())
     }
 
-    /// What has arrived since `begun`, split where it was another time.
+    /// The bytes that have arrived after `begun`, grouped by time of arrival.
     pub(crate) fn received(&self, begun: Instant) -> Vec<Vec<u8>> {
         locked(&self.terminal, |Terminal { emulator, arrivals, .. }| {
             let first = arrivals.partition_point(|(time, _)| *time <= begun);
@@ -162,7 +162,7 @@ impl Client {
     }
 }
 
-/// Takes parts of frames as the conditions allow, until the session has ended.
+/// Receives parts of frames as the conditions allow, until the session ends.
 async fn receive(
     mut parts: Parts,
     terminal: Arc<Mutex<Terminal>>,
@@ -191,7 +191,7 @@ async fn receive(
     }
 }
 
-/// Delivers what was sent when it is due, in its order.
+/// Delivers the client's bytes in order, each when it is due.
 async fn deliver(mut waiting: mpsc::UnboundedReceiver<(Instant, Vec<u8>)>, end: FarEnd) {
     while let Some((due, bytes)) = waiting.recv().await {
         if due > Instant::now() {

@@ -1,21 +1,21 @@
-//! A thousand hosts whose clients and links have faults, each repeatable by its seed.
+//! A thousand simulated hosts with faulty clients and links, each reproducible by its seed.
 //!
-//! A steady member turns all the time. In every other run, the host has a slow worker, and a bystander types a
-//! name. The others send keys and noise, talk, paste, change their
-//! windows and rooms, answer late or not at all, read slowly or not at all, are cut off, and come again;
-//! in some runs the server drains. After each run:
+//! A steady member turns all the time. In every other run, the host has a slow worker and a bystander types a
+//! name. The other clients send keys and noise, chat, paste, resize their windows, change rooms, reply late
+//! or never, read slowly or not at all, lose their links, and reconnect. In some runs the server drains.
+//! After each run:
 //!
-//! - the steady member has missed no picture;
-//! - each key of the bystander was answered within a tenth of a second;
-//! - who does not read was sent at most the frame that waits;
-//! - each screen whose terminal answers shows what its session draws on an empty one;
-//! - the recording of each room gives its state again, bit for bit;
-//! - the members of rooms are those who are connected, fifteen seconds after the last cut;
-//! - nothing but printable characters of what one typed has reached another;
-//! - no task is left.
+//! - the steady member has missed no frame;
+//! - each of the bystander's keys was answered within a tenth of a second;
+//! - a client that does not read was sent no more frames than those already in flight;
+//! - each screen whose terminal replies shows the picture that its session would draw on an empty screen;
+//! - replaying the recording of each room reproduces its state, bit for bit;
+//! - fifteen seconds after the last cut, the members of the rooms are the visitors who are connected;
+//! - other visitors have received only the printable characters of a visitor's input;
+//! - no task is left over.
 //!
-//! A failed run prints its seed; `SEED=n cargo test --features serve --lib simulation` repeats it: exactly if the
-//! worker is not slow, and up to some milliseconds otherwise.
+//! A failed run prints its seed. `SEED=n cargo test --features serve --lib simulation` repeats it: exactly if
+//! the worker is not slow, and otherwise to within a few milliseconds.
 
 mod faults;
 mod findings;
@@ -32,41 +32,41 @@ use crate::rooms::room::Mode;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::rng::SplitMix64;
 
-/// The time with faults, in milliseconds.
+/// The duration of the faults, in milliseconds.
 const FAULTS: u64 = 3_000;
-/// The clients at a time, with the steady one.
+/// The number of clients at a time, including the steady one.
 const CLIENTS: usize = 4;
-/// What somebody types to have it obeyed by the terminals of others.
+/// Input that tries to send escape sequences to the terminals of other visitors.
 const HOSTILE: &str = "\x1b]0;evil\x07\x1b[2J\u{9b}31m\u{202e}\u{301}";
 
-/// The time between two keys of the bystander.
+/// The time between two of the bystander's keys.
 const BETWEEN_KEYS: Duration = Duration::from_millis(150);
 
-/// The member whose pictures are counted.
+/// The index of the member whose frames are timed.
 const STEADY: usize = 0;
 
-/// A guest who types a name, letter by letter, and deletes it again.
+/// A guest who types a letter of a name and deletes it, over and over.
 struct Bystander {
     client: usize,
-    /// When keys were pressed.
+    /// The times at which keys were pressed.
     pressed: Vec<Instant>,
 }
 
-/// A run.
+/// The state of a run.
 struct Run {
     rig: Rig,
-    /// Where the worker is slow.
+    /// The bystander; present only if the worker is slow.
     bystander: Option<Bystander>,
     chance: SplitMix64,
-    /// The tasks without clients.
+    /// The number of tasks when no client is connected.
     tasks: usize,
-    /// The clients that are connected.
+    /// The connected clients.
     connected: Vec<usize>,
-    /// Those that are cut off, and when their connection notices it.
+    /// The clients that are cut off, and the time at which their connections notice it.
     cut: Vec<(usize, Instant)>,
-    /// The clients that do not read, and the frames that they had been sent before.
+    /// The clients that do not read, and the number of frames that each had been sent before it stopped.
     silent: Vec<(usize, u64)>,
-    /// The clients whose terminals answer nothing any more.
+    /// The clients whose terminals no longer reply.
     mute: Vec<usize>,
     is_draining: bool,
 }
@@ -80,7 +80,7 @@ impl Run {
         let catalog = catalog(&hall());
         let mut rig = Rig::with(Wish { catalog, store_time, worker, seed, ..Wish::new(mode) });
         let tasks = rig.tasks();
-        // With colours, no two pictures of a wall of bricks are the same.
+        // With colours, no two frames of a brick wall are the same.
         let steady = rig.visitor_with("Mara", (24, 7), Speaks::Kitty, ColorDepth::True);
         for _ in 0..3 {
             rig.press(steady, ENTER);
@@ -100,7 +100,7 @@ impl Run {
         run
     }
 
-    /// Somebody comes, most of them as far as the room.
+    /// Connects a client. Most go on as far as the room.
     fn come(&mut self) {
         let Self { rig, chance, connected, .. } = self;
         let speaks =
@@ -135,7 +135,7 @@ impl Run {
         self.assert_replays();
     }
 
-    /// The bystander presses the next key, if it is time.
+    /// Lets the bystander press the next key if it is due.
     fn press_key(&mut self) {
         let Self { rig, bystander: Some(bystander), .. } = self else { return };
         let now = rig.now();
@@ -146,7 +146,7 @@ impl Run {
         }
     }
 
-    /// All links are good again, and nobody touches a key.
+    /// Repairs all links and stops all input.
     fn calm_down(&mut self) {
         self.connected.clone().into_iter().for_each(|client| self.wake(client));
         let good = Conditions { reads: true, answers: true, latency: Duration::ZERO, rate: None };
@@ -158,7 +158,8 @@ impl Run {
             self.rig.pump(500);
             self.notice();
         }
-        // Pauses are taken for keys that are held by a terminal without releases.
+        // Wait long enough for keys to be released: some terminals report no releases, and a short pause
+        // counts as a held key.
         self.rig.pump(3_000);
         let is_over = |client: &usize| self.rig.is_over(*client);
         assert!(self.is_draining || !is_over(&STEADY));
@@ -166,17 +167,17 @@ impl Run {
     }
 }
 
-/// Whether the worker of the host is slow in the run of this seed.
+/// Returns true if the host has a slow worker in the run with this seed.
 fn is_slow(seed: u64) -> bool {
     seed % 2 == 1
 }
 
-/// The hall, with walls of bricks.
+/// The hall with brick walls.
 fn hall() -> String {
     HALL.replace("#808080", "brick")
 }
 
-/// Plays a seed; returns what each client has received.
+/// Plays a seed; returns the bytes that each client has received.
 fn play(seed: u64) -> Vec<Vec<u8>> {
     let mut run = Run::new(seed);
     run.play();
@@ -191,7 +192,7 @@ fn play(seed: u64) -> Vec<Vec<u8>> {
     all
 }
 
-/// Plays some of a thousand seeds, or the one that the environment names.
+/// Plays these seeds, or only the one in the environment variable `SEED`.
 fn play_all(seeds: std::ops::Range<u64>) {
     let named: Option<u64> = env::var("SEED").ok().and_then(|seed| seed.parse().ok());
     let seeds = named.map_or(seeds, |seed| seed..seed + 1);

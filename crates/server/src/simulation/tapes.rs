@@ -1,4 +1,4 @@
-//! Recordings of rooms in memory, and rooms that are played again from them.
+//! In-memory recordings of rooms, and their replay.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -15,7 +15,7 @@ use crate::rooms::summary::RoomId;
 pub(crate) struct Tapes(Arc<Mutex<BTreeMap<RoomId, String>>>);
 
 impl Tapes {
-    /// Records rooms here.
+    /// Recordings that store into these tapes.
     pub(crate) fn recordings(&self) -> Recordings {
         let tapes = self.clone();
         Recordings::new(move |room| Some(Box::new(Tape { room, tapes: tapes.clone() })))
@@ -60,7 +60,7 @@ impl Recording for Tape {
     }
 }
 
-/// Plays a recording again up to a step of its last round. Each round must begin as it did.
+/// Replays a recording up to `step` of its last round. Asserts that each round begins with its recorded header.
 pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>, step: u64) -> Room {
     let rounds = parse_log(text).expect("a recording");
     let mut room = Room::new(catalog, rounds[0].0.clone()).expect("a level");

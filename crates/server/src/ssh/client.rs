@@ -1,9 +1,9 @@
-//! A client on its way to a session: the requests that it makes, and the answers.
+//! A client on its way to a session: its requests, and the answers to them.
 //!
-//! OpenSSH's client asks for the method `none` first, to learn which methods there are, and never
-//! again. Answered with success, it would never show its keys, and everybody would be a guest. So the
-//! first `none` is refused, unless it is for the user `guest`; a client without a key then comes to
-//! `keyboard-interactive`, which succeeds without a question, or asks for `none` once more.
+//! OpenSSH's client begins with the method `none`, to learn which methods there are. If that succeeded, it
+//! would never offer its keys, and everybody would be a guest. The first `none` is therefore rejected, except
+//! for the user `guest`. A client without a key then tries `keyboard-interactive`, which succeeds without a
+//! question, or tries `none` once more.
 
 use std::collections::BTreeMap;
 use std::mem;
@@ -28,7 +28,7 @@ use crate::admission::{Refusal, VisitId};
 use crate::logging;
 use cellcaster::terminal::WindowSize;
 
-/// A session that begins.
+/// A session that is about to begin.
 pub(crate) struct Begun {
     pub(crate) visitor: Visitor,
     pub(crate) link: Link,
@@ -37,15 +37,15 @@ pub(crate) struct Begun {
     pub(crate) channel: ChannelId,
 }
 
-/// A client, as far as it has come.
+/// The state of a client until its session begins.
 pub(crate) struct Client {
     gate: Arc<Gate>,
     line: Arc<Line>,
     visit: VisitId,
     peer: SocketAddr,
-    /// Until the session begins.
+    /// Taken when the session begins.
     begin: Option<oneshot::Sender<Begun>>,
-    /// Whether it has asked for the method `none`.
+    /// Whether the client has tried the method `none`.
     has_asked: bool,
     user: String,
     key: Option<AccountKey>,
@@ -57,7 +57,7 @@ pub(crate) struct Client {
     inlet: Option<Inlet>,
 }
 
-/// The user who is a guest even with a key.
+/// The user name that is a guest even with a key.
 const GUEST: &str = "guest";
 const NO_TERMINAL: &str = "This is a game for a terminal: connect with ssh -t.";
 const NO_RSA: &str =
@@ -90,14 +90,14 @@ impl Client {
         }
     }
 
-    /// The client has proved that it has `key`, or that it is a guest.
+    /// Records the user and the key of an authenticated client; no key for a guest.
     fn accept(&mut self, user: &str, key: Option<AccountKey>) -> Auth {
         self.user = visitor::word(user);
         self.key = key;
         Auth::Accept
     }
 
-    /// Starts the session, or says why not.
+    /// Starts the session, or closes the channel with the reason why not.
     fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
         if let Some(reason) = self.refusal {
             return refuse(channel, &self.gate.sentence(reason), session);
@@ -123,7 +123,7 @@ impl Client {
         let (inlet, inbound) = inbound(self.line.limits);
         self.inlet = Some(inlet.clone());
         let link = Link { inbound, outbox };
-        // The connection may be closing.
+        // This fails only if the connection is closing.
         _ = begin.send(Begun { visitor, link, inlet, handle, channel });
         Ok(())
     }
@@ -313,7 +313,7 @@ fn answer(is_success: bool, channel: ChannelId, session: &mut Session) -> Result
     if is_success { session.channel_success(channel) } else { session.channel_failure(channel) }
 }
 
-/// Ends the channel with a sentence.
+/// Closes the channel with a sentence on standard error.
 fn refuse(channel: ChannelId, sentence: &str, session: &mut Session) -> Result<(), Error> {
     session.extended_data(channel, STANDARD_ERROR, format!("{sentence}\r\n").into_bytes())?;
     session.exit_status_request(channel, u32::from(Departure::REFUSED.status))?;

@@ -1,4 +1,4 @@
-//! One connection, from its socket to its end.
+//! A single connection, from its socket to its end.
 
 use std::borrow::Cow;
 use std::io;
@@ -26,21 +26,20 @@ use crate::admission::Outcome;
 use crate::config::LiveConfig;
 use crate::logging::{self, ConnectionEvent};
 
-/// The time for the first line of a client, its version, which no client has to think about.
+/// The time limit for a client's first line, the version. A client sends it without input from its user.
 const VERSION_TIME: Duration = Duration::from_secs(3);
-/// The time that a session has for its end after its link has ended.
+/// How long a session may take to finish after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
-/// The least time between two looks whether a client has gone.
+/// The shortest pause between two checks whether a client is gone.
 const LEAST_PAUSE: Duration = Duration::from_millis(50);
-/// The time that a client has for closing the connection after its session has ended.
+/// The time limit for a client to close the connection after its session has ended.
 const FAREWELL: Duration = Duration::from_secs(2);
-/// The messages that may wait for russh: a frame, three of the end, and questions whether the
-/// client is there.
+/// The maximum number of messages queued for russh: a frame, the three closing messages, and keep-alive questions.
 const MOST_MESSAGES: usize = 32;
-/// In bytes: of what a client sends before russh tells it to go on.
+/// The channel's receive window, in bytes.
 const WINDOW: u32 = 32 << 10;
 
-/// Serves a connection until it has ended.
+/// Serves a connection until it ends.
 pub(crate) async fn serve<H: Host>(
     gate: Arc<Gate>,
     ssh: Arc<server::Config>,
@@ -59,7 +58,7 @@ pub(crate) async fn serve<H: Host>(
     let wire = Wire::new(socket, line.clone());
     let (ready, mut handle) = oneshot::channel();
     let mut transport = pin!(async {
-        // Unboxed, the handshake would keep its memory in this task as long as the connection lasts.
+        // Boxed: otherwise this task would hold the memory of the handshake for as long as the connection lasts.
         let session = Box::pin(server::run_stream(ssh, wire, client)).await?;
         _ = ready.send(session.handle());
         session.await
@@ -80,7 +79,7 @@ pub(crate) async fn serve<H: Host>(
             Outcome::Served
         }
         Err(outcome) => {
-            // Its task ends at once, and the stream with it.
+            // The transport is dropped right after this, which closes the stream.
             line.cut();
             gate.log(ConnectionEvent::Ended(outcome), peer.ip());
             outcome
@@ -89,7 +88,7 @@ pub(crate) async fn serve<H: Host>(
     gate.leave(visit, outcome);
 }
 
-/// Tells the client why it has to go, if its key exchange is over, and waits until it has gone.
+/// Sends the client the reason for the disconnection, if its key exchange is complete, and waits until it has gone.
 async fn disconnect(
     handle: &Handle,
     sentence: String,
@@ -99,7 +98,7 @@ async fn disconnect(
     _ = transport.await;
 }
 
-/// Waits until the session begins.
+/// Waits until the session begins, or the deadline of the client's stage passes.
 async fn log_in(
     gate: &Gate,
     line: &Line,
@@ -132,7 +131,7 @@ async fn log_in(
     }
 }
 
-/// Lets the host serve the visitor, until either is done.
+/// Lets the host serve the visitor until the session or the connection ends.
 async fn converse<H: Host>(
     gate: &Gate,
     host: &H,
@@ -181,11 +180,11 @@ async fn converse<H: Host>(
     }
 }
 
-/// Waits until the client has gone without a word, or takes nothing any more.
+/// Returns when the client is gone without closing the connection, or no longer reads.
 ///
-/// A client of which nothing is heard is asked something that it must answer (RFC 4254, section 4).
-/// russh's own keep-alives were refused: they wait behind a frame that the socket does not take, and
-/// they come while the user types a passphrase, where OpenSSH's client complains about them.
+/// A silent client gets a question that it must answer (RFC 4254, section 4). Rejected: russh's own
+/// keep-alives. They queue behind a frame that the socket does not accept, and they arrive while the user
+/// types a passphrase, which makes OpenSSH's client complain.
 async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
     let mut part = (line.passage.parts(), Instant::now());
     loop {
@@ -201,7 +200,7 @@ async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
             return;
         }
         if silent >= pause && !is_waiting {
-            // No client forwards anything here, so it has nothing to cancel.
+            // No client can have forwarded a port, so there is nothing to cancel.
             let question = handle.cancel_forward_tcpip(String::new(), 0);
             _ = timeout(pause.min(config.silence.saturating_sub(silent)), question).await;
         }
@@ -211,7 +210,7 @@ async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
     }
 }
 
-/// What the end of russh's task says about the client.
+/// The outcome for the client, from the result of russh's task.
 fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
     match ended {
         _ if is_logged_in => Outcome::Served,
@@ -219,7 +218,7 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
         Err(Error::IO(error)) if error.kind() == io::ErrorKind::FileTooLarge => {
             Outcome::BrokeProtocol
         }
-        // An old client may have no method in common.
+        // An old client may have no algorithm in common with the server.
         Ok(())
         | Err(Error::IO(_) | Error::Disconnect | Error::HUP | Error::NoCommonAlgo { .. }) => {
             Outcome::LeftEarly
@@ -228,11 +227,11 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
     }
 }
 
-/// Algorithms and limits. Groups of Diffie-Hellman are not offered: the largest cost a tenth of a
-/// second of processor time before authentication. Neither is `zlib`, which compresses before
-/// authentication; `none` comes first in no client that is asked to compress. RSA keys are named so
-/// that clients offer them, and their users can be told why they are guests. A fuzz target cannot encrypt, so
-/// there the client may choose the null transport.
+/// The algorithms and limits. Diffie-Hellman groups are not offered, because the largest costs a tenth of a
+/// second of processor time before authentication. `zlib` is not offered, because it compresses before
+/// authentication. Listing `none` first does no harm: the client's order decides, and a client that is asked
+/// to compress does not list `none` first. RSA keys are listed so that clients offer them, and their users
+/// can be told why they are guests. A fuzz target cannot encrypt, so it may choose the null transport.
 pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     const KEX: &[kex::Name] = &[
         kex::MLKEM768X25519_SHA256,
@@ -273,7 +272,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     server::Config {
         server_id: SshId::Standard(Cow::Borrowed(VERSION)),
         methods: MethodSet::from(methods.as_slice()),
-        // There is nothing to guess.
+        // There is no secret to guess, so a rejection needs no delay.
         auth_rejection_time: Duration::ZERO,
         auth_rejection_time_initial: None,
         keys: vec![key.key.clone()],
@@ -296,7 +295,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     }
 }
 
-/// Counts one more as long as it lives.
+/// Increments a gauge for as long as it lives.
 struct Counted<'a>(&'a Gauge);
 
 impl<'a> Counted<'a> {

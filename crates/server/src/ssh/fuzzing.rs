@@ -1,4 +1,4 @@
-//! Connections without sockets, for fuzz targets. The session sends back what the client sends.
+//! Connections without sockets, for fuzz targets. The session echoes the client's bytes.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::{Arc, LazyLock};
@@ -33,7 +33,7 @@ impl Host for Echo {
     }
 }
 
-/// Serves the client at the other end of `stream` until the connection has ended, in the runtime of the caller.
+/// Serves the client at the other end of `stream` until the connection ends, on the caller's runtime.
 ///
 /// # Panics
 /// If the first connection is refused.

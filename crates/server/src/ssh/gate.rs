@@ -1,17 +1,17 @@
-//! The way into the server, for all of its connections: it admits and refuses them, and counts and logs what they do.
+//! The gate of the server: admits or refuses connections, and counts and logs their events.
 //!
-//! # Telling the client of a refused connection why
+//! # Telling a refused client the reason
 //!
-//! The client reads the version of the server and a message `SSH_MSG_DISCONNECT` (RFC 4253, sections 4.2 and
-//! 11.1), which is not encrypted as long as there are no keys. OpenSSH's client prints its text, and ends with
-//! status 255. Nothing is calculated for it.
+//! The client receives the server's version and a message `SSH_MSG_DISCONNECT` (RFC 4253, sections 4.2 and
+//! 11.1), which is not encrypted before the key exchange. OpenSSH's client prints its text and exits with
+//! status 255. The server does no cryptography for it.
 //!
-//! A flood must not cost more than closing its connections does, so few are told: at most [`MOST`] within
-//! [`LINGER`], and [`MOST_OF_NETWORK`] of one network. That bounds tasks and sockets, too, since none lasts
-//! longer. The others are closed without a word.
+//! In a flood, an explanation must not cost more than closing the connection. Only a few clients get one: at
+//! most [`MOST`] within [`LINGER`], of which at most [`MOST_OF_NETWORK`] in one network. This also limits the
+//! number of tasks and sockets, because no explanation lasts longer than [`LINGER`]. All other connections
+//! are closed silently.
 //!
-//! Rejected: lines before the version, which the protocol allows as well. OpenSSH's client shows them with `-v`
-//! only.
+//! Rejected: lines before the version, which the protocol also allows. OpenSSH's client shows them only with `-v`.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, SocketAddr};
@@ -31,7 +31,7 @@ use crate::logging::{ConnectionEvent, Throttle};
 use crate::metrics::Metrics;
 use cellcaster::rng::SplitMix64;
 
-/// The way in.
+/// The gate of a server.
 pub(crate) struct Gate {
     pub(crate) config: LiveConfig,
     pub(crate) metrics: Arc<Metrics>,
@@ -40,21 +40,21 @@ pub(crate) struct Gate {
     state: Mutex<State>,
 }
 
-/// What the connections of a server may do.
+/// The phases of a server's shutdown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Open,
-    /// Sessions are told to end.
+    /// Sessions are told to end, and no client may log in.
     Draining,
     /// Connections are closed.
     Closing,
 }
 
-/// A connection that was admitted.
+/// An admitted connection.
 pub(crate) struct Entry {
     pub(crate) visit: VisitId,
     pub(crate) peer: SocketAddr,
-    /// Tells that the connection is displaced, and the sentence for its client, if any.
+    /// Receives the sentence for the client, if any, when the connection is displaced.
     pub(crate) displaced: oneshot::Receiver<Option<String>>,
 }
 
@@ -63,7 +63,7 @@ struct State {
     chance: SplitMix64,
     explanations: Explanations,
     logged: Throttle,
-    /// The senders that displace connections, with the addresses of these.
+    /// The open connections, each with its address and the sender that displaces it.
     open: BTreeMap<VisitId, (IpAddr, oneshot::Sender<Option<String>>)>,
 }
 
@@ -80,17 +80,17 @@ impl Gate {
         Self { config, metrics, phase, begun: Instant::now(), state }
     }
 
-    /// Lets connections do less from now on.
+    /// Enters the next phase of the shutdown.
     pub(crate) fn enter(&self, phase: Phase) {
         self.phase.send_replace(phase);
     }
 
-    /// Ready when nobody may log in any more.
+    /// Waits until clients may no longer log in.
     pub(crate) async fn stopped(&self) {
         _ = self.phase.subscribe().wait_for(|phase| *phase != Phase::Open).await;
     }
 
-    /// The phases, the present one first.
+    /// A receiver of the phases, starting with the current one.
     pub(crate) fn phases(&self) -> watch::Receiver<Phase> {
         let mut phases = self.phase.subscribe();
         phases.mark_changed();
@@ -100,7 +100,7 @@ impl Gate {
     /// Admits a connection.
     ///
     /// # Errors
-    /// The connection is refused: with a sentence for its client, or without a word in a flood.
+    /// The connection is refused. The error contains the sentence for its client, or `None` to close it silently.
     pub(crate) fn admit(&self, peer: SocketAddr) -> Result<Entry, Option<String>> {
         let (limits, now, address) = (self.config.get().admission, self.begun.elapsed(), peer.ip());
         locked(&self.state, |state| {
@@ -113,7 +113,7 @@ impl Gate {
                         displaced.and_then(|id| state.open.remove(&id))
                     {
                         let sentence = self.explain(state, Refusal::Startups, address, now);
-                        // It may have ended just now.
+                        // The connection may just have ended.
                         _ = connection.send(sentence);
                     }
                     let (sender, displaced) = oneshot::channel();
@@ -128,7 +128,7 @@ impl Gate {
         })
     }
 
-    /// Counts a refusal; returns the sentence for the client at `address`, if it is told why.
+    /// Counts a refusal; returns the sentence for the client at `address`, if it may be told.
     fn explain(
         &self,
         state: &mut State,
@@ -141,7 +141,7 @@ impl Gate {
         is_told.then(|| self.sentence(reason))
     }
 
-    /// The sentence for a refused client.
+    /// The sentence for a client refused for `reason`.
     pub(crate) fn sentence(&self, reason: Refusal) -> String {
         reason.sentence(&self.config.get().admission)
     }
@@ -149,7 +149,7 @@ impl Gate {
     /// Counts a connection as authenticated, with `key` or as a guest.
     ///
     /// # Errors
-    /// The reason why it is refused now.
+    /// The reason why the connection is refused after all.
     pub(crate) fn log_in(
         &self,
         visit: VisitId,
@@ -161,7 +161,7 @@ impl Gate {
         logged_in.inspect_err(|&reason| self.refuse(reason, address))
     }
 
-    /// Counts and logs the refusal of a connection that is authenticated.
+    /// Counts and logs the refusal of an authenticated connection.
     pub(crate) fn refuse(&self, reason: Refusal, address: IpAddr) {
         self.metrics.refused(reason).inc();
         self.log(ConnectionEvent::Refused(reason), address);
@@ -176,38 +176,37 @@ impl Gate {
         });
     }
 
-    /// Logs an event of a client, at once or with the second.
+    /// Logs a client's event, at once or in the summary of this second.
     pub(crate) fn log(&self, event: ConnectionEvent, address: IpAddr) {
         locked(&self.state, |state| state.logged.log(event, address));
     }
 
-    /// Logs the sums of the second that is over.
+    /// Logs the summary of the second that has ended.
     pub(crate) fn end_second(&self) {
         locked(&self.state, |state| state.logged.end_second());
     }
 }
 
-/// The refused connections that were told why in the last [`LINGER`].
+/// The refused connections that were given the reason in the last [`LINGER`].
 #[derive(Debug, Default)]
 struct Explanations(VecDeque<(Duration, AddressPrefix)>);
 
-/// The version of the server, without the end of its line.
+/// The server's version, without the line ending.
 pub(crate) const VERSION: &str = "SSH-2.0-cellcaster";
-/// The longest time that one takes. A client closes the connection when it has read the message.
+/// The longest duration of an explanation. A client closes the connection once it has read the message.
 const LINGER: Duration = Duration::from_secs(2);
-/// The most of them in that time.
+/// The maximum number of explanations within [`LINGER`].
 const MOST: usize = 64;
-/// The most of one network in that time.
+/// The maximum number of explanations per network within [`LINGER`].
 const MOST_OF_NETWORK: usize = 8;
-/// In bytes: the most that is read of what the client sends meanwhile. Its version and its offer of algorithms
-/// are some 2,000.
+/// The most bytes read from a client during an explanation. Its version and its offer of algorithms take about 2,000.
 const MOST_READ: u64 = 16 << 10;
 
 const DISCONNECT: u8 = 1;
 const TOO_MANY_CONNECTIONS: u32 = 12;
 
 impl Explanations {
-    /// Whether a connection of `network` that is refused at `now` is told why; counts it then.
+    /// Returns true if a connection from `network`, refused at `now`, may be told the reason, and counts it.
     fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
         while self.0.front().is_some_and(|(at, _)| *at + LINGER <= now) {
             self.0.pop_front();
@@ -221,18 +220,18 @@ impl Explanations {
     }
 }
 
-/// Sends the sentence, and closes the connection.
+/// Sends the sentence and closes the connection.
 pub(crate) async fn explain(mut socket: TcpStream, sentence: String) {
     let told = async {
         socket.write_all(&message(&sentence)).await?;
         socket.shutdown().await?;
-        // A socket that is closed before all was read resets the connection, and the client may lose the sentence.
+        // Closing a socket with unread data resets the connection, and the client might lose the sentence.
         tokio::io::copy(&mut (&mut socket).take(MOST_READ), &mut tokio::io::sink()).await
     };
     _ = timeout(LINGER, told).await;
 }
 
-/// The version, and a packet that is not encrypted (RFC 4253, section 6).
+/// The version, and the message as an unencrypted packet (RFC 4253, section 6).
 fn message(sentence: &str) -> Vec<u8> {
     let mut payload = vec![DISCONNECT];
     payload.extend(TOO_MANY_CONNECTIONS.to_be_bytes());
@@ -240,7 +239,7 @@ fn message(sentence: &str) -> Vec<u8> {
         payload.extend((text.len() as u32).to_be_bytes());
         payload.extend(text.as_bytes());
     }
-    // At least four bytes, up to a multiple of eight of the whole.
+    // At least four bytes, and up to a multiple of eight for the whole packet.
     let padding = 4 + (8 - (5 + payload.len() + 4) % 8) % 8;
     let length = 1 + payload.len() + padding;
     let mut message = format!("{VERSION}\r\n").into_bytes();

@@ -1,4 +1,4 @@
-//! The server's key, by which clients recognise it.
+//! The host key, by which clients recognise the server.
 
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
@@ -12,23 +12,24 @@ use russh::keys::{HashAlg, PrivateKey};
 use cellcaster::app::store::private;
 use cellcaster::fault::printable_path;
 
-/// An ed25519 key of a server.
+/// The server's ed25519 host key.
 #[derive(Clone)]
 pub struct HostKey {
     pub(crate) key: PrivateKey,
 }
 
-/// The name of its file in the data folder.
+/// The file name in the data folder.
 const NAME: &str = "host_key";
-/// In bytes; a key has about 400.
+/// The largest file that is read, in bytes. A key takes about 400.
 const LARGEST: u64 = 16 << 10;
 
 impl HostKey {
-    /// The key in the file `host_key` of `folder`. If there is none, a new one is made, in a file that
-    /// only its owner can read.
+    /// Reads the key from the file `host_key` of `folder`. If the file does not exist, creates a new key in a
+    /// file that only its owner can read.
     ///
     /// # Errors
-    /// Others can read the file; or it is no key of this kind; or the folder can't be read or written.
+    /// Fails if other users can read the file, if it is not an ed25519 key, or if the folder cannot be read
+    /// or written.
     pub fn open(folder: &Path) -> Result<Self, String> {
         let path = folder.join(NAME);
         match private::open(&path) {
@@ -38,7 +39,7 @@ impl HostKey {
         }
     }
 
-    /// The fingerprint as `ssh` shows it to somebody who connects for the first time.
+    /// The fingerprint that `ssh` shows on the first connection.
     pub fn fingerprint(&self) -> String {
         self.key.fingerprint(HashAlg::Sha256).to_string()
     }
@@ -60,7 +61,7 @@ fn read(file: File, path: &Path) -> Result<HostKey, String> {
     key.map(|key| HostKey { key }).ok_or_else(no_key)
 }
 
-/// Makes a key. Where two servers begin at once, both take the one whose file was there first.
+/// Creates a key. If two servers start at the same time, both use the key whose file was created first.
 fn make(folder: &Path, path: &Path) -> Result<HostKey, String> {
     let not_written =
         |cause: &dyn fmt::Display| format!("{} can't be written: {cause}", printable_path(path));
@@ -79,7 +80,7 @@ fn make(folder: &Path, path: &Path) -> Result<HostKey, String> {
     }
 }
 
-/// Writes a file that must not exist, so that it is complete or absent at any time.
+/// Writes a file that must not exist yet. At any time the file is either complete or absent.
 fn write_new(path: &Path, content: &[u8]) -> io::Result<()> {
     let mark = getrandom::u64().map_err(io::Error::other)?;
     let new = path.with_extension(format!("{mark:016x}.new"));
@@ -125,7 +126,7 @@ fn unreadable(path: &Path, cause: &io::Error) -> String {
 }
 
 impl fmt::Debug for HostKey {
-    /// The secret part is not shown.
+    /// Leaves out the private key.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("HostKey").field(&self.fingerprint()).finish()
     }

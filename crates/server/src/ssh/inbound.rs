@@ -1,14 +1,14 @@
-//! What a visitor sends, on its way from the connection to the session.
+//! A visitor's input, on its way from the connection to the session.
 //!
-//! Bytes wait in one buffer of bounded size. Where it is full, the connection is read no further, so
-//! that a flood waits in the client's own socket. Of sizes of the window, only the newest waits. A
-//! queue of messages was refused: a message of one byte costs a hundred.
+//! Bytes wait in one buffer of bounded size. While it is full, the connection is not read, so that a flood
+//! waits in the client's own socket. Only the newest window size is kept. Rejected: a queue of messages. A
+//! message of one byte costs a hundred.
 //!
-//! Bytes come at the rate at which a client may send them before compression. Without that, eight clients that
-//! compressed what they sent took two processors.
+//! The rate limit of a client also applies after decompression. Without it, eight clients that compressed
+//! their input kept two processors busy.
 //!
-//! A session takes a flood in parts, and others have their turn between two of them. Whole buffers were refused:
-//! eight visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
+//! A session takes a flood in parts, and other tasks run between two of them. Rejected: whole buffers. Eight
+//! visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
 
 use std::mem;
 use std::sync::{Arc, Mutex};
@@ -23,28 +23,28 @@ use crate::bucket::Bucket;
 use crate::lock::locked;
 use cellcaster::terminal::WindowSize;
 
-/// What has arrived from a visitor.
+/// An event from a visitor's connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// What they typed, at most [`Inbound::MOST_AT_ONCE`].
+    /// Typed bytes, at most [`Inbound::MOST_AT_ONCE`].
     Bytes(Vec<u8>),
-    /// The new size of their window.
+    /// The new size of the visitor's window.
     Resized(WindowSize),
-    /// The server ends soon. The session is to say so, and to end in time.
+    /// The server will shut down soon. The session must tell the visitor and end in time.
     Drains,
-    /// The link has ended: nothing arrives any more, and nothing can be sent.
+    /// The link has ended: nothing more arrives, and nothing can be sent.
     Ended,
 }
 
-/// The session's end.
+/// The session's end of the buffer.
 #[derive(Debug)]
 pub struct Inbound {
     shared: Arc<Shared>,
-    /// Whether the last arrival was a part of more, so that others have their turn before the next.
+    /// Whether the last arrival was one part of several. The session yields to other tasks before the next part.
     yields: bool,
 }
 
-/// The connection's end.
+/// The connection's end of the buffer.
 #[derive(Clone, Debug)]
 pub(crate) struct Inlet {
     shared: Arc<Shared>,
@@ -54,35 +54,35 @@ pub(crate) struct Inlet {
 struct Shared {
     begun: Instant,
     waiting: Mutex<Waiting>,
-    /// For the session: something has arrived.
+    /// Tells the session that something has arrived.
     arrived: Notify,
-    /// For the connection: there is room.
+    /// Tells the connection that there is room.
     taken: Notify,
 }
 
 #[derive(Debug)]
 struct Waiting {
-    /// The bytes that may come.
+    /// The number of bytes that the client may send now.
     bucket: Bucket,
     bytes: Vec<u8>,
     size: Option<WindowSize>,
     drains: bool,
     ended: bool,
-    /// Nobody takes what arrives.
+    /// Whether the session is gone, so that nobody takes the input.
     is_abandoned: bool,
 }
 
-/// What has become of bytes.
+/// The result of appending bytes to the buffer.
 enum Appended {
-    /// So many of them are done with.
+    /// This number of bytes was taken.
     Some(usize),
-    /// There is no room.
+    /// The buffer is full.
     Full,
-    /// More of them may come after this time.
+    /// More bytes may arrive after this time.
     TooFast(Duration),
 }
 
-/// Both ends.
+/// Both ends of a buffer.
 pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
     let waiting = Waiting::new(limits.bucket(Duration::ZERO));
     let [arrived, taken] = [(); 2].map(|()| Notify::new());
@@ -92,21 +92,21 @@ pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
 }
 
 impl Arrival {
-    /// Whether more of the same may wait.
+    /// Returns true if more bytes may be waiting.
     fn is_full(&self) -> bool {
         matches!(self, Self::Bytes(bytes) if bytes.len() == Inbound::MOST_AT_ONCE)
     }
 }
 
 impl Inbound {
-    /// The most bytes that wait.
+    /// The size of the buffer, in bytes.
     pub const MOST_BYTES: usize = 16 << 10;
-    /// The most bytes of an arrival. A session that takes them does so in well under a millisecond.
+    /// The maximum size of an arrival, in bytes. A session handles it in well under a millisecond.
     pub const MOST_AT_ONCE: usize = 256;
 
-    /// The next arrival. [`Arrival::Ended`] comes last, after all bytes, and then each time.
+    /// Waits for the next arrival. [`Arrival::Ended`] comes after all bytes, and on every later call.
     ///
-    /// It loses nothing if it is dropped before it is ready.
+    /// Cancellation-safe: dropping the future before it is ready loses nothing.
     pub async fn next(&mut self) -> Arrival {
         if mem::take(&mut self.yields) {
             yield_now().await;
@@ -132,7 +132,7 @@ impl Drop for Inbound {
 }
 
 impl Inlet {
-    /// Passes bytes on, and waits where there is no room for them, or where they come too fast.
+    /// Passes bytes on. Waits while the buffer is full or the bytes come too fast.
     pub(crate) async fn bytes(&self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
             let now = self.shared.begun.elapsed();
@@ -144,7 +144,7 @@ impl Inlet {
                     bytes = &bytes[count..];
                 }
                 Appended::Full => taken.await,
-                // The session may end meanwhile.
+                // The session may end during the pause.
                 Appended::TooFast(pause) => _ = timeout(pause, taken).await,
             }
         }
@@ -226,9 +226,9 @@ mod tests {
         }
     }
 
-    /// The next arrival, if there is one.
+    /// The next arrival, if any.
     fn next(inbound: &mut Inbound) -> Option<Arrival> {
-        // Between two parts of a flood it yields once.
+        // The first poll may yield, between two parts of a flood.
         poll(inbound.next()).or_else(|| poll(inbound.next()))
     }
 
@@ -278,7 +278,7 @@ mod tests {
         let taking = async { while inbound.next().await != Arrival::Ended {} };
         let begun = Instant::now();
         tokio::join!(sending, taking);
-        // Those of the first four seconds come at once.
+        // The bytes of the first four seconds arrive at once.
         assert_eq!(begun.elapsed().as_millis().next_multiple_of(100), 16_000);
     }
 

@@ -1,12 +1,12 @@
-//! The one frame on its way to a visitor.
+//! The outbox: the one frame on its way to a visitor.
 //!
-//! A frame has drained when the socket has accepted its last byte, so a session encodes a frame only
-//! when the last one has left, and a client that does not read holds the memory of one frame. A frame
-//! goes to russh in parts, each when the last was written: russh keeps a buffer as large as the most
-//! that it was ever given at once. It drops the bytes of a part once they are encrypted, and the next
-//! flush of the stream then says that they were written. Each part has memory of its own, so that a
-//! client that stops reading within a frame holds only its rest. Counting encrypted bytes was refused:
-//! compression changes their number.
+//! A frame has drained when the socket has accepted its last byte. A session encodes a frame only after the
+//! previous one has drained, so a client that does not read holds the memory of one frame. A frame goes to
+//! russh in parts, each after the previous one was written, because russh keeps a buffer as large as the
+//! largest part it has ever received. russh drops the bytes of a part once they are encrypted, and the next
+//! flush of the stream then shows that they were written. Each part has its own memory, so a client that
+//! stops reading within a frame holds only the rest of it. Rejected: counting encrypted bytes. Compression
+//! changes their number.
 
 use std::future::Future;
 use std::pin::pin;
@@ -23,61 +23,61 @@ use tokio::task::{unconstrained, yield_now};
 use crate::lock::locked;
 use crate::metrics::Metrics;
 
-/// The place for one frame. The next one has room when the last has drained.
+/// The slot for one frame. It is free when the previous frame has drained.
 pub struct Outbox {
     passage: Arc<Passage>,
 }
 
-/// The state of the frame, which the outbox, the frame and the stream share.
+/// The state of the current frame, shared by the outbox, the frame and the stream.
 pub(crate) struct Passage {
     state: AtomicU8,
-    /// Nothing can be sent any more.
+    /// Whether the link has ended, so that nothing can be sent.
     is_closed: AtomicBool,
-    /// The number of parts so far.
+    /// The number of parts sent.
     parts: AtomicU64,
-    /// What russh was not given yet.
+    /// The rest of the frame, not yet passed to russh.
     rest: Mutex<Option<Frame>>,
     changed: Notify,
     metrics: Arc<Metrics>,
     sink: OnceLock<Box<dyn Fn(Bytes) + Send + Sync>>,
 }
 
-/// The most bytes that russh is given at once, and keeps for each connection from then on. With 16 KB, a
-/// frame of 80×24 cells is one part as a rule, and a thousand connections keep eight megabytes more.
+/// The size of the largest part, in bytes. russh keeps a buffer of this size for each connection. At 16 KB, a
+/// frame of 80×24 cells is usually a single part, but a thousand connections keep eight more megabytes.
 const PART: usize = 8 << 10;
 
 const EMPTY: u8 = 0;
-/// A part of the frame waits for the client's window.
+/// A part of the frame waits for space in the client's window.
 const QUEUED: u8 = 1;
-/// A part of the frame is encrypted, and not yet written.
+/// A part of the frame is encrypted but not written yet.
 const ENCRYPTED: u8 = 2;
 
 impl Outbox {
-    /// Frames leave by a channel.
+    /// An outbox that sends frames to a channel.
     pub(crate) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
-        // The queue has room: one part, a few questions and the three messages of the end are in it.
+        // The queue cannot be full: it holds at most one part, a few questions and the three closing messages.
         Self::into(move |part| _ = at_once(handle.data(channel, part)), passage)
     }
 
-    /// Frames leave by `sink`, part by part.
+    /// An outbox that passes frames to `sink`, part by part.
     pub(crate) fn into(
         sink: impl Fn(Bytes) + Send + Sync + 'static,
         passage: Arc<Passage>,
     ) -> Self {
-        // There is one session channel.
+        // This cannot fail, because a connection has only one session channel.
         _ = passage.sink.set(Box::new(sink));
         Self { passage }
     }
 
-    /// Whether there is room for a frame.
+    /// Returns true if a frame can be sent.
     pub fn is_empty(&self) -> bool {
         self.passage.is_empty()
     }
 
-    /// Sends a frame. After the link has ended, frames are accepted and dropped.
+    /// Sends a frame. After the link has ended, frames are accepted and discarded.
     ///
     /// # Errors
-    /// The frame, if the last one has not drained.
+    /// Returns the frame if the previous one has not drained.
     pub fn try_send(&mut self, frame: Vec<u8>) -> Result<(), Vec<u8>> {
         if !self.is_empty() {
             return Err(frame);
@@ -92,17 +92,17 @@ impl Outbox {
         Ok(())
     }
 
-    /// Waits until the last frame has drained, or the link has ended. It is ready at once where no
-    /// frame is on its way, and it may be dropped before it is ready.
+    /// Waits until the frame has drained or the link has ended. Returns at once if there is no frame in
+    /// flight. Cancellation-safe.
     ///
-    /// A caller that asks [`Outbox::is_empty`] whether to wait may be answered that there is nothing
-    /// to wait for, and then wait for something else without end: the frame drains at any time.
+    /// Do not use [`Outbox::is_empty`] to decide whether to await this. The frame can drain at any time, so
+    /// the caller may miss that it has drained and then wait forever for another event.
     pub async fn drained(&mut self) {
         while !self.is_empty() && !self.passage.is_closed.load(Ordering::Acquire) {
             self.passage.changed.notified().await;
         }
         if self.passage.is_closed.load(Ordering::Acquire) {
-            // A session that sends frame after frame would never let its task see the end.
+            // Without this yield, a session that sends frame after frame would never let its task notice the end.
             yield_now().await;
         }
     }
@@ -121,7 +121,7 @@ impl Passage {
         }
     }
 
-    /// The stream has written all bytes that it was given.
+    /// Called when the stream has written all bytes passed to it.
     pub(crate) fn flushed(self: &Arc<Self>) {
         if self.state.load(Ordering::Acquire) != ENCRYPTED {
             return;
@@ -134,19 +134,19 @@ impl Passage {
         }
     }
 
-    /// Nothing can be sent any more.
+    /// Discards the rest of the frame; nothing can be sent from now on.
     pub(crate) fn close(&self) {
         self.is_closed.store(true, Ordering::Release);
         locked(&self.rest, Option::take);
         self.changed.notify_one();
     }
 
-    /// The number of parts of frames so far.
+    /// The number of parts sent.
     pub(crate) fn parts(&self) -> u64 {
         self.parts.load(Ordering::Acquire)
     }
 
-    /// Whether a part of a frame waits for the client's window.
+    /// Returns true if a part of a frame waits for space in the client's window.
     pub(crate) fn is_waiting(&self) -> bool {
         self.state.load(Ordering::Acquire) == QUEUED
     }
@@ -155,7 +155,7 @@ impl Passage {
         self.state.load(Ordering::Acquire) == EMPTY
     }
 
-    /// Sends the first part of a frame, and keeps the others.
+    /// Sends the first part of a frame and keeps the rest.
     fn send_part(self: &Arc<Self>, mut frame: Frame) {
         let Some(sink) = self.sink.get() else { return };
         let rest = frame.split_off(PART);
@@ -166,7 +166,7 @@ impl Passage {
     }
 }
 
-/// The bytes of a frame or of a part of it, which are counted as long as they are kept.
+/// The bytes of a frame or a part of it. They are counted in the metrics while they exist.
 struct Frame {
     bytes: Vec<u8>,
     metrics: Arc<Metrics>,
@@ -178,8 +178,8 @@ impl Frame {
         Self { bytes, metrics }
     }
 
-    /// Splits off what is behind the first `count` bytes, if anything is. Both have memory of their
-    /// own, so that a part which has left takes none.
+    /// Splits off the bytes after the first `count`, if there are any. Each half has its own memory, so a
+    /// part that was sent uses none.
     fn split_off(&mut self, count: usize) -> Option<Self> {
         if self.bytes.len() <= count {
             return None;
@@ -198,7 +198,7 @@ impl Drop for Frame {
     }
 }
 
-/// A part of a frame. It is dropped when it is encrypted.
+/// A part of a frame. russh drops it after encrypting it.
 struct Part {
     frame: Frame,
     passage: Arc<Passage>,

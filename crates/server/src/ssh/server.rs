@@ -1,4 +1,4 @@
-//! A server that listens, until it is told to stop.
+//! A server that listens until it is told to stop.
 
 use std::future::Future;
 use std::io;
@@ -18,7 +18,7 @@ use crate::config::{Config, LiveConfig};
 use crate::logging;
 use crate::metrics::Metrics;
 
-/// A server that listens.
+/// A listening server.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
@@ -27,52 +27,51 @@ pub struct Server {
     metrics: Arc<Metrics>,
 }
 
-/// The pause after a failed `accept`, as when the process has no file descriptors left.
+/// The pause after a failed `accept`, for example when the process has no file descriptors left.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
-/// The time in which events are summed for the log.
+/// The interval over which events are summed for the log.
 const SECOND: Duration = Duration::from_secs(1);
-/// In bytes: of a socket, for what the client's system has not acknowledged. That is 640 KB a second on
-/// a link with a round trip of 0.2 s.
+/// The size of a socket's send buffer, in bytes. It allows 640 KB per second on a link with a round trip of 0.2 s.
 const SEND_BUFFER: u32 = 128 << 10;
-/// The connections that wait to be accepted.
+/// The maximum number of connections that wait to be accepted.
 const BACKLOG: u32 = 1024;
-/// The time in which a session that ends with the server says its last words.
+/// The extra time after the drain in which sessions may say their last words.
 const LAST_WORDS: Duration = Duration::from_secs(2);
-/// The time in which closed connections end.
+/// How long closed connections may take to end.
 const CLOSING: Duration = Duration::from_secs(2);
 
 impl Server {
-    /// Listens at the address of `config`.
+    /// Listens on the address of `config`.
     ///
     /// # Errors
-    /// The address can't be listened at.
+    /// Fails if the address cannot be bound.
     #[expect(clippy::unused_async, reason = "a listener is made within a runtime")]
     pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
         let listener = listen(config.listen)?;
         Ok(Self { listener, config: LiveConfig::new(config), key, metrics: Arc::default() })
     }
 
-    /// The address that it listens at.
+    /// The address that the server listens on.
     ///
     /// # Errors
-    /// The system does not tell.
+    /// Fails if the system does not report the address.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }
 
-    /// Its configuration, which can be replaced while it runs.
+    /// The configuration, which can be replaced while the server runs.
     pub fn config(&self) -> LiveConfig {
         self.config.clone()
     }
 
-    /// Its figures.
+    /// The server's metrics.
     pub fn metrics(&self) -> Arc<Metrics> {
         Arc::clone(&self.metrics)
     }
 
-    /// Serves visitors until `stop` is ready. Then it accepts no more, tells each session that the
-    /// server drains, waits for them as long as the configuration says and two seconds more for their last
-    /// words, and closes what is left.
+    /// Serves visitors until `stop` is ready. Then it accepts no more connections and tells each session that
+    /// the server drains. It waits for the configured time, plus two seconds for last words, and closes the
+    /// remaining connections.
     pub async fn run<H: Host>(self, host: H, stop: impl Future<Output = ()> + Send) {
         let Self { listener, config, key, metrics } = self;
         let gate = Arc::new(Gate::new(config.clone(), metrics));
@@ -89,7 +88,7 @@ impl Server {
                 accepted = listener.accept() => match accepted {
                     Ok((socket, peer)) => match gate.admit(peer) {
                         Ok(entry) => {
-                            // Frames are small, and whole when they are written.
+                            // Frames are small, and each is written whole.
                             _ = socket.set_nodelay(true);
                             let (gate, ssh, host) = (gate.clone(), ssh.clone(), host.clone());
                             tasks.spawn(connection::serve(gate, ssh, host, socket, entry));
@@ -122,10 +121,10 @@ impl Server {
 
 fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     let socket = if address.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
-    // As `TcpListener::bind` does: another server may have ended just now.
+    // Same as `TcpListener::bind`: another server may just have released the address.
     #[cfg(unix)]
     socket.set_reuseaddr(true)?;
-    // Connections inherit it. The system would keep megabytes for a client that does not read.
+    // Connections inherit this size. By default the system would buffer megabytes for a client that does not read.
     socket.set_send_buffer_size(SEND_BUFFER)?;
     socket.bind(address)?;
     socket.listen(BACKLOG)

@@ -1,7 +1,7 @@
 //! Links without a network, for simulations.
 //!
-//! The far end of a pipe does what a connection does with a link: it passes on what arrives, takes the
-//! parts of frames one at a time, and says when each was written.
+//! The far end of a pipe acts like a connection: it passes input on, takes the parts of frames one at a time,
+//! and reports when each was written.
 
 use std::sync::{Arc, Weak};
 
@@ -16,20 +16,20 @@ use crate::config::Config;
 use crate::metrics::Metrics;
 use cellcaster::terminal::WindowSize;
 
-/// The client's end of a pipe. Clones are the same end.
+/// The client's end of a pipe. Clones refer to the same end.
 #[derive(Clone)]
 pub(crate) struct FarEnd {
     inlet: Inlet,
     passage: Weak<Passage>,
 }
 
-/// What a session sends.
+/// The output of a session.
 pub(crate) struct Parts {
     parts: UnboundedReceiver<Bytes>,
     passage: Weak<Passage>,
 }
 
-/// A link whose frames `metrics` count, and its other end.
+/// A link, its far end, and its output. `metrics` counts the frames.
 pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
     let passage = Arc::new(Passage::new(metrics));
     let (sender, parts) = unbounded_channel();
@@ -41,7 +41,7 @@ pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
 }
 
 impl FarEnd {
-    /// Sends bytes, and waits where the session does not take them.
+    /// Sends bytes. Waits while the session does not take them.
     pub(crate) async fn send(&self, bytes: &[u8]) {
         self.inlet.bytes(bytes).await;
     }
@@ -54,7 +54,7 @@ impl FarEnd {
         self.inlet.drain();
     }
 
-    /// Ends the link: nothing arrives any more, and nothing can be sent.
+    /// Ends the link: nothing more arrives, and nothing can be sent.
     pub(crate) fn end(&self) {
         if let Some(passage) = self.passage.upgrade() {
             passage.close();
@@ -64,13 +64,13 @@ impl FarEnd {
 }
 
 impl Parts {
-    /// Waits for the next part of a frame; `None` after the end of the session. The session learns with
-    /// [`Parts::written`] that the part has left.
+    /// Waits for the next part of a frame; `None` after the end of the session. Call [`Parts::written`]
+    /// afterwards to tell the session that the part was sent.
     pub(crate) async fn next(&mut self) -> Option<Bytes> {
         self.parts.recv().await
     }
 
-    /// The last part has left, and so has been dropped.
+    /// Reports that the last part was written. It must have been dropped.
     pub(crate) fn written(&self) {
         if let Some(passage) = self.passage.upgrade() {
             passage.flushed();

@@ -1,4 +1,4 @@
-//! Visitors, the bounds of what they say about themselves, and the host that serves them.
+//! Visitors, the limits on the data that they supply, and the host that serves them.
 
 use std::collections::BTreeMap;
 use std::future::Future;
@@ -13,35 +13,35 @@ use cellcaster::terminal::WindowSize;
 /// A connected client with a terminal.
 #[derive(Clone, Debug)]
 pub struct Visitor {
-    /// The address that they connect from.
+    /// The address from which they connect.
     pub peer: SocketAddr,
     /// The key that they have proved to own; `None` for a guest.
     pub key: Option<AccountKey>,
-    /// What a guest is to read about their key.
+    /// A notice for a guest about their key.
     pub notice: Option<&'static str>,
-    /// The user name that their client sent: printable, at most 64 characters. It proves nothing.
+    /// The user name sent by the client: printable, at most 64 characters. It proves nothing.
     pub user: String,
     /// `TERM`: printable, at most 64 characters.
     pub term: String,
-    /// The variables of the environment that describe a terminal or a language.
+    /// The environment variables that describe the terminal or the language.
     pub environment: BTreeMap<String, String>,
-    /// The size of the window at first.
+    /// The initial size of the window.
     pub size: WindowSize,
-    /// Whether what is sent to them is compressed on the way.
+    /// Whether output to the visitor is compressed by the connection.
     pub compresses: bool,
 }
 
-/// What serves visitors: the sessions above the transport.
+/// A host: the sessions above the transport.
 pub trait Host: Send + Sync + 'static {
-    /// Serves `visitor` until they leave, or until `link` has ended.
+    /// Serves `visitor` until they leave or `link` ends.
     ///
-    /// The future is dropped five seconds after the link has ended.
+    /// The future is dropped five seconds after the end of the link.
     fn serve(&self, visitor: Visitor, link: Link) -> impl Future<Output = Departure> + Send;
 }
 
 /// Both directions of a visitor's channel.
 pub struct Link {
-    /// What the visitor sends.
+    /// The visitor's input.
     pub inbound: Inbound,
     /// The frame on its way to the visitor.
     pub outbox: Outbox,
@@ -50,30 +50,30 @@ pub struct Link {
 /// The end of a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Departure {
-    /// The exit status that the visitor's `ssh` ends with.
+    /// The exit status of the visitor's `ssh`.
     pub status: u8,
-    /// The limit by which the visitor was refused, if they were.
+    /// The limit that the visitor exceeded, if they were refused.
     pub refusal: Option<Refusal>,
 }
 
-/// In characters: of a user name, of `TERM`, and of the value of a variable.
+/// The maximum length of a user name, of `TERM`, and of a variable's value, in characters.
 pub(crate) const LONGEST_WORD: usize = 64;
-/// The most variables that are kept.
+/// The maximum number of variables.
 pub(crate) const MOST_VARIABLES: usize = 16;
 
 impl Departure {
-    /// That of a visitor who is refused: they have to change something, or to come later.
+    /// For a refused visitor, who has to change something or come back later.
     pub(crate) const REFUSED: Self = Self { status: 2, refusal: None };
-    /// That of a visitor whom the host cannot serve.
+    /// For a visitor that the host failed to serve.
     pub(crate) const FAILED: Self = Self { status: 1, refusal: None };
 }
 
-/// The printable characters of `text`, at most [`LONGEST_WORD`] of them.
+/// The first [`LONGEST_WORD`] printable characters of `text`.
 pub(crate) fn word(text: &str) -> String {
     text.chars().filter(|char| !char.is_control()).take(LONGEST_WORD).collect()
 }
 
-/// Whether a variable of that name is kept.
+/// Returns true if the variable with this name is kept.
 pub(crate) fn is_kept(name: &str) -> bool {
     let is_locale = name.strip_prefix("LC_").is_some_and(|category| {
         (1..=32).contains(&category.len())
@@ -82,11 +82,11 @@ pub(crate) fn is_kept(name: &str) -> bool {
     is_locale || ["LANG", "COLORTERM", "TERM_PROGRAM", "NO_COLOR"].contains(&name)
 }
 
-/// The size of a window as a client states it, within 1 to `most` cells in each direction.
+/// The size of a window as stated by a client, clamped to 1 to `most` cells in each direction.
 pub(crate) fn window_size(cells: [u32; 2], pixels: [u32; 2], most: [u16; 2]) -> WindowSize {
     let [columns, rows] =
         [0, 1].map(|axis| u16::try_from(cells[axis]).unwrap_or(u16::MAX).clamp(1, most[axis]));
-    // Pixels of a window that was cut say nothing about the shape of a cell.
+    // The pixel size of a clamped window says nothing about the shape of a cell.
     let is_whole = [u32::from(columns), u32::from(rows)] == cells;
     let [width, height] =
         pixels.map(|pixels| if is_whole { u16::try_from(pixels).unwrap_or(0) } else { 0 });

@@ -1,12 +1,12 @@
-//! The stream between a socket and russh: limits of bytes and time, and what they are counted for.
+//! The stream between a socket and russh: limits on bytes, and the events that time limits depend on.
 //!
-//! russh reads and writes when it likes, so limits belong below it. Before authentication, a client
-//! has a budget of bytes. After it, bytes are read at a limited rate: whatever a client floods its
-//! connection with, be it keys, empty packets or key exchanges, costs the server no more than that. What
-//! compression has made small is limited once more, on its [way](super::inbound) to the session.
+//! russh reads and writes whenever it likes, so limits belong below it. Before authentication, a client has a
+//! budget of bytes. After it, bytes are read at a limited rate. Whatever a client floods its connection with,
+//! be it keys, empty packets or key exchanges, costs the server no more than that. Compressed input is
+//! limited a second time, on its [way](super::inbound) to the session.
 //!
-//! russh makes room for a packet as soon as its length has arrived, up to 256 KB, and then reads the
-//! packet at once. A read of more than a packet of this server's channel has ends the connection.
+//! russh allocates memory for a packet, up to 256 KB, as soon as its length has arrived, and then reads the
+//! packet at once. A read larger than any packet allowed on this server's channel ends the connection.
 
 use std::pin::Pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -24,34 +24,34 @@ use super::outbox::Passage;
 use crate::bucket::Bucket;
 use crate::lock::locked;
 
-/// The limits of a client's bytes.
+/// The limits on a client's bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ByteLimits {
-    /// The most bytes before authentication.
+    /// The maximum number of bytes before authentication.
     pub(crate) before_login: u64,
-    /// The most bytes a second after it. Bytes of four seconds may come at once.
+    /// The maximum number of bytes per second after authentication. Bursts of up to four seconds' worth are allowed.
     pub(crate) per_second: u32,
 }
 
 impl ByteLimits {
-    /// The bytes that may come after authentication, from `now` on.
+    /// A bucket for the bytes after authentication, full at `now`.
     pub(crate) fn bucket(&self, now: Duration) -> Bucket {
         let rate = f64::from(self.per_second);
         Bucket::new(rate, rate * BURST, now)
     }
 }
 
-/// A socket with limits.
+/// A rate-limited socket.
 pub(crate) struct Wire<S> {
     socket: S,
     line: Arc<Line>,
     bucket: Bucket,
     pause: Pin<Box<Sleep>>,
-    /// Whether the last write has found no room.
+    /// Whether the last write found the socket full.
     is_full: bool,
 }
 
-/// The state of a connection, for the tasks that it concerns.
+/// The shared state of a connection.
 pub(crate) struct Line {
     pub(crate) passage: Arc<Passage>,
     pub(crate) limits: ByteLimits,
@@ -59,18 +59,18 @@ pub(crate) struct Line {
     hello: Mutex<Hello>,
     is_logged_in: AtomicBool,
     read: AtomicU64,
-    /// In milliseconds since the begin.
+    /// The time of [`Line::last_sign`], in milliseconds since `begun`.
     last_sign: AtomicU64,
     is_cut: AtomicBool,
-    /// Of the reader and the writer.
+    /// The wakers of the reader and the writer.
     wakers: [AtomicWaker; 2],
 }
 
-/// The time whose bytes may come at once.
+/// The maximum burst, in seconds at the full rate.
 const BURST: f64 = 4.0;
-/// The fewest bytes that are read after a pause, so that pauses are few.
+/// The fewest bytes that are read after a pause. This keeps pauses rare.
 pub(crate) const FEWEST: f64 = 1024.0;
-/// The most bytes that are read at once. Packets are 32 KB and their frame (RFC 4253, section 6.1).
+/// The largest allowed read, in bytes. Packets have 32 KB plus framing (RFC 4253, section 6.1).
 const LONGEST_PACKET: usize = 35_000;
 const READER: usize = 0;
 const WRITER: usize = 1;
@@ -98,12 +98,12 @@ impl Line {
         }
     }
 
-    /// What the client has sent of its first packets.
+    /// The client's progress through its first packets.
     pub(crate) fn stage(&self) -> Stage {
         locked(&self.hello, |hello| hello.stage)
     }
 
-    /// Whether what is sent is compressed after authentication.
+    /// Returns true if output is compressed after authentication.
     pub(crate) fn compresses(&self) -> bool {
         locked(&self.hello, |hello| hello.compresses)
     }
@@ -112,18 +112,18 @@ impl Line {
         self.is_logged_in.load(Ordering::Acquire)
     }
 
-    /// The client is authenticated.
+    /// Marks the client as authenticated.
     pub(crate) fn log_in(&self) {
         self.is_logged_in.store(true, Ordering::Release);
     }
 
-    /// When the client has last sent anything, or made room in a full socket. While a frame does not
-    /// fit in the socket, russh reads nothing, and on a slow link that lasts.
+    /// The time when the client last sent anything or made room in a full socket. The latter counts because
+    /// russh reads nothing while a frame does not fit into the socket, which takes long on a slow link.
     pub(crate) fn last_sign(&self) -> Instant {
         self.begun + Duration::from_millis(self.last_sign.load(Ordering::Acquire))
     }
 
-    /// Fails all reading and writing from now on.
+    /// Makes all further reads and writes fail.
     pub(crate) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
         self.wakers.iter().for_each(AtomicWaker::wake);
@@ -141,7 +141,7 @@ impl Line {
 }
 
 impl<S> Wire<S> {
-    /// The most bytes that may be read now.
+    /// The number of bytes that may be read now.
     fn allowance(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         let Line { limits, read, .. } = &*self.line;
         if !self.line.is_logged_in() {
@@ -224,41 +224,41 @@ impl<S> Drop for Wire<S> {
     }
 }
 
-/// The first packets of a client, which are not encrypted: its version, its offer of algorithms and its half of the key
-/// exchange (RFC 4253, sections 4.2, 6 and 7.1).
+/// A parser of a client's first packets, which are not encrypted: its version, its offer of algorithms and
+/// its half of the key exchange (RFC 4253, sections 4.2, 6 and 7.1).
 ///
-/// russh keeps the chosen algorithms to itself, and a session has to know whether its bytes are compressed. After the key
-/// exchange, a client may wait for its user, who looks at the host key for the first time or types a passphrase; before
-/// it, a client has nothing to wait for.
+/// russh does not expose the chosen algorithms, and a session must know whether its bytes are compressed.
+/// After the key exchange, a client may wait for its user, who checks the host key for the first time or
+/// types a passphrase. Before it, a client has no reason to wait.
 #[derive(Debug, Default)]
 struct Hello {
     stage: Stage,
-    /// What has arrived and is not parsed.
+    /// Bytes that are not parsed yet.
     bytes: Vec<u8>,
     compresses: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Stage {
-    /// Its version is missing.
+    /// The version is missing.
     #[default]
     Version,
-    /// Its offer of algorithms is missing.
+    /// The offer of algorithms is missing.
     Offer,
-    /// Its half of the key exchange is missing.
+    /// The client's half of the key exchange is missing.
     Exchange,
-    /// It has sent all of these, and may wait for its user now.
+    /// The client has sent all of these. It may wait for its user now.
     Done,
 }
 
 const KEXINIT: u8 = 20;
-/// Length, length of the padding, type, cookie.
+/// The packet length, the padding length, the message type and the cookie.
 const OFFER_START: usize = 4 + 1 + 1 + 16;
-/// The name list of compression from server to client, in the order of an offer.
+/// The index, in an offer, of the name list for compression from server to client.
 const COMPRESSION: usize = 7;
 
 impl Hello {
-    /// Adds bytes that have arrived.
+    /// Parses received bytes.
     fn receive(&mut self, bytes: &[u8]) {
         if self.stage == Stage::Done {
             return;
@@ -270,7 +270,7 @@ impl Hello {
         }
     }
 
-    /// Parses one line or packet if it is complete.
+    /// Parses one line or packet, if it is complete.
     fn step(&mut self) -> Option<()> {
         let length = match self.stage {
             Stage::Version => self.bytes.iter().position(|&byte| byte == b'\n')? + 1,
@@ -316,7 +316,7 @@ mod tests {
         packet
     }
 
-    /// What a client sends first.
+    /// The first bytes of a client.
     fn hello(compression: &str) -> Vec<u8> {
         let mut offer = vec![KEXINIT];
         offer.extend([7; 16]);

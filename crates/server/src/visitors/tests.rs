@@ -93,7 +93,7 @@ fn one_session_of_several_with_one_name_is_removed() {
     assert!(visitors.remove_session(ids[1], "go"));
     assert_eq!(next(&mut sessions[0]), None);
     assert_eq!(next(&mut sessions[1]), Some(Notice::Removed("go".to_owned())));
-    // The same number in another run of a host is another session.
+    // The same number in another run of the host is a different session.
     let of_other_run = SessionId { run: locked(&later.0, |table| table.run) ^ 1, number: 1 };
     assert!(!later.remove_session(of_other_run, "go"));
     assert_eq!(next(&mut other), None);

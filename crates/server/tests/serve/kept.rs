@@ -1,4 +1,4 @@
-//! The store of a host: what is left of it when its process is killed.
+//! The contents of a host's store after its process was killed.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ pub(crate) const WON: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
 const NOW: UnixTime = UnixTime::new(1_795_300_000);
-/// The test of a killed process starts itself with this variable, which names the folder and the number of
-/// the first account.
+/// With this environment variable, the test acts as the process to be killed. It contains the folder and the
+/// number of the first account.
 const WRITER: &str = "CELLCASTER_TEST_WRITER";
 
 fn key(number: u32) -> AccountKey {
@@ -29,8 +29,8 @@ fn key(number: u32) -> AccountKey {
     AccountKey::new(bytes)
 }
 
-/// Creates an account with a result and begins the next, until the process is killed. It says each number
-/// that is kept.
+/// Creates accounts with results, one after the other, until the process is killed. Prints each number once
+/// it is stored.
 fn write(folder: &Path, first: u32) {
     let run = verify(WON, |_| None).unwrap();
     let mut store = HostStore::open(folder).unwrap();
@@ -42,7 +42,7 @@ fn write(folder: &Path, first: u32) {
     }
 }
 
-/// How often the test kills the process.
+/// How many times the test kills the process.
 const KILLS: u32 = 12;
 
 #[test]
@@ -66,7 +66,7 @@ fn what_is_said_to_be_kept_outlives_a_killed_process() {
             .unwrap();
         let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
         let is_said = |line: &String| line.contains("kept ");
-        // The process is killed while it writes another one.
+        // The process is killed while it is writing the next account.
         let said = lines.by_ref().map(Result::unwrap).filter(is_said).nth(1 + round as usize % 5);
         process.kill().unwrap();
         process.wait().unwrap();

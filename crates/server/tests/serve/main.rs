@@ -1,5 +1,5 @@
-//! A host on which people play together: real clients of OpenSSH in pseudo-terminals, clients that
-//! break the rules, and what is kept.
+//! A multiplayer host: real OpenSSH clients in pseudo-terminals, clients that break the rules, and the data
+//! that survives.
 #![cfg(unix)]
 
 #[path = "../../../../tests/support/emulator.rs"]

@@ -14,7 +14,7 @@ const HARD: &str =
 const MUSEUM: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
 
-/// A store in which two accounts have results. It stays open, as while a host runs.
+/// A store with the results of two accounts. It stays open, like the store of a running host.
 fn filled(folder: &Path) -> HostStore {
     let mut store = HostStore::open(folder).unwrap();
     let now = UnixTime::new(1_795_300_000);
@@ -48,7 +48,7 @@ fn boards_are_listed_while_a_host_runs() {
     let titles: Vec<&str> = table.lines().filter(|line| line.contains(", ")).collect();
     assert_eq!(titles, ["cellar, normal", "cellar, hard", "museum, normal"]);
     let entries: Vec<&str> = table.lines().skip(2).take(2).collect();
-    // The same run twice: the earlier one is first.
+    // The run is the same for both, and the earlier result comes first.
     assert!(
         entries[0].starts_with("   1  漢字              ")
             && entries[1].starts_with("   2  Ada               ")

@@ -32,7 +32,7 @@ use crate::transport::{PATIENCE, folder};
 #[path = "../support/wanderer.rs"]
 mod wanderer;
 
-/// A server whose insides can be counted.
+/// A server with access to its internal counts.
 struct Counted {
     runtime: Runtime,
     address: SocketAddr,
@@ -41,10 +41,10 @@ struct Counted {
     rooms: Box<dyn Fn() -> Vec<RoomRow>>,
 }
 
-/// Believes every server.
+/// Accepts any server key.
 struct Anyone;
 
-/// What a server holds.
+/// The objects that a server holds.
 #[derive(Debug, PartialEq, Eq)]
 struct Held {
     tasks: usize,
@@ -69,7 +69,7 @@ impl Counted {
         config.admission.startups = 1000;
         config.bytes_per_second = 1 << 20;
         config.silence = Duration::from_secs(3);
-        // A client that takes nothing is not what is tested here.
+        // This test is not about clients that never read.
         config.stall = 2 * PATIENCE;
         config.empty_room = Duration::from_secs(1);
         let key = HostKey::open(&folder).unwrap();
@@ -117,7 +117,7 @@ fn clients_that_come_and_go_leave_nothing() {
     let before = server.held();
     assert_eq!((before.connections, before.visitors, before.rooms), (0, 0, 2), "{before:?}");
     let address = server.address;
-    // On a runtime of their own, so that their tasks do not count.
+    // The clients have their own runtime, so that their tasks do not count.
     let clients = thread::spawn(move || {
         Builder::new_current_thread().enable_all().build().unwrap().block_on(soak(address))
     });
@@ -135,7 +135,7 @@ fn clients_that_come_and_go_leave_nothing() {
     server.runtime.shutdown_background();
 }
 
-/// What a session is to ask must not wait without bound for a client that reads nothing.
+/// The queries of a session must not pile up for a client that reads nothing.
 #[test]
 fn a_client_that_provokes_queries_and_reads_none_is_sent_away() {
     let server = Counted::start();
@@ -158,8 +158,8 @@ fn a_client_that_provokes_queries_and_reads_none_is_sent_away() {
     server.runtime.shutdown_background();
 }
 
-/// Takes a byte of what the server sends, and states again and again that the terminal is xterm, which
-/// the server then asks for its colours, until the connection has ended.
+/// Takes a single byte of the server's output, and then states over and over that the terminal is xterm,
+/// which makes the server query its colours. Runs until the connection ends.
 async fn provoke(address: SocketAddr) {
     let config = client::Config { window_size: 1, ..client::Config::default() };
     let mut client = client::connect(Arc::new(config), address, Anyone).await.unwrap();
@@ -179,7 +179,7 @@ impl Handler for Anyone {
     }
 }
 
-/// Lets clients come and go, and counts how they left.
+/// Lets clients come and go; returns how many left in each way.
 async fn soak(address: SocketAddr) -> BTreeMap<Leaving, usize> {
     let mut clients = JoinSet::new();
     for client in 0..CLIENTS {

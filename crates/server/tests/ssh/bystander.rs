@@ -1,10 +1,10 @@
-//! Bystanders beside others who send all that they may.
+//! Bystanders who type while other visitors send as much as they are allowed to.
 //!
-//! Eight connections send one kind of traffic to a host, as much of it as the host permits. Bystanders type a
-//! letter and delete it again on the page of the name, where their own keys alone change the screen. The time from
-//! each key to the bytes that show it is measured, on a thread of its own.
+//! Eight connections send one kind of traffic to a host, at the permitted rate. The bystanders type a letter
+//! and delete it again on the name page, where only their own keys change the screen. A separate thread
+//! measures the time from each key to the bytes that show it.
 //!
-//! Where the machine does other work, too, the limit is a multiple of what the bystanders measure without traffic.
+//! On a busy machine, the limit is a multiple of the bystanders' times without traffic.
 
 use std::future::pending;
 use std::process::Command;
@@ -28,51 +28,51 @@ use super::host::Host;
 
 const SENDERS: usize = 8;
 const WINDOW: (u16, u16) = (80, 24);
-/// With several bystanders, there are enough keys for a percentile although each types as slowly as a human.
+/// Several bystanders produce enough keys for a percentile, although each types as slowly as a human.
 const BYSTANDERS: usize = 6;
-/// The time for which each kind of traffic is sent.
+/// How long each kind of traffic is sent.
 const TIME: Duration = Duration::from_millis(1900);
-/// The time between two keys of a bystander.
+/// The pause between two keys of a bystander.
 const PAUSE: Duration = Duration::from_millis(100);
-/// The time for which nothing changes before the first key.
+/// How long nothing changes before the first key.
 const REST: Duration = Duration::from_millis(400);
-/// A player feels more than this.
+/// The limit for most kinds of traffic. Players notice longer delays.
 const LIMIT: Duration = Duration::from_millis(100);
-/// What a picture of a large window may delay a key by.
+/// The limit while pictures of a large window are drawn.
 const LIMIT_BESIDE_A_PICTURE: Duration = Duration::from_millis(20);
-/// How many times as long as without traffic a key may take on a busy machine.
+/// The limit on a busy machine, as a multiple of the time without traffic.
 const FACTOR: u32 = 3;
 const PATIENCE: Duration = Duration::from_secs(20);
-/// The bytes that a sender sends in a tick. With the frame of a packet they are the 64 KB a second that hosts
-/// permit.
+/// The bytes that a sender sends per tick. With packet framing, they add up to the 64 KB per second that
+/// hosts permit.
 const CHUNK: usize = 1000;
 const TICK: Duration = Duration::from_millis(16);
-/// The ticks whose bytes are sent at once at the beginning: hosts permit those of four seconds.
+/// The number of ticks whose bytes are sent at once at the start. Hosts permit a burst of four seconds.
 const BURST: usize = 200;
 
-/// What is sent.
+/// A kind of traffic.
 #[derive(Clone, Copy)]
 enum Traffic {
-    /// These bytes again and again, after this way: what is waited for, and what is typed then.
+    /// Repeats these bytes after following `way`: pairs of a text to wait for and the keys to type then.
     Typed {
         way: &'static [(&'static str, &'static str)],
         bytes: &'static str,
     },
-    /// Text of which compression leaves hardly anything.
+    /// Text that compresses to almost nothing.
     Compressed,
     Resizes,
-    /// Channels that are refused.
+    /// Channel requests that are refused.
     Channels,
     /// Key exchanges.
     Rekeys,
-    /// Keys before the login that are refused, on one connection after another.
+    /// Offers of keys that are refused, before the login, on one connection after another.
     Offers,
-    /// A held key: one session turns, in a window of the largest size.
+    /// A held key that makes one session turn, in a window of the largest size.
     Turns,
 }
 
 impl Traffic {
-    /// What is waited for, and what is typed then, before the traffic.
+    /// The texts to wait for and the keys to type before the traffic.
     fn way(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Typed { way, .. } => way,
@@ -119,7 +119,7 @@ const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
     ("comes in.", ""),
 ];
 
-/// Believes every server.
+/// Accepts any server key.
 struct Anyone;
 
 impl Handler for Anyone {
@@ -153,7 +153,7 @@ impl Client {
         self.channel.data(keys.as_bytes()).await.unwrap();
     }
 
-    /// Reads until the screen is as it should be.
+    /// Reads until the screen satisfies `is_so`.
     async fn wait_until(&mut self, what: &str, is_so: impl Fn(&str) -> bool) {
         let wait = async {
             while !is_so(&self.emulator.text()) {
@@ -164,7 +164,7 @@ impl Client {
         assert!(has_come, "{what} does not come:\n{}", self.emulator.text());
     }
 
-    /// Reads what comes next, and answers it as a terminal does.
+    /// Reads the next message and sends the terminal's replies to it.
     async fn read(&mut self) {
         let Some(message) = self.channel.wait().await else { panic!("the connection has ended") };
         if let ChannelMsg::Data { data } = message {
@@ -194,7 +194,7 @@ async fn open(port: u16, compresses: bool) -> Result<Handle<Anyone>, Error> {
     client::connect(Arc::new(config), ("127.0.0.1", port), Anyone).await
 }
 
-/// Sends traffic until the connection ends, which it should not.
+/// Sends traffic until the connection ends, which is an error.
 async fn send(client: Client, traffic: Traffic) {
     let Client { handle, channel, .. } = client;
     let (mut input, output) = channel.split();
@@ -219,7 +219,7 @@ async fn send(client: Client, traffic: Traffic) {
     }
 }
 
-/// Answers the requests at the ends of frames.
+/// Replies to the queries at the ends of frames.
 async fn answer_all(input: &mut ChannelReadHalf, output: &ChannelWriteHalf<Msg>) {
     let mut last = Vec::new();
     while let Some(message) = input.wait().await {
@@ -238,7 +238,7 @@ async fn answer_all(input: &mut ChannelReadHalf, output: &ChannelWriteHalf<Msg>)
 }
 
 async fn type_all(output: &ChannelWriteHalf<Msg>, bytes: &str) {
-    // Whole keys, so that each chunk begins with one.
+    // The chunk contains only whole keys, so that each chunk begins with one.
     let chunk = bytes.repeat(CHUNK / bytes.len());
     let mut ticks = interval(TICK);
     for tick in 0.. {
@@ -272,14 +272,14 @@ async fn resize(output: &ChannelWriteHalf<Msg>) {
 }
 
 async fn exchange_keys(handle: &Handle<Anyone>) {
-    /// An exchange takes some two kilobytes of a client.
+    /// An exchange takes about two kilobytes from a client.
     const EXCHANGE: Duration = Duration::from_millis(30);
     while handle.rekey_soon().await.is_ok() {
         sleep(EXCHANGE).await;
     }
 }
 
-/// Offers a key that is refused, as often as the host allows on a connection, and then on the next.
+/// Offers a key that is refused, as often as the host allows per connection, on one connection after another.
 async fn offer_keys(port: u16, key: PrivateKeyWithHashAlg) {
     loop {
         if let Ok(mut handle) = open(port, false).await {
@@ -300,8 +300,7 @@ fn rsa_key() -> PrivateKeyWithHashAlg {
     PrivateKeyWithHashAlg::new(Arc::new(load_secret_key(path, None).unwrap()), None)
 }
 
-/// Makes the senders ready, says so, and lets them send from the bystanders' first keys on until it is told to
-/// stop.
+/// Prepares the senders and reports that they are ready. They send from the bystanders' first keys until `stop`.
 async fn send_all(
     port: u16,
     traffic: Traffic,
@@ -337,7 +336,7 @@ async fn send_all(
     }
 }
 
-/// The times from keys to the bytes that show them.
+/// Types keys; returns the time from each key to the bytes that show it.
 async fn type_beside(port: u16, begins: Instant) -> Vec<Duration> {
     let mut client = Client::connect(port, false, WINDOW).await;
     client.wait_until("the page", |screen| screen.contains("Enter takes it")).await;
@@ -357,7 +356,7 @@ async fn type_beside(port: u16, begins: Instant) -> Vec<Duration> {
     times
 }
 
-/// The 99th percentile of the times of all bystanders, and the median.
+/// The 99th percentile and the median of the times of all bystanders.
 async fn measure(port: u16) -> [Duration; 2] {
     let mut bystanders = JoinSet::new();
     let begins = Instant::now() + REST;
@@ -396,7 +395,7 @@ fn delays_nobody(name: &str, traffic: Traffic) {
     let (stop, stopped) = oneshot::channel();
     let senders =
         thread::spawn(move || runtime().block_on(send_all(port, traffic, ready, stopped)));
-    // It fails only if the thread has panicked.
+    // This fails only if the thread has panicked.
     let measured = is_ready.recv().map(|()| runtime().block_on(measure(port)));
     drop(stop);
     senders.join().unwrap();

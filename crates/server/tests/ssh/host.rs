@@ -1,4 +1,4 @@
-//! `cellcaster serve` on this machine, with one room.
+//! `cellcaster-server` on this machine, with one room.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A host, and the folder that holds its data.
+/// A host and its data folder.
 pub(crate) struct Host {
     process: Child,
     port: u16,
     folder: PathBuf,
 }
 
-/// One room, in the map that [`PLAY`](super::PLAY) plays behind sshd.
+/// One room, in the same map that [`PLAY`](super::PLAY) plays behind sshd.
 const CONFIGURATION: &str = "[[room]]\nmode = \"roam\"\nlevel = \"walks\"\n";
 const MAP: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/citadel.toml"));
 
@@ -22,7 +22,7 @@ impl Host {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name = format!("host-{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        // A run that was ended early has left it.
+        // Left over from an interrupted run.
         _ = fs::remove_dir_all(&folder);
         let maps = folder.join("maps");
         fs::create_dir_all(&maps).unwrap();
@@ -62,7 +62,7 @@ impl Drop for Host {
     }
 }
 
-/// The arguments by which `ssh` connects through `port`.
+/// The arguments with which `ssh` connects to `port`.
 pub(crate) fn client_arguments(port: u16) -> Vec<String> {
     let options = "-tt -F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                    -o LogLevel=ERROR -o IdentitiesOnly=yes -o IdentityFile=none -p";

@@ -1,7 +1,7 @@
-//! The game over a real link: an sshd on this machine, a proxy that delays and limits, and a player
-//! at the end of `ssh`. How fast and how fresh it is, is the subject here, so times are asserted.
+//! The game over a simulated link: an sshd on this machine, a proxy that delays and limits, and a player at
+//! the end of `ssh`. The tests assert frame rates and latencies.
 //!
-//! Needs the programs of OpenSSH, so it has a feature of its own.
+//! They need the programs of OpenSSH, so they have a separate feature.
 #![cfg(all(unix, feature = "system-tests"))]
 
 mod bystander;
@@ -28,7 +28,7 @@ use self::server::Server;
 
 const WINDOW: (u16, u16) = (120, 40);
 const FRAME_END: &[u8] = b"\x1b[?2026l";
-/// How keys are sent: with what follows, pressed and released.
+/// The escape sequences of keys: a start, the phase (1 for pressed, 3 for released), and an end.
 const RIGHT: &str = "\x1b[1;1:";
 const RIGHT_END: &str = "C";
 const LETTER_END: &str = "u";
@@ -36,16 +36,16 @@ const LETTER_END: &str = "u";
 /// Plays a level without guards, in which walks can go anywhere.
 const PLAY: &str = concat!("play ", env!("CARGO_MANIFEST_DIR"), "/../../tests/maps/citadel.toml");
 
-/// The duration of a walk: some 200 frames and 20 keys on the slow links.
+/// The duration of a walk: about 200 frames and 20 keys on the slow links.
 const WALK: Duration = Duration::from_secs(10);
 
-/// A link such as a phone has on a train.
+/// A mobile link, as from a phone on a train.
 const SLOW: Link = Link {
     delay: Duration::from_millis(50),
     jitter: Duration::ZERO,
     bytes_per_second: Some(1_000_000.0 / 8.0),
 };
-/// A link on which exact frames are slow even when they are compressed.
+/// A link on which exact frames are slow even with compression.
 const SLOWEST: Link = Link {
     delay: Duration::from_millis(75),
     jitter: Duration::ZERO,
@@ -53,19 +53,19 @@ const SLOWEST: Link = Link {
 };
 const UNLIMITED: Link =
     Link { delay: Duration::ZERO, jitter: Duration::ZERO, bytes_per_second: None };
-/// One that carries anything, at times late.
+/// A link with unlimited bandwidth and high jitter.
 const JITTERY: Link = Link {
     delay: Duration::from_millis(20),
     jitter: Duration::from_millis(100),
     bytes_per_second: None,
 };
 
-/// The game, as a guest plays it behind sshd, or on a [`Host`].
+/// The game as played by a guest, behind sshd or on a [`Host`].
 struct Guest<S = Server> {
     player: Player,
     proxy: Proxy,
     server: S,
-    /// One at a time: they are measured.
+    /// Keeps the tests from running in parallel, because they measure times.
     _alone: MutexGuard<'static, ()>,
 }
 
@@ -74,12 +74,12 @@ impl Guest {
         Self::connect_with(&[], link, game)
     }
 
-    /// As [`Guest::connect`], with more `options` for `ssh`.
+    /// Like [`Guest::connect`], with more `options` for `ssh`.
     fn connect_with(options: &[&str], link: Link, game: &str) -> Self {
         Self::connect_in(WINDOW, options, link, game)
     }
 
-    /// As [`Guest::connect_with`], in a window of that size.
+    /// Like [`Guest::connect_with`], in a window of this size.
     fn connect_in(window: (u16, u16), options: &[&str], link: Link, game: &str) -> Self {
         let alone = alone();
         let server = Server::start(game);
@@ -138,7 +138,7 @@ impl<S> Guest<S> {
         })
     }
 
-    /// Walks and turns for so long, and switches between walking and running now and then.
+    /// Walks and turns for `time`, and switches between walking and running now and then.
     fn play(&self, time: Duration) -> Walk {
         self.hold_right(true);
         let (begun, before) = (Instant::now(), self.frames());
@@ -159,7 +159,7 @@ impl<S> Guest<S> {
         Walk { frames_per_second: frames as f64 / elapsed.as_secs_f64(), latencies, fidelities }
     }
 
-    /// How long it takes from pressing R to a frame that says so.
+    /// The time from pressing R to a frame that shows the new gait.
     fn switch_gait(&self) -> Duration {
         let runs = |emulator: &Emulator| emulator.text().contains("running");
         let ran = self.player.look(runs);
@@ -172,18 +172,18 @@ impl<S> Guest<S> {
     }
 }
 
-/// What a walk was like.
+/// The measurements of a walk.
 #[derive(Debug)]
 struct Walk {
     frames_per_second: f64,
-    /// From a key to the first frame that reflects it, shortest first.
+    /// The times from a key to the first frame that reflects it, shortest first.
     latencies: Vec<Duration>,
-    /// What the status line has said.
+    /// The fidelities shown in the status line.
     fidelities: Vec<String>,
 }
 
 impl Walk {
-    /// The latency that such a share of all is not above.
+    /// The latency that a `share` of all keys does not exceed.
     fn latency(&self, share: f64) -> Duration {
         let place = (self.latencies.len() as f64 * share).ceil() as usize;
         self.latencies[place.saturating_sub(1)]
@@ -233,7 +233,7 @@ fn a_link_that_jitters_shows_exact_frames_or_nearly() {
     let guest = Guest::connect(JITTERY, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("no limit, 20 ms and up to 100 ms of jitter each way");
-    // Alone on a machine they are exact. Where jitter was taken for a slow link, most were at 48.
+    // On an idle machine they are exact. When jitter was mistaken for a slow link, most were at 48.
     let is_near = |fidelity: &&String| fidelity.parse::<Fidelity>().unwrap() <= Fidelity::HIGH;
     let near = walk.fidelities.iter().filter(is_near).count();
     assert!(near * 2 > walk.fidelities.len());
@@ -245,13 +245,13 @@ fn compressed_it_is_about_exact_on_a_slow_link() {
     let guest = Guest::connect_with(&["-C"], SLOW, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("1 Mbit/s, 50 ms each way, with -C");
-    // Without compression there is hardly one below 16.
+    // Without compression, hardly any are below 16.
     let is_fine = |fidelity: &&String| matches!(fidelity.as_str(), "exact" | "1" | "2" | "3" | "4");
     let fine = walk.fidelities.iter().filter(is_fine).count();
     assert!(fine * 4 > walk.fidelities.len() * 3);
 }
 
-/// On the server, `ssh -C` and a slow link must not cost more frames than behind sshd.
+/// With `ssh -C` and on slow links, the server must reach at least 90 % of the frame rate of sshd.
 #[track_caller]
 fn compares_with_sshd(window: (u16, u16), options: &[&str], link: Link) {
     let name = |server: &str| format!("{server}, {window:?}, {options:?}, {link:?}");
@@ -286,8 +286,8 @@ fn compressed_in_a_large_window_the_server_is_as_fast_as_sshd() {
     compares_with_sshd(WINDOW, &["-C"], SLOWEST);
 }
 
-/// The server asks the client every 2 s, and gives it up after the third time. A game that goes on sending
-/// keeps it from asking.
+/// sshd questions the client every 2 s, and gives up after the third question. A game that keeps sending
+/// would keep it from asking.
 #[test]
 fn a_link_that_dies_silently_is_noticed() {
     const END: Duration = Duration::from_secs(20);
@@ -326,7 +326,7 @@ fn the_shell_behind_the_link_finds_no_answers() {
     let mut guest = Guest::connect(SLOW, PLAY);
     guest.hold_right(true);
     thread::sleep(Duration::from_secs(1));
-    // Enter confirms it.
+    // Enter confirms the question.
     guest.hold_letter('q', true);
     guest.hold_letter('\r', true);
     let ending = guest.player.wait_for_end();

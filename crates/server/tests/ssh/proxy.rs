@@ -1,4 +1,4 @@
-//! A link between two ports of this machine, as long and as narrow as one wants.
+//! A link between two ports of this machine, with adjustable delay, jitter and rate.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -8,18 +8,18 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What a link does to bytes.
+/// The properties of a link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
-    /// From one end to the other.
+    /// The delay from one end to the other.
     pub(crate) delay: Duration,
-    /// The most that a packet takes longer, each way.
+    /// The maximum extra delay of a packet, each way.
     pub(crate) jitter: Duration,
-    /// How much it carries towards the player; `None` for anything.
+    /// The rate towards the player, in bytes per second; `None` for no limit.
     pub(crate) bytes_per_second: Option<f64>,
 }
 
-/// What takes a connection and makes another one to a server.
+/// A proxy that accepts one connection and passes it on to a server.
 pub(crate) struct Proxy {
     port: u16,
     ends: Arc<Mutex<Vec<TcpStream>>>,
@@ -27,17 +27,17 @@ pub(crate) struct Proxy {
     backlog: Arc<Backlog>,
 }
 
-/// How much is on its way to the player.
+/// The number of bytes in flight to the player.
 #[derive(Default)]
 struct Backlog {
     bytes: Mutex<usize>,
     changed: Condvar,
 }
 
-/// Bytes, and when they arrive.
+/// The time of arrival and the bytes.
 type Packet = (Instant, Vec<u8>);
 
-/// The most that travels in one piece.
+/// The maximum size of a packet, in bytes.
 const PACKET: usize = 1400;
 
 impl Proxy {
@@ -71,12 +71,12 @@ impl Proxy {
         self.port
     }
 
-    /// From now on nothing is carried either way, and nobody is told.
+    /// Stops passing bytes on in both directions, without closing the connections.
     pub(crate) fn die(&self) {
         self.is_dead.store(true, Ordering::SeqCst);
     }
 
-    /// Waits until part of a frame is on its way, and ends both connections.
+    /// Waits until part of a frame is in flight, then closes both connections.
     pub(crate) fn cut_in_mid_frame(&self) {
         let bytes = self.backlog.bytes.lock().unwrap();
         let patience = Duration::from_secs(5);
@@ -85,13 +85,13 @@ impl Proxy {
         assert!(!waited.1.timed_out(), "nothing was on its way");
         drop(waited);
         for end in &*self.ends.lock().unwrap() {
-            // The other side may have ended it already.
+            // The other side may already have closed it.
             _ = end.shutdown(Shutdown::Both);
         }
     }
 }
 
-/// Carries bytes one way, until there are no more.
+/// Carries bytes in one direction until the connection ends.
 fn carry(
     from: TcpStream,
     to: TcpStream,
@@ -123,7 +123,7 @@ fn take(
         carried_at = carried_at.max(Instant::now()) + Duration::from_secs_f64(busy);
         *backlog.bytes.lock().unwrap() += count;
         backlog.changed.notify_all();
-        // Numerical Recipes' generator; its high bits are as good as is needed here.
+        // The generator of Numerical Recipes; its high bits are good enough here.
         chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         let jitter = link.jitter.mul_f64(f64::from(chance >> 8) / f64::from(1 << 24));
         arrives_at = arrives_at.max(carried_at + link.delay + jitter);
@@ -152,6 +152,6 @@ fn deliver(
             break;
         }
     }
-    // It may be closed already.
+    // The connection may already be closed.
     _ = to.shutdown(Shutdown::Both);
 }

@@ -1,4 +1,4 @@
-//! An sshd of this machine's that gives a guest the game.
+//! An sshd on this machine that runs the game for guests.
 
 use std::fs;
 use std::io::Read;
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// Long enough for a machine under load.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A server, and the folder that holds its keys.
+/// A server and the folder with its keys.
 pub(crate) struct Server {
     sshd: Child,
     port: u16,
@@ -20,16 +20,16 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// Starts a server whose only command is the program with the arguments `game`, and then a shell
-    /// that tells what it reads.
+    /// Starts a server that runs only one command: the program with the arguments `game`, and then a shell
+    /// that prints its input.
     pub(crate) fn start(game: &str) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name = format!("ssh-{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        // A run that was ended early has left it.
+        // Left over from an interrupted run.
         _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
-        // Where sshd is started by root, it wants this to exist.
+        // If root starts sshd, it requires this folder.
         _ = fs::create_dir_all("/run/sshd");
         for key in ["host_key", "user_key"] {
             let status = Command::new("ssh-keygen")
@@ -58,7 +58,7 @@ impl Server {
         self.port
     }
 
-    /// What `ssh` is told to connect through `port`.
+    /// The arguments with which `ssh` connects to `port`.
     pub(crate) fn client_arguments(&self, port: u16) -> Vec<String> {
         let user = Command::new("id").arg("-un").output().unwrap().stdout;
         let user = String::from_utf8(user).unwrap();
@@ -69,12 +69,12 @@ impl Server {
         fixed.split_whitespace().map(str::to_owned).chain(rest).collect()
     }
 
-    /// The process that runs the game.
+    /// The id of the process that runs the game.
     pub(crate) fn game(&self) -> u32 {
         fs::read_to_string(self.folder.join("game")).unwrap().trim().parse().unwrap()
     }
 
-    /// Whether anybody is connected.
+    /// Returns true while a client is connected.
     pub(crate) fn has_sessions(&self) -> bool {
         let sshd = self.sshd.id();
         let children = fs::read_to_string(format!("/proc/{sshd}/task/{sshd}/children"));
@@ -98,14 +98,14 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // It has not ended by itself, and then nothing is left to clean up but the folder.
+        // sshd has not exited by itself, so only the folder remains to be cleaned up.
         _ = self.sshd.kill();
         _ = self.sshd.wait();
         _ = fs::remove_dir_all(&self.folder);
     }
 }
 
-/// Nobody else takes it in the moment until sshd does, most likely.
+/// A free port. Most likely, no other process takes it before sshd does.
 fn free_port() -> u16 {
     TcpListener::bind(("127.0.0.1", 0)).unwrap().local_addr().unwrap().port()
 }
@@ -120,7 +120,7 @@ fn configuration(folder: &Path, port: u16) -> String {
     )
 }
 
-/// Plays, and then reads what a shell would find typed.
+/// A script that plays the game and then prints the input that a shell would find.
 fn script(folder: &Path, game: &str) -> String {
     let (folder, program) = (folder.display(), game_program().display().to_string());
     format!(
@@ -132,7 +132,7 @@ fn script(folder: &Path, game: &str) -> String {
     )
 }
 
-/// The game's program, which is built beside the server's.
+/// The path of the game's program, which is built next to the server's.
 fn game_program() -> PathBuf {
     let server = PathBuf::from(env!("CARGO_BIN_EXE_cellcaster-server"));
     server.with_file_name("cellcaster")

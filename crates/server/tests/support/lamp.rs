@@ -1,18 +1,18 @@
-//! Times a key to the frame that answers it.
+//! Measures the time from a key to the frame that answers it.
 //!
-//! Frames come all the time while others walk, and the next bytes after a key seldom answer it. So a client lights
-//! its lamp now and then. The room decides on that, in a cluster by its log, and the first frame in which the
-//! lamp is lit says `lamp` in its status line, which nothing else does.
+//! Frames arrive all the time while other members walk, so the bytes after a key seldom answer it. A client
+//! therefore lights its lamp now and then. The room decides about the lamp, in a cluster through its log. The
+//! first frame with the lit lamp contains `lamp` in its status line, and no other text contains that word.
 //!
-//! The tests of the server run its tests.
+//! The server's tests include the tests of this module.
 
 use std::time::{Duration, Instant};
 
-/// The lamp of a client.
+/// The state of a client's lamp.
 #[derive(Debug, Default)]
 pub(crate) struct Lamp {
     state: State,
-    /// The last bytes, in which the word may begin.
+    /// The last bytes, which may contain the start of the word.
     tail: Vec<u8>,
 }
 
@@ -20,13 +20,13 @@ pub(crate) struct Lamp {
 enum State {
     #[default]
     Out,
-    /// It was to be lit at this time, and no frame has shown it yet.
+    /// The key to light it was pressed at this time, and no frame has shown the lamp yet.
     Awaited(Instant),
-    /// A frame has shown it, and it was not put out yet.
+    /// A frame has shown the lamp, and it has not been put out.
     Lit,
 }
 
-/// The time after which a key is not expected to be answered.
+/// How long a key may go unanswered before it is forgotten.
 const PATIENCE: Duration = Duration::from_secs(5);
 const WORD: &[u8] = b"lamp";
 
@@ -40,17 +40,17 @@ impl Lamp {
         self.tail.clear();
     }
 
-    /// Whether to press the key at once, to put the lamp out.
+    /// Returns true if the key should be pressed at once to put the lamp out.
     pub(crate) fn is_lit(&self) -> bool {
         matches!(self.state, State::Lit)
     }
 
-    /// Whether a key is to be answered.
+    /// Returns true while a key waits for its answer.
     pub(crate) fn is_awaited(&self) -> bool {
         matches!(self.state, State::Awaited(_))
     }
 
-    /// Whether a key was not answered; it is forgotten then.
+    /// Returns true if a key was not answered in time, and forgets it.
     pub(crate) fn gives_up(&mut self, now: Instant) -> bool {
         let State::Awaited(pressed) = self.state else { return false };
         let gives_up = now.saturating_duration_since(pressed) > PATIENCE;
@@ -60,7 +60,7 @@ impl Lamp {
         gives_up
     }
 
-    /// Reads what has arrived, and returns the time since the key if a frame in it answers it.
+    /// Reads received bytes; returns the time since the key if they answer it.
     pub(crate) fn read(&mut self, bytes: &[u8], now: Instant) -> Option<Duration> {
         let State::Awaited(pressed) = self.state else { return None };
         self.tail.extend_from_slice(bytes);

@@ -1,18 +1,18 @@
-//! Functions that tests of the whole program share.
+//! Functions shared by tests of the whole program.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
-/// The program in an empty environment.
+/// The program with an empty environment.
 pub(crate) fn server(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster-server"));
     command.args(arguments).env_clear();
     command
 }
 
-/// Runs the program with that standard input.
+/// Runs the program with this standard input.
 pub(crate) fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = server(arguments)
         .stdin(Stdio::piped())
@@ -32,7 +32,7 @@ pub(crate) fn output_of(arguments: &[&str]) -> Vec<u8> {
     output.stdout
 }
 
-/// The program's standard error. Asserts the exit status 2.
+/// The program's standard error. Asserts exit status 2.
 pub(crate) fn complaint_about(arguments: &[&str]) -> String {
     let output = server(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -40,7 +40,7 @@ pub(crate) fn complaint_about(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// The game's program, which is built beside the server's.
+/// The path of the game's program, which is built next to the server's.
 pub(crate) fn game_program() -> PathBuf {
     let server = PathBuf::from(env!("CARGO_BIN_EXE_cellcaster-server"));
     server.with_file_name(format!("cellcaster{}", std::env::consts::EXE_SUFFIX))

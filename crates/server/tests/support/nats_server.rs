@@ -1,5 +1,4 @@
-//! A NATS server of a test's own, which ends with the test. The program is that of Debian's package
-//! `nats-server`.
+//! A NATS server for a single test, which ends with the test. Uses the program from Debian's package `nats-server`.
 
 use std::fs;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -11,22 +10,22 @@ use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A server with a log on the disk, and a process that ends it when this one ends.
+/// A server with a log on disk, and a watcher process that kills the server when this process ends.
 pub(crate) struct NatsServer {
     folder: PathBuf,
     address: Ipv4Addr,
     port: u16,
-    /// It ends when its input does, and the server with it.
+    /// The watcher exits when its input closes, and kills the server.
     watcher: Option<Child>,
 }
 
 impl NatsServer {
-    /// A server that answers.
+    /// Starts a server and waits until it answers.
     pub(crate) fn start() -> Self {
         Self::start_at(Ipv4Addr::LOCALHOST)
     }
 
-    /// A server at an address of this machine.
+    /// Starts a server at an address of this machine.
     pub(crate) fn start_at(address: Ipv4Addr) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -39,19 +38,18 @@ impl NatsServer {
         server
     }
 
-    /// The address.
+    /// The server's address.
     pub(crate) fn address(&self) -> String {
         format!("nats://{}:{}", self.address, self.port)
     }
 
-    /// Kills the server.
     pub(crate) fn kill(&mut self) {
         let Some(mut watcher) = self.watcher.take() else { return };
         drop(watcher.stdin.take());
         watcher.wait().unwrap();
     }
 
-    /// Starts the server again with what it has kept, and waits until it answers.
+    /// Starts the server with its existing data, and waits until it answers.
     pub(crate) fn restart(&mut self) {
         let folder = self.folder.display();
         let script = format!(
@@ -59,7 +57,7 @@ impl NatsServer {
              read _; kill -9 $!; wait",
             self.address, self.port
         );
-        // The package puts it where the superuser looks.
+        // The package installs the program in a directory that only root's path contains.
         let path = format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default());
         let mut command = Command::new("sh");
         command.arg("-c").arg(script).env("PATH", path).stdin(Stdio::piped());

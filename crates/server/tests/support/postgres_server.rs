@@ -1,7 +1,7 @@
-//! A PostgreSQL of a test's own, which ends with the test.
+//! A PostgreSQL server for a single test, which ends with the test.
 //!
-//! The programs are those of Debian's package `postgresql`, or on the path. PostgreSQL refuses to run as root;
-//! for root, it runs as the user `postgres`.
+//! The programs come from Debian's package `postgresql`, or from the path. PostgreSQL refuses to run as root,
+//! so under root it runs as the user `postgres`.
 #![allow(dead_code, reason = "every test program uses its own share of this")]
 
 use std::fs;
@@ -18,34 +18,34 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_mins(1);
 const USER: &str = "postgres";
 
-/// A server, its folder, and a process that ends and removes both when this one ends.
+/// A server, its folder, and a watcher process that kills the server and removes the folder when this process ends.
 pub(crate) struct PostgresServer {
     folder: PathBuf,
     port: u16,
-    /// It ends when its input does, so it is kept.
+    /// The watcher exits when its input closes, so it must be kept.
     _watcher: Child,
 }
 
 impl PostgresServer {
-    /// The server of this process, for tests that do nothing to it. It does not wait for the disk.
+    /// A server shared by the tests of this process that do not disturb it. It does not sync to disk.
     pub(crate) fn shared() -> &'static Self {
         static SHARED: OnceLock<PostgresServer> = OnceLock::new();
         SHARED.get_or_init(|| Self::with("fsync = off", "", |_| {}))
     }
 
-    /// A server of a test's own.
+    /// A server for a single test.
     pub(crate) fn start() -> Self {
         Self::with("", "", |_| {})
     }
 
-    /// A server of a test's own at an address of this machine.
+    /// A server for a single test, at an address of this machine.
     pub(crate) fn start_at(address: Ipv4Addr) -> Self {
         let access = "host all all 10.0.0.0/8 trust\n";
         Self::with(&format!("listen_addresses = '{address}'"), access, |_| {})
     }
 
-    /// A server of a test's own that takes encrypted connections alone, with a [certificate](Self::certificate)
-    /// of its own for 127.0.0.1.
+    /// A server for a single test that accepts only encrypted connections, with its own
+    /// [certificate](Self::certificate) for 127.0.0.1.
     pub(crate) fn start_encrypted() -> Self {
         let access = "hostnossl all all 127.0.0.1/32 reject\n";
         Self::with("ssl = on", access, |data| {
@@ -58,7 +58,7 @@ impl PostgresServer {
         })
     }
 
-    /// A server with more settings and rules of access, after something was done in its folder for data.
+    /// A server with additional settings and access rules. `prepare` runs on its data folder before the start.
     fn with(settings: &str, rules: &str, prepare: impl FnOnce(&Path)) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -100,30 +100,30 @@ impl PostgresServer {
         server
     }
 
-    /// The port at 127.0.0.1. The role `guarded` needs its password there.
+    /// The port on 127.0.0.1. There, the role `guarded` needs its password.
     pub(crate) fn port(&self) -> u16 {
         self.port
     }
 
-    /// The address of an empty place in the server, over its socket.
+    /// The address of a new empty schema in the server, over its Unix socket.
     pub(crate) fn address(&self) -> String {
         let socket = self.folder.display().to_string().replace('/', "%2F");
         let Self { port, .. } = self;
         format!("postgres://{USER}@{socket}:{port}/postgres?{}", self.new_place())
     }
 
-    /// The same over TCP.
+    /// The address of a new empty schema, over TCP.
     pub(crate) fn address_over_tcp(&self) -> String {
         self.address_at(Ipv4Addr::LOCALHOST)
     }
 
-    /// The same over TCP, at the address at which the server was started.
+    /// The address of a new empty schema, over TCP at the address on which the server was started.
     pub(crate) fn address_at(&self, address: Ipv4Addr) -> String {
         let Self { port, .. } = self;
         format!("postgres://{USER}@{address}:{port}/postgres?{}", self.new_place())
     }
 
-    /// A new schema, as an option of an address.
+    /// Creates a schema; returns it as an option for an address.
     fn new_place(&self) -> String {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name = format!("place_{}", COUNT.fetch_add(1, Ordering::Relaxed));
@@ -136,7 +136,7 @@ impl PostgresServer {
         self.folder.join("data/server.crt")
     }
 
-    /// What `psql` says to statements.
+    /// Runs statements with `psql`; returns its output.
     pub(crate) fn sql(&self, sql: &str) -> String {
         let mut psql = command("psql", &self.folder);
         psql.args(["-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-U", USER, "-d", "postgres"]);
@@ -144,7 +144,7 @@ impl PostgresServer {
         run(psql.arg("-c").arg(sql))
     }
 
-    /// Kills all processes of the server, as a crash does.
+    /// Kills all processes of the server, as in a crash.
     pub(crate) fn crash(&self) {
         self.signal("-KILL");
         let postmaster = self.postmaster();
@@ -155,17 +155,17 @@ impl PostgresServer {
         }
     }
 
-    /// Starts the server again, and waits until it answers.
+    /// Starts the server, and waits until it answers.
     pub(crate) fn restart(&self) {
         let mut start = command("pg_ctl", &self.folder);
         start.arg("start").arg("-w").args(["-t", &PATIENCE.as_secs().to_string()]);
         start.arg("-D").arg(self.folder.join("data")).arg("-l").arg(self.folder.join("log"));
-        // Its output is also that of the server, which does not end.
+        // The server inherits the output and does not exit, so the output cannot be captured.
         let status = start.stdout(Stdio::null()).stderr(Stdio::null()).status();
         assert!(status.unwrap().success(), "the server does not start");
     }
 
-    /// Makes the server neither answer nor close its connections, until [`resume`](Self::resume).
+    /// Freezes the server until [`resume`](Self::resume): it neither answers nor closes its connections.
     pub(crate) fn pause(&self) {
         self.signal("-STOP");
     }
@@ -181,7 +181,7 @@ impl PostgresServer {
         let children = format!("/proc/{postmaster}/task/{postmaster}/children");
         let children = fs::read_to_string(children).unwrap_or_default();
         let processes = [postmaster.as_str()].into_iter().chain(children.split_whitespace());
-        // One may have ended meanwhile.
+        // One of the processes may have exited meanwhile.
         _ = Command::new("kill").arg(signal).args(processes).stderr(Stdio::null()).status();
     }
 
@@ -191,7 +191,7 @@ impl PostgresServer {
     }
 }
 
-/// The user and the group for a server that root starts.
+/// The user and the group under which root runs the server; `None` if this user is not root.
 fn owner() -> Option<(u32, u32)> {
     let id = |arguments: &[&str]| -> u32 {
         run(Command::new("id").args(arguments)).trim().parse().unwrap()
@@ -199,7 +199,7 @@ fn owner() -> Option<(u32, u32)> {
     (id(&["-u"]) == 0).then(|| (id(&["-u", USER]), id(&["-g", USER])))
 }
 
-/// A program of PostgreSQL or of the system, as the user that it runs as.
+/// A command that runs a program of PostgreSQL or of the system, as the server's user.
 fn command(program: &str, folder: &Path) -> Command {
     let installed = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
     let mut installed = installed.map(|version| version.path().join("bin").join(program));
@@ -215,7 +215,7 @@ fn command(program: &str, folder: &Path) -> Command {
     command
 }
 
-/// Runs a program that must succeed, and returns what it wrote.
+/// Runs a program, asserts success, and returns its output.
 fn run(command: &mut Command) -> String {
     let output = command.stderr(Stdio::piped()).output().expect("PostgreSQL is installed");
     let said = String::from_utf8_lossy(&output.stderr);

@@ -1,8 +1,6 @@
-//! A client that comes, enters some room, walks, talks, resizes its window, and leaves in one of several
-//! ways.
+//! A client that connects, enters a room, walks, chats, resizes its window, and leaves in one of several ways.
 //!
-//! What it does follows from its seed; the pauses of the server do not. The tests of the server use it,
-//! too.
+//! Its actions depend on its seed alone, but the server's timing does not. The server's tests use it, too.
 
 use std::net::{Shutdown, SocketAddr};
 use std::sync::Arc;
@@ -15,37 +13,37 @@ use russh::{Channel, ChannelMsg, Disconnect, Error};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
-/// How a visit ends.
+/// The way in which a visit ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Leaving {
     /// With the keys of the game.
     ByKeys,
-    /// As an SSH client that ends its connection.
+    /// The SSH client closes its connection.
     Disconnected,
-    /// Without a word: the socket is closed.
+    /// The socket is closed without notice.
     Cut,
-    /// The terminal answers nothing any more, and after 25 seconds the connection is gone.
+    /// The terminal stops replying, and after 25 seconds the connection is dropped.
     Silent,
 }
 
-/// Believes every server.
+/// Accepts any server key.
 struct Anyone;
 
 struct Wanderer {
-    /// It is dropped last: without it, the connection ends.
+    /// Kept until the end, because dropping it ends the connection.
     handle: Handle<Anyone>,
     channel: Channel<Msg>,
     chance: SplitMix64,
-    /// The last bytes, in which a query may begin.
+    /// The last bytes, which may contain the start of a query.
     unread: Vec<u8>,
-    /// The keys on the way to a room are slower than those in it.
+    /// The time of the next key. Keys on the way to a room are slower than those in it.
     next_key: Instant,
     keys: u32,
-    /// Another descriptor of the socket.
+    /// A second descriptor of the socket.
     socket: std::net::TcpStream,
 }
 
-/// The keys on the way to a room: mostly Enter, else another room or menu.
+/// The keys on the way to a room: mostly Enter, sometimes another entry.
 const WAY: [&str; 6] = ["\r", "\r", "\r", "\r", "\x1b[B", "\x1b[B\x1b[B"];
 /// The keys in a room.
 const KEYS: [&str; 8] = ["w", "w", "w", "\x1b[C", "\x1b[D", "s", "1", "\r"];
@@ -53,7 +51,7 @@ const KEYS: [&str; 8] = ["w", "w", "w", "\x1b[C", "\x1b[D", "s", "1", "\r"];
 const WAY_LENGTH: u32 = 6;
 const WAY_PAUSE: Duration = Duration::from_millis(150);
 const PAUSE: Duration = Duration::from_millis(50);
-/// The time for which a terminal is silent, and the longest wait for the end of a session.
+/// How long a silent terminal stays, and the longest wait for a session to end.
 const PATIENCE: Duration = Duration::from_secs(25);
 
 impl Handler for Anyone {
@@ -72,7 +70,7 @@ pub(crate) async fn visit(
 ) -> Result<Leaving, Error> {
     let mut chance = SplitMix64::new(seed);
     let leaving = [Leaving::ByKeys, Leaving::Disconnected, Leaving::Cut, Leaving::Silent];
-    // Those who are silent stay long, so there are few of them.
+    // Silent clients stay long, so there are few of them.
     let leaving = leaving[[0, 0, 0, 1, 1, 1, 2, 2, 2, 3][chance.below(10)]];
     let time = Duration::from_secs_f64(chance.between(0.2, longest.as_secs_f64()));
     let mut wanderer = Wanderer::connect(address, chance).await?;
@@ -119,7 +117,7 @@ impl Wanderer {
         match leaving {
             Leaving::ByKeys => {
                 self.channel.data(&b"\x03\x03"[..]).await?;
-                // It answers what it is asked, so that the session ends at once.
+                // The client replies to queries, so that the session ends at once.
                 _ = timeout_at(patience, self.answer_all()).await;
                 Ok(())
             }
@@ -159,7 +157,7 @@ impl Wanderer {
         self.channel.data(keys.as_bytes()).await
     }
 
-    /// Answers the queries of a terminal in `data`.
+    /// Replies to the terminal queries in `data`.
     async fn answer(&mut self, data: &[u8]) -> Result<(), Error> {
         self.unread.extend_from_slice(data);
         let mut answers = Vec::new();
@@ -171,15 +169,15 @@ impl Wanderer {
                 _ => {}
             }
         }
-        // A query of three bytes at the end is answered with the next data: each frame ends with one
-        // of four.
+        // A query of three bytes at the very end is answered with the next data. Each frame ends with a query
+        // of four bytes.
         let kept = self.unread.len().saturating_sub(3);
         self.unread.drain(..kept);
         if answers.is_empty() { Ok(()) } else { self.channel.data(&answers[..]).await }
     }
 }
 
-/// A size of a window.
+/// A random window size.
 fn window(chance: &mut SplitMix64) -> [u32; 2] {
     [20 + chance.below(140) as u32, 6 + chance.below(50) as u32]
 }

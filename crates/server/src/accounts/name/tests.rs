@@ -26,7 +26,7 @@ fn names_of_many_scripts_are_names() {
     ] {
         assert_eq!(Name::new(text).map(|name| name.to_string()), Ok(text.to_owned()));
     }
-    // Compatibility forms are the plain ones, and decomposed letters are composed.
+    // Compatibility forms become the plain characters, and decomposed letters are composed.
     assert_eq!(Name::new("Ａｄａ").unwrap().as_str(), "Ada");
     assert_eq!(Name::new("Zoe\u{308}").unwrap().as_str(), "Zoë");
 }
@@ -101,7 +101,7 @@ fn no_account_has_the_name_of_a_guest() {
     }
 }
 
-/// Texts that are often names.
+/// Texts that are often valid names.
 fn texts() -> impl Strategy<Value = String> {
     prop_oneof![
         any::<String>(),
@@ -113,22 +113,22 @@ fn texts() -> impl Strategy<Value = String> {
 #[test]
 fn every_kind_of_character_is_kept_or_dropped_by_one_rule() {
     for (text, kept) in [
-        // Control characters, and those that begin escape sequences.
+        // Control characters, including the introducers of escape sequences.
         ("\u{1b}]0;title\u{7}\u{9b}31m\u{7f}\0", "]0;title31m"),
-        // Blanks and breaks of all kinds.
+        // All kinds of blanks and line breaks.
         ("a\u{a0}\u{2003}\r\n\u{2028}\u{3000}b", "a b"),
-        // Marks that combine, with a letter and without one.
+        // Combining marks, with and without a letter.
         ("e\u{301} z\u{301}\u{302}\u{303} q\u{301} \u{20dd} \u{fe0f}", "é ź q"),
-        // Overrides, isolates and marks of direction.
+        // Directional overrides, isolates and marks.
         ("\u{202a}a\u{202b}b\u{202c}c\u{202d}d\u{202e}e", "abcde"),
         ("\u{2066}a\u{2067}b\u{2068}c\u{2069}d\u{200e}e\u{200f}f\u{61c}g", "abcdefg"),
-        // Invisible ones.
+        // Invisible characters.
         ("a\u{200b}\u{200c}\u{200d}\u{2060}\u{feff}\u{ad}\u{3164}\u{2800}b", "ab"),
-        // Tags, private ones, unassigned ones and no characters.
+        // Tags, private-use and unassigned characters, and noncharacters.
         ("a\u{e0041}\u{e000}\u{f0000}\u{10fffd}\u{378}\u{fffe}b", "ab"),
-        // Wide ones, and families of emoji, which fall apart.
+        // Wide characters, and families of emoji, which fall apart.
         ("日本 \u{1f468}\u{200d}\u{1f469}", "日本 \u{1f468}\u{1f469}"),
-        // In a line, look-alikes are as good as others: a name is checked by `Name`.
+        // A line may contain look-alikes. Only `Name` rejects them.
         ("раураl ⅰ①Ａ", "раураl ⅰ①Ａ"),
         // Characters that terminals draw over their neighbours or join with them.
         ("a\u{fdfa}\u{fdfd}\u{2e3b}\u{1242b}b", "ab"),

@@ -1,7 +1,7 @@
 //! TLS to a server whose certificate the system trusts.
 //!
-//! The crates that connect tokio-postgres with rustls were refused: they bring a second set of the crates that
-//! read keys, for channel binding alone. A certificate that was verified needs none.
+//! Rejected: the crates that connect tokio-postgres with rustls. They add a second set of the crates that read
+//! keys, only for channel binding. A verified certificate needs no channel binding.
 
 use std::io;
 use std::pin::Pin;
@@ -19,14 +19,15 @@ use tokio_rustls::{TlsConnector, client};
 
 use crate::accounts::StoreFailure;
 
-/// What makes encrypted connections.
+/// A factory of encrypted connections.
 #[derive(Clone)]
 pub(crate) struct Tls {
     config: Arc<ClientConfig>,
 }
 
 impl Tls {
-    /// TLS with the certificates that the system trusts, or those of the file that `SSL_CERT_FILE` names.
+    /// TLS with the certificates that the system trusts, or with the file of certificates that `SSL_CERT_FILE`
+    /// names.
     pub(crate) fn of_system() -> Result<Self, StoreFailure> {
         let mut roots = RootCertStore::empty();
         roots.add_parsable_certificates(load_native_certs().certs);
@@ -52,13 +53,13 @@ impl MakeTlsConnect<Socket> for Tls {
     type Error = io::Error;
 
     fn make_tls_connect(&mut self, host: &str) -> io::Result<Handshake> {
-        // A socket on this machine is not encrypted, and has no name.
+        // A socket on this machine has no name, and is not encrypted.
         let name = ServerName::try_from(host.to_owned()).ok();
         Ok(Handshake { config: Arc::clone(&self.config), name })
     }
 }
 
-/// The beginning of an encrypted connection.
+/// The start of an encrypted connection.
 pub(crate) struct Handshake {
     config: Arc<ClientConfig>,
     name: Option<ServerName<'static>>,

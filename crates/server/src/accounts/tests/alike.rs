@@ -1,4 +1,4 @@
-//! Both databases answer alike, whatever is asked of them.
+//! Both databases give the same answers to all calls.
 
 use std::fmt::Write;
 
@@ -6,11 +6,11 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Something that is asked of a store.
+/// A call to a store.
 #[derive(Clone, Debug)]
 enum Call {
     Create(u8, usize),
-    /// From one of two networks, each of which makes one account at once, and one in an hour.
+    /// From one of two networks. Each may create one account at once, and one in an hour.
     CreateFrom(u8, u8, usize),
     Rename(i64, usize),
     Visit(i64),
@@ -31,12 +31,12 @@ fn target(index: usize) -> BanTarget {
     }
 }
 
-/// A text as a store gets them: without U+0000.
+/// A text as stores receive it, without U+0000.
 fn text() -> impl Strategy<Value = String> {
     any::<String>().prop_map(|text| text.replace('\0', ""))
 }
 
-/// A call, and the days that pass before it.
+/// Calls, each with the days that pass before it.
 fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
     let account = || 1..4_i64;
     let call = prop_oneof![
@@ -56,7 +56,7 @@ fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
     prop::collection::vec((prop_oneof![Just(0), Just(8), Just(31)], call), 1..40)
 }
 
-/// The answer of a store. What it says about a failure is its own.
+/// The answer of a store. The sentence of a failure is left out, because it differs between stores.
 fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
     let of_failure = |_: StoreFailure| "failure";
     match call {
@@ -92,7 +92,7 @@ fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
     }
 }
 
-/// Everything that a store shows.
+/// The whole visible content of a store.
 fn shown(store: &mut HostStore, now: UnixTime) -> String {
     let mut shown = format!("{:?} {:?}", store.bans(now), store.level_boards());
     for number in 1..4 {
@@ -106,7 +106,7 @@ fn shown(store: &mut HostStore, now: UnixTime) -> String {
 }
 
 proptest! {
-    // Each has tables of its own.
+    // Each case has tables of its own.
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]

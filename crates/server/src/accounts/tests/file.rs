@@ -1,4 +1,4 @@
-//! The file of a store: who may read it, damage, and other versions.
+//! The file of a store: its permissions, damage, and other versions.
 
 use std::path::Path;
 
@@ -53,7 +53,7 @@ fn nobody_else_reads_it() {
     assert_eq!(mode(&inner.join("host.db")), 0o600);
 }
 
-/// Copies the files of a store, as they are when its process is killed.
+/// Copies the files of a store in the state that a killed process leaves.
 fn killed(folder: &Folder) -> Folder {
     let copy = Folder::new();
     fs::create_dir_all(&copy.0).unwrap();
@@ -63,7 +63,7 @@ fn killed(folder: &Folder) -> Folder {
     copy
 }
 
-/// The accounts in `host.db` without its log.
+/// The number of accounts in `host.db` without its log.
 fn accounts_in_the_file_alone(folder: &Folder) -> usize {
     let copy = Folder::new();
     fs::create_dir_all(&copy.0).unwrap();
@@ -90,7 +90,7 @@ fn the_log_is_copied_into_the_file_at_each_start_and_end() {
     assert_eq!(accounts_in_the_file_alone(&folder), 99);
 }
 
-/// All files of a folder, with their content.
+/// All files in a folder, with their content.
 fn files(folder: &Folder) -> Vec<(PathBuf, Vec<u8>)> {
     let paths = fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<_> = paths.map(|path| (path.clone(), fs::read(path).unwrap())).collect();
@@ -160,7 +160,7 @@ fn a_file_cut_short_is_refused_and_kept() {
     store.create_account(None, &key(251), &name("Later"), at(0)).unwrap();
 }
 
-/// SQLite would make a new file, and delete the log.
+/// SQLite itself would create a new file, and delete the log.
 #[test]
 fn a_log_without_its_file_is_refused_and_kept() {
     let folder = Folder::new();
@@ -175,7 +175,7 @@ fn a_log_without_its_file_is_refused_and_kept() {
     assert_eq!(fs::read(killed.0.join("host.db.damaged-1-wal")).unwrap(), log);
 }
 
-/// SQLite itself says that there is no room.
+/// SQLite itself reports that there is no room.
 #[test]
 fn a_full_disk_is_told_from_other_failures() {
     let folder = Folder::new();

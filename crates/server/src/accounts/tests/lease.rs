@@ -1,10 +1,10 @@
-//! Leases, by a clock that is set and by that of a database.
+//! Leases, with a clock that the test sets and with a database's own clock.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Longer than any test asks for it.
+/// Longer than any test takes.
 const LONG: Duration = Duration::from_mins(1);
 const SHORT: Duration = Duration::from_millis(200);
 
@@ -18,7 +18,7 @@ fn a_room_has_one_holder() {
             assert_eq!(leases.acquire("cellar", host, LONG, 0).unwrap(), None);
         }
         assert_eq!(holder(leases, "cellar").as_ref(), Some(&lease));
-        // Another room is another matter.
+        // The lease of another room is independent.
         let other = leases.acquire("museum", "other", LONG, 0).unwrap().unwrap();
         assert_eq!(holder(leases, "museum"), Some(other));
         assert!(renew(leases, &lease));
@@ -34,7 +34,7 @@ fn many_leases_are_renewed_at_once() {
         leases.release(&held[7]).unwrap();
         leases.release(&held[8]).unwrap();
         let taken = leases.acquire(&held[8].room, "other", LONG, 0).unwrap().unwrap();
-        // One twice, and one of another host.
+        // One lease twice, and a lease of another host.
         held.extend([held[9].clone(), taken]);
         wait(leases, SHORT);
         let renewed = leases.renew(&held).unwrap();
@@ -55,7 +55,7 @@ fn epochs_grow_also_over_a_release() {
             last = lease.epoch;
             assert!(leases.release(&lease).unwrap());
             assert_eq!(holder(leases, "cellar"), None);
-            // It is over for good.
+            // The lease has ended for good.
             assert!(!leases.release(&lease).unwrap() && !renew(leases, &lease));
         }
     });
@@ -128,7 +128,7 @@ fn renew(leases: &mut HostStore, lease: &Lease) -> bool {
     leases.renew(std::slice::from_ref(lease)).unwrap() == [true]
 }
 
-/// The lease of a room that is in force.
+/// The lease of a room, if it is in force.
 fn holder(leases: &mut HostStore, room: &str) -> Option<Lease> {
     let sql = "SELECT host, epoch, time_ms FROM leases WHERE room = ?1 AND host IS NOT NULL \
                AND ends_at > (SELECT ms FROM clock)";
@@ -137,11 +137,11 @@ fn holder(leases: &mut HostStore, room: &str) -> Option<Lease> {
     Some(Lease { room: room.to_owned(), host, epoch: row.count(1).unwrap(), time })
 }
 
-/// Something that a host does, or that happens.
+/// A call of a host, or the passage of time.
 #[derive(Clone, Debug)]
 enum Event {
     Acquire(usize, usize, u64),
-    /// With the newest lease that the host knows.
+    /// Renews the newest lease that the host knows.
     Renew(usize, usize),
     Release(usize, usize),
     Pass(u64),
@@ -161,7 +161,7 @@ fn events() -> impl Strategy<Value = Vec<Event>> {
     prop::collection::vec(event, 1..120)
 }
 
-/// What a host knows of a lease: that it was its own until then, by the store's clock.
+/// A lease that a host knows to be its own until a time on the store's clock.
 #[derive(Clone)]
 struct Known {
     lease: Lease,
@@ -238,7 +238,7 @@ fn of_hosts_that_take_a_lease_at_once_one_has_it() {
                 .collect();
             threads.into_iter().filter_map(|thread| thread.join().unwrap()).collect()
         });
-        // A short one may be over before the last host asks.
+        // A short lease may end before the last host asks.
         assert!(taken.len() == 1 || (round % 2 == 0 && !taken.is_empty()), "{taken:?}");
         let mut epochs: Vec<u64> = taken.iter().map(|lease| lease.epoch).collect();
         epochs.sort_unstable();

@@ -1,4 +1,4 @@
-//! A database that several hosts share: its tables, and hosts that change the same.
+//! A database that several hosts share: its tables, and hosts that change the same rows.
 
 mod faults;
 mod proxy;
@@ -13,12 +13,12 @@ fn open(address: &str) -> HostStore {
     HostStore::connect(address).unwrap()
 }
 
-/// The name of the schema of an address.
+/// The name of the schema in an address.
 fn place(address: &str) -> &str {
     address.rsplit_once("%3D").unwrap().1
 }
 
-/// Runs `act` in several hosts at once, with a store each, and returns their answers.
+/// Runs `act` on several hosts at once, each with a store of its own, and returns their answers.
 fn at_once<T: Send>(
     address: &str,
     hosts: u8,
@@ -74,7 +74,7 @@ fn of_hosts_that_create_a_name_at_once_one_does() {
     let address = PostgresServer::shared().address();
     for round in 0..12_u8 {
         let text = format!("Bill-{round}");
-        // They look alike.
+        // These names look alike.
         let names =
             [text.clone(), text.to_lowercase(), text.replace('B', "b"), text.replace("ll", "Il")];
         let answers = at_once(&address, 4, |host, store| {

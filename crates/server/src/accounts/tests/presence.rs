@@ -1,4 +1,4 @@
-//! Visits and hosts, by a clock that is set and by that of a database.
+//! Visits and hosts, with a clock that the test sets and with a database's own clock.
 
 use super::*;
 
@@ -28,7 +28,7 @@ fn announce(presence: &mut HostStore, hosts: &[&str]) {
     }
 }
 
-/// A visit that is let in.
+/// Begins a visit that must be let in.
 fn begin(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> VisitId {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         Ok(visit) => visit,
@@ -36,7 +36,7 @@ fn begin(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Visi
     }
 }
 
-/// How fresh a refusal is.
+/// Asserts that a visit is refused, and returns the age of the information behind the refusal.
 fn refused(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Duration {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         Err(ago) => ago,
@@ -63,7 +63,7 @@ fn the_visits_of_somebody_are_limited_over_all_hosts() {
         presence.end_visit(first).unwrap();
         begin(presence, "third", &ada(), 2);
         assert_eq!(refused(presence, "third", &ada(), 0), Duration::ZERO);
-        // A host that has ended has nobody, and is not there.
+        // A host that has left has no visits, and is not present.
         presence.leave("one").unwrap();
         assert_eq!(presence.visits(LONG).unwrap().len(), 2);
         assert_eq!(presence.hosts(LONG).unwrap().len(), 2);
@@ -79,12 +79,12 @@ fn visits_count_while_their_host_is_there() {
         wait(presence, SHORT * 2);
         announce(presence, &["one", "other"]);
         assert!(refused(presence, "other", &ada(), 1) < SHORT);
-        // It may have been killed: of its visits is said how old their host's last word is.
+        // The host may have been killed, so the refusal says how old its last announcement is.
         assert!(refused(presence, "other", &network(), 1) >= SHORT * 2);
         assert_eq!(presence.visits(SHORT).unwrap().len(), 1);
         let begun = presence.begin_visit("other", &network(), 1, SHORT).unwrap();
         assert!(begun.is_ok(), "{begun:?}");
-        // A host that was late has its visitors none the less.
+        // A host that was late still has its visitors.
         announce(presence, &["killed"]);
         assert_eq!(presence.visits(SHORT).unwrap().len(), 3);
         refused(presence, "other", &network(), 2);

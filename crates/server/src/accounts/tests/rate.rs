@@ -1,4 +1,4 @@
-//! How many accounts a network may make.
+//! The limit on the accounts that a network may create.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn origin(address: &str) -> Origin {
     Origin::new(address.parse().unwrap(), AccountRate { per_hour: 20, at_once: 3 })
 }
 
-/// Creates an account at a second.
+/// Creates an account at the given second.
 fn create(
     store: &mut HostStore,
     address: &str,
@@ -29,7 +29,7 @@ fn a_network_makes_so_many_accounts() {
         let sentence = "Your network makes too many accounts; try again in 3 minutes.";
         assert_eq!(refused.to_string(), sentence);
         assert_eq!(store.account(&key(9)).unwrap(), None);
-        // Other networks do not matter, and neither does a name that is refused.
+        // Other networks do not matter, and neither does a refused name.
         create(store, "192.0.3.1", 3, 1).unwrap();
         create(store, "2001:db8::1", 4, 1).unwrap();
         let taken =
@@ -38,16 +38,16 @@ fn a_network_makes_so_many_accounts() {
         create(store, "192.0.3.2", 5, 1).unwrap();
         create(store, "192.0.3.3", 6, 1).unwrap();
         assert!(create(store, "192.0.3.4", 7, 1).is_err());
-        // One in three minutes.
+        // One more after three minutes.
         create(store, "192.0.2.9", 9, 180).unwrap();
         let refused = create(store, "192.0.2.9", 11, 359).unwrap_err();
         assert!(refused.to_string().ends_with("try again in 1 minute."), "{refused}");
-        // After an hour, all of them again.
+        // After an hour, the whole allowance again.
         for number in 12..15 {
             create(store, "192.0.2.9", number, 4000).unwrap();
         }
         assert!(create(store, "192.0.2.9", 15, 4000).is_err());
-        // Without a network, any number.
+        // There is no limit without a network.
         store.create_account(None, &key(16), &name("Ada"), at(0)).unwrap();
     });
 }

@@ -1,4 +1,4 @@
-//! Results that wait for a store that is away.
+//! Results that wait while the store is unavailable.
 
 use super::*;
 
@@ -45,7 +45,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
     let scores = cellar(&mut store);
     assert_eq!(scores.iter().map(|it| it.verified_at).collect::<Vec<_>>(), [at(3), at(4)]);
 
-    // The host is killed before it saves: all are recorded again, and nothing changes.
+    // The host is killed before it saves. All results are recorded again, and nothing changes.
     let mut again = waiting(&folder);
     assert_eq!(again.len(), 2);
     while again.record(0, &mut store, |_| None, at(9)).is_some() {}
@@ -67,7 +67,7 @@ fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() 
     assert!(matches!(nobody, Some(Late::Refused(_))), "{nobody:?}");
     let refuted = waiting.record(1, &mut store, |_| None, at(6));
     assert!(matches!(refuted, Some(Late::Refuted(_, Unverified::NotWon))), "{refuted:?}");
-    // It does not hold those behind it.
+    // It does not block the results behind it.
     let recorded = waiting.record(1, &mut store, |_| None, at(6));
     assert!(matches!(recorded, Some(Late::Recorded(..))), "{recorded:?}");
     let mut full = HostStore::failing(StoreFailure::new("the disk is full"));
@@ -119,7 +119,7 @@ fn what_cannot_be_written_waits_in_memory_until_it_can() {
     results.add(result(1, 1, WON)).unwrap();
     assert!(results.save().is_err());
     assert_eq!(results.len(), 1);
-    // A store that is full takes nothing, however long it lasts.
+    // A full store takes nothing, however long it stays full.
     let mut full = HostStore::failing(StoreFailure::Full("no room".into()));
     assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
     fs::create_dir_all(&folder.0).unwrap();

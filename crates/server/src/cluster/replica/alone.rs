@@ -1,15 +1,15 @@
-//! Going on alone: a room whose members are all on the sequencer's host, while the bus does not answer.
+//! Going on alone: a room continues while the bus does not answer, if all its members are on the sequencer's host.
 //!
 //! # Rules
 //!
-//! - **The lease decides.** As long as the database renews it, nobody else appends to the log, so that the messages can be
+//! - **The lease decides.** While the database renews it, no other host appends to the log, so the messages can be
 //!   appended later. Without the lease the room waits.
-//! - **Nobody joins meanwhile**: a member who is told that they are in the room must be in the log.
-//! - **Messages wait in memory**, up to ten seconds in each, for [`MOST_ALONE`]; then the room waits.
+//! - **Nobody joins meanwhile**, because a member who is told that they are in the room must be in the log.
+//! - **Messages wait in memory**, each with up to ten seconds, for [`MOST_ALONE`]. Then the room waits.
 //! - If members are on other hosts, the sequencer releases the lease instead, and another host goes on.
 //!
 //! Rejected: a checkpoint in place of the messages. Watchers on other hosts would skip a part of the game, and the log
-//! would not be the whole history of the room any more.
+//! would no longer be the whole history of the room.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -21,11 +21,11 @@ use crate::cluster::bus::BusFault;
 use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
 
-/// The longest time in which a room goes on alone.
+/// The longest time for which a room goes on alone.
 const MOST_ALONE: Duration = Duration::from_mins(10);
 
 impl Replica {
-    /// Goes on alone, or leaves the room to others, if the log does not answer for a while.
+    /// Goes on alone, or leaves the room to other hosts, if the log has not answered for a while.
     pub(crate) fn lack_bus(&mut self, now: Instant) {
         let is_standing_still = now.duration_since(self.times.moved) >= STANDSTILL;
         if !is_standing_still || !self.has_lease(now) {
@@ -44,7 +44,7 @@ impl Replica {
         self.advance_alone(first);
     }
 
-    /// Takes the steps that are due, or appends all of them to the log once the bus answers.
+    /// Takes the steps that are due, or appends all waiting messages to the log once the bus answers.
     pub(crate) async fn go_on_alone(&mut self, now: Instant) {
         let has_lease = self.has_lease(now);
         let Some(alone) = &mut self.alone else { return };
@@ -70,7 +70,7 @@ impl Replica {
         }
     }
 
-    /// Applies a message that is to be appended later.
+    /// Applies a message that will be appended later.
     fn advance_alone(&mut self, message: LogMessage) {
         self.apply(None, &message);
         self.times.moved = Instant::now();
@@ -82,7 +82,7 @@ impl Replica {
         }
     }
 
-    /// Appends the messages to the log.
+    /// Appends the waiting messages to the log.
     async fn append_alone(&mut self) -> Result<(), BusFault> {
         self.confirm_sent().await?;
         while let Some(first) = self.alone.as_mut().and_then(|it| it.messages.front_mut()) {
@@ -105,7 +105,7 @@ impl Replica {
         Ok(())
     }
 
-    /// Finds the message in the log that was sent without an answer.
+    /// Looks in the log for the message that was sent without an answer.
     async fn confirm_sent(&mut self) -> Result<(), BusFault> {
         while let Some((number, bytes)) = self.context.bus.read(self.id, self.state.number).await? {
             let first = self.alone.as_ref().and_then(|it| it.messages.front());
@@ -118,7 +118,7 @@ impl Replica {
         Ok(())
     }
 
-    /// Notes that the log has the first message.
+    /// Notes that the log has the first waiting message.
     async fn confirm(&mut self, number: u64) {
         let first = self.alone.as_mut().and_then(|it| it.messages.pop_front());
         self.state.number = number;
@@ -127,8 +127,8 @@ impl Replica {
         }
     }
 
-    /// Whether the room has gone on alone past a message of the log. If another host has written it, the room is not
-    /// ahead but has diverged.
+    /// Returns true if the room has gone on alone past a message of the log. If another host wrote the message, the
+    /// room is not ahead but has diverged.
     pub(crate) fn is_ahead_of(&mut self, message: &LogMessage) -> bool {
         let Some(sequencer) = self.sequencer.as_ref().filter(|_| self.alone.is_some()) else {
             return false;
@@ -140,7 +140,7 @@ impl Replica {
         is_own
     }
 
-    /// Gives up the messages that the log does not have: another host had the lease, and has written.
+    /// Gives up the messages that the log does not have, because another host had the lease and has written.
     pub(crate) fn diverge(&mut self) {
         if self.alone.take().is_some() {
             tracing::warn!(room = %self.id, "a room was alone while another host had its lease");

@@ -23,7 +23,7 @@ impl SimulatedBus {
         Self { world, host, revisions: Mutex::default() }
     }
 
-    /// Does something there, unless the way there or back is cut.
+    /// Runs `act` on the bus, unless the way there or back fails.
     fn call<'a, T: Send + 'a>(
         &'a self,
         act: impl FnOnce(&mut Inner, usize) -> Result<T, BusFault> + Send + 'a,

@@ -1,4 +1,4 @@
-//! What must be true after a run.
+//! The conditions that must hold after a run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -15,18 +15,18 @@ use crate::rooms::summary::RoomId;
 /// The longest time without a message in a room with members.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// What the log of a room gives.
+/// The result of a replay of a room's log.
 struct Played {
     state: RoomState,
     /// The checksum of the game, by round and step.
     states: BTreeMap<(u32, u64), u64>,
-    /// In the order of the log.
+    /// The members who joined, in the order of the log.
     joined: Vec<MemberId>,
     last_at: Option<Instant>,
 }
 
 impl Run {
-    /// Plays each log from its beginning, and compares what hosts show with it.
+    /// Replays each log from its beginning, and compares the result with the rooms that hosts show.
     pub(crate) fn assert_log(&self) {
         for host in &self.hosts {
             assert_eq!(host.metrics.checks(false).get(), 0, "a host differs");
@@ -49,12 +49,13 @@ impl Run {
         assert_eq!(let_in.len(), self.let_in.len(), "two players have the same number");
     }
 
-    /// The members of rooms who are not away are those who are there.
+    /// Asserts that the members who are not away are the players who are present, and that their
+    /// rooms go on.
     pub(crate) fn assert_members(&self) {
         let mut there: BTreeMap<RoomId, BTreeSet<MemberId>> = BTreeMap::new();
         for place in self.players.iter().filter_map(|player| player.place.as_ref()) {
             if place.closed().is_some() {
-                // Their host was cut off for so long that they were removed, and they are told.
+                // Their host was cut off for so long that they were removed, and they were told.
                 continue;
             }
             let members = there.entry(place.room()).or_default();
@@ -85,7 +86,7 @@ impl Run {
         }
     }
 
-    /// Nobody takes the place of one who plays.
+    /// Asserts that nobody can take the place of a player who plays.
     pub(crate) async fn assert_nobody_is_displaced(&self) {
         for player in &self.players {
             let is_there = |place: &&Place| place.closed().is_none();

@@ -1,4 +1,4 @@
-//! What an operator of one host sees and does on all of them.
+//! Requests of one host's operator that concern all hosts.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ impl Hosts {
         (*reply, remarks)
     }
 
-    /// The names of visitors, with their hosts.
+    /// The names of the visitors with their hosts, and the remarks.
     async fn who(&self) -> (Vec<String>, Vec<String>) {
         let (reply, remarks) = self.answer(AdminRequest::Who).await;
         let AdminReply::Visitors(rows) = reply else { panic!("{reply:?}") };
@@ -78,10 +78,10 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
         }
         assert_eq!(hosts.answer(remove("P2")).await, (AdminReply::Count(1), vec![]));
         assert!(matches!(hosts.visitors[2].notice().await, Notice::Removed(_)));
-        // What is wrong is wrong on each of them.
+        // A faulty request is faulty on every host, so the first host does not ask the others.
         let fault = hosts.operators[0].answer(&remove("\u{1b}")).await;
         assert!(matches!(fault, AdminReply::Fault(_)), "{fault:?}");
-        // A host ends alone.
+        // A drain ends only one host.
         assert_eq!(hosts.operators[0].answer(&AdminRequest::Drain).await, AdminReply::Count(1));
     });
 }
@@ -99,7 +99,7 @@ fn hosts_are_listed_with_those_that_do_not_answer() {
             [("host:0", 1, Some(vec![])), ("host:1", 1, Some(vec![])), ("host:2", 1, None)];
         assert_eq!(shown, expected);
         assert!(rows.iter().all(|row| row.seconds < 5 && row.address.ends_with(".org:2222")));
-        // One that has ended is not there any more.
+        // A host that has ended is no longer present.
         hosts.run.hosts[1].shared.end().await;
         sleep(Duration::from_secs(1)).await;
         hosts.run.world.set(2, |link| link.is_cut = false);

@@ -13,7 +13,7 @@ use crate::rooms::room::{Command, MemberId};
 use crate::rooms::summary::RoomId;
 use cellcaster::game::{Intent, Intents};
 
-/// The players from this one on are guests.
+/// The first guest. All later players are guests, too.
 const FIRST_GUEST: usize = 4;
 
 pub(crate) struct Player {
@@ -21,9 +21,9 @@ pub(crate) struct Player {
     pub(crate) place: Option<Place>,
     pub(crate) entrant: Entrant,
     entering: Option<JoinHandle<Result<Arrived, RoomRefusal>>>,
-    /// Whether they connect to their host, and ask for the place in which they were.
+    /// `true` if the player reconnects, and asks for the place in which they were.
     connects: bool,
-    /// Places that another connection of theirs has taken.
+    /// Places that another connection of the same player has taken.
     pub(crate) taken: Vec<(usize, Place)>,
 }
 
@@ -48,7 +48,7 @@ impl Player {
         }
     }
 
-    /// Their host ends.
+    /// Leaves the host because it ends.
     pub(crate) fn part(&mut self) {
         if let Some(mut place) = self.place.take() {
             place.set_kept(true);
@@ -56,7 +56,7 @@ impl Player {
         self.lose_host();
     }
 
-    /// Their host is gone, which says nothing more.
+    /// Loses the host, which sends nothing more.
     fn lose_host(&mut self) {
         std::mem::forget(self.place.take());
         self.entering = None;
@@ -65,7 +65,7 @@ impl Player {
 }
 
 impl Run {
-    /// A player does something.
+    /// Lets a player act.
     pub(crate) async fn act(&mut self, index: usize) {
         self.arrive(index).await;
         let Self { chance, hosts, players, .. } = self;
@@ -89,14 +89,14 @@ impl Run {
                         Command::Intents { seen: 0, intents }
                     }
                 };
-                // What comes too often is refused.
+                // Commands that come too often are refused.
                 _ = place.act(command);
             }
             None => {}
         }
     }
 
-    /// They go where they were, if they connect, or else into a room.
+    /// Sends a player back to their place if they reconnect, or otherwise into a room.
     fn enter(&mut self, index: usize) {
         let Self { chance, hosts, players, .. } = self;
         let player = &mut players[index];
@@ -129,7 +129,7 @@ impl Run {
         }
     }
 
-    /// They connect to a host while they are on one, and ask for their place.
+    /// Connects a player a second time, and asks for their place.
     fn connect_again(&mut self, index: usize) {
         let Self { chance, hosts, players, .. } = self;
         let player = &mut players[index];
@@ -143,7 +143,7 @@ impl Run {
         }));
     }
 
-    /// Notes if a player was let in.
+    /// Notes that a player was let in.
     pub(crate) async fn arrive(&mut self, index: usize) {
         let player = &mut self.players[index];
         let Some(entering) = player.entering.take_if(|it| it.is_finished()) else { return };
@@ -151,7 +151,7 @@ impl Run {
             return;
         };
         if self.hosts[host].is_killed {
-            // Nobody hears it.
+            // Nobody receives the answer.
             std::mem::forget(place);
             return;
         }
@@ -169,7 +169,8 @@ impl Run {
     }
 }
 
-/// Whether the log says that somebody of this name has become that member. They may not have heard of it.
+/// Returns true if the log says that a player of this name has become that member. The player may not
+/// have heard of it.
 fn has_joined(world: &World, (room, id): (RoomId, MemberId), who: &Line) -> bool {
     world.log(room).iter().any(|kept| {
         let message = LogMessage::parse(&kept.bytes).expect("a message");

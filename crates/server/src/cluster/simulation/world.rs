@@ -1,4 +1,4 @@
-//! What the hosts of a simulation have in common: logs, values, leases, and links with faults.
+//! The state that the hosts of a simulation share: logs, values, leases, and links with faults.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -18,18 +18,18 @@ use crate::rooms::summary::RoomId;
 use cellcaster::rng::SplitMix64;
 
 pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
-/// The time from one look whether a fault is over to the next.
+/// The time between two checks whether a fault is over.
 pub(crate) const LOOK: Duration = Duration::from_millis(10);
 
-/// What the hosts have in common, and what is wrong.
+/// The state that the hosts share, and the faults of their links.
 #[derive(Clone)]
 pub(crate) struct World(Arc<Mutex<Inner>>);
 
 pub(crate) struct Inner {
     pub(crate) chance: SplitMix64,
-    /// All messages there ever were.
+    /// All messages that were ever appended.
     pub(crate) logs: BTreeMap<RoomId, Vec<Kept>>,
-    /// The number before which messages of a room are dropped.
+    /// The number before which the messages of a room are dropped.
     pub(crate) dropped: BTreeMap<RoomId, u64>,
     pub(crate) messages: u64,
     pub(crate) rooms: u32,
@@ -54,19 +54,19 @@ pub(crate) struct Kept {
 /// The links of a host.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Link {
-    /// Whether it reaches nobody on the bus.
+    /// `true` if the host reaches nobody on the bus.
     pub(crate) is_cut: bool,
-    /// Whether it does not reach the database.
+    /// `true` if the host does not reach the database.
     pub(crate) has_no_database: bool,
-    /// Whether the host stands still.
+    /// `true` if the host stands still.
     pub(crate) is_frozen: bool,
-    /// The part of answers and of what is said that is lost: one in this many.
+    /// One in this many answers and broadcasts is lost.
     pub(crate) loses_one_in: Option<usize>,
-    /// The longest delay.
+    /// The longest delay, in milliseconds.
     pub(crate) delay: u64,
 }
 
-/// What a host says of itself.
+/// A host's information about itself.
 pub(crate) fn notice(host: usize) -> HostNotice {
     let (name, address) = (format!("host:{host} 1"), format!("host{host}.example.org:2222"));
     HostNotice { name, version: "0.1.0".to_owned(), address, load: 0 }
@@ -99,7 +99,7 @@ impl World {
         Box::new(SimulatedBus::new(self.clone(), host))
     }
 
-    /// The leases of a host, by the one clock of the database.
+    /// The leases of a host, by the clock of the database.
     pub(crate) fn leases(&self, host: usize) -> Leases {
         let (store, host) = (self.worker(host), notice(host).name);
         Leases { store, host, gathered: Duration::ZERO, renewals: Arc::default() }
@@ -110,7 +110,7 @@ impl World {
         Visits::new(self.worker(host), notice(host))
     }
 
-    /// A task that calls the database for a host, as a thread does.
+    /// A task that calls the database for a host, in place of a thread.
     fn worker(&self, host: usize) -> StoreWorker {
         let (worker, mut queue) = StoreWorker::new(256);
         let world = self.clone();
@@ -137,7 +137,7 @@ impl World {
         self.with(|inner| change(&mut inner.links[host]));
     }
 
-    /// All messages of a room's log that there ever were.
+    /// All messages that a room's log ever contained.
     pub(crate) fn log(&self, room: RoomId) -> Vec<Kept> {
         self.with(|inner| inner.logs.get(&room).cloned().unwrap_or_default())
     }
@@ -147,7 +147,7 @@ impl World {
         self.with(|inner| inner.changes.iter().find(|change| change.0 == room)?.1.clone())
     }
 
-    /// A way through the network; a host that stands still does not go on.
+    /// Passes through the network with a delay. Waits while the host stands still.
     pub(crate) async fn pass(&self, host: usize) {
         let delay = self.with(|inner| {
             let longest = inner.links[host].delay;
@@ -168,7 +168,7 @@ impl World {
 }
 
 impl Inner {
-    /// The database of all hosts, by their time.
+    /// The database of all hosts, with its clock moved on to now.
     fn store(&mut self) -> &mut HostStore {
         let now = Instant::now();
         self.store.pass(now - self.asked_at);

@@ -6,7 +6,7 @@ use tokio::task::JoinHandle;
 use super::*;
 use crate::accounts::worker::Call;
 
-/// Some hosts and the database that they share.
+/// Several hosts, and the database that they share.
 struct Hosts {
     database: Arc<Mutex<Database>>,
     running: Vec<Running>,
@@ -32,7 +32,7 @@ impl Hosts {
         hosts
     }
 
-    /// A host that announces itself.
+    /// Adds a host that announces itself.
     fn add(&mut self, host: usize) {
         let (worker, mut queue) = StoreWorker::new(256);
         let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
@@ -57,7 +57,7 @@ impl Hosts {
         self.running[host].visits.begin(new_visit).await
     }
 
-    /// Nothing of a host reaches the database any more.
+    /// Kills a host: its calls no longer reach the database.
     fn kill(&self, host: usize) {
         self.running[host].tasks.iter().for_each(JoinHandle::abort);
     }
@@ -66,7 +66,7 @@ impl Hosts {
         locked(&self.database, |database| database.is_away = is_away);
     }
 
-    /// The number of visits that count, each once by the key and once by the address.
+    /// The number of visits that count. Each visitor has one by the key and one by the address.
     fn count(&self) -> usize {
         locked(&self.database, |database| {
             database.pass();
@@ -115,7 +115,7 @@ fn a_key_and_an_address_are_limited_over_all_hosts() {
         let _other = hosts.begin(1, new_visit(2, 1)).await.unwrap();
         let refusal = VisitRefusal::TooMany(Refusal::Address);
         assert_eq!(hosts.begin(1, new_visit(3, 1)).await.unwrap_err(), refusal);
-        // Who is refused by one limit counts by none.
+        // A visitor who is refused by one limit counts against none.
         assert_eq!(hosts.count(), 4);
         drop(visit);
         hosts.begin(1, new_visit(1, 1)).await.unwrap();

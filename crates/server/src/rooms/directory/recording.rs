@@ -1,17 +1,19 @@
-//! Recordings of rooms: files of a folder that never grows beyond a bound.
+//! Recordings of rooms: files in a folder of bounded size.
 //!
 //! # Rules
 //!
-//! - The folder holds at most [`Bounds::bytes`], each file counted in whole blocks, and no file that was finished longer
-//!   than [`Bounds::age`] ago. The oldest finished recordings are removed first; a file that is written stays.
-//! - If only such files are left, or a file has [`MOST_RECORDED_BYTES`], a recording ends with a whole entry. Its room
-//!   goes on, and its next round is recorded again.
-//! - A round begins another file if the last one has [`Bounds::file`], so that long recordings get old, too.
+//! - The folder holds at most [`Bounds::bytes`], counted in whole blocks per file, and no recording that was
+//!   finished longer than [`Bounds::age`] ago. The oldest finished recordings are removed first. A file that
+//!   is still being written stays.
+//! - A recording ends, with a whole entry, when the folder is full of files that are still being written, or
+//!   when the recording reaches [`MOST_RECORDED_BYTES`]. Its room goes on, and the next round is recorded
+//!   again.
+//! - A round begins a new file if the last one has reached [`Bounds::file`], so that long recordings age, too.
 //!
-//! Entries are few and short. They wait in memory for a second at most, see
-//! [`RoundLog`](crate::rooms::sequencer::RoundLog), so that a killed server loses no more, and each write ends with a
-//! whole line. Rejected: a thread for the disk, which is touched seldom. The folder is read once, when the server starts:
-//! reading the names of 65,536 files again would delay a step of a room.
+//! Entries are few and short. They are buffered for at most a second, see
+//! [`RoundLog`](crate::rooms::sequencer::RoundLog), so a killed server loses no more than that. Each write
+//! ends with a whole line. Rejected: a thread for disk access, because the disk is used so rarely. The folder
+//! is read once, when the server starts: reading 65,536 file names again would delay a room's step.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -34,14 +36,14 @@ use cellcaster::app::store::private;
 pub(crate) struct Recordings(Box<dyn Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync>);
 
 impl Recordings {
-    /// Recordings that `open` opens.
+    /// Recordings opened by `open`.
     pub(crate) fn new(
         open: impl Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync + 'static,
     ) -> Self {
         Self(Box::new(open))
     }
 
-    /// Recordings in a folder; none without one.
+    /// Recordings in a folder; no recordings if there is no folder.
     pub(crate) fn in_folder(folder: Option<PathBuf>) -> Self {
         let folder = folder.map(|path| Arc::new(Folder::open(path, Bounds::default())));
         Self::new(move |room| {
@@ -50,7 +52,7 @@ impl Recordings {
         })
     }
 
-    /// The recording of a new room, if it is recorded.
+    /// Opens the recording of a new room; `None` if the room is not recorded.
     pub(crate) fn open(&self, id: RoomId) -> Option<Box<dyn Recording>> {
         (self.0)(id)
     }
@@ -62,15 +64,15 @@ impl fmt::Debug for Recordings {
     }
 }
 
-/// A room that is recorded in a folder.
+/// A room whose log is recorded in a folder.
 struct RecordedRoom {
     folder: Arc<Folder>,
     room: RoomId,
-    /// `None` if the recording has ended before its round.
+    /// `None` if the recording ended before this round.
     file: Option<RecordedFile>,
 }
 
-/// A file that is written.
+/// A recording that is being written.
 struct RecordedFile {
     folder: Arc<Folder>,
     path: PathBuf,
@@ -78,11 +80,11 @@ struct RecordedFile {
     bytes: u64,
 }
 
-/// The bounds of a folder of recordings.
+/// The limits of a folder of recordings.
 struct Bounds {
     bytes: u64,
     age: Duration,
-    /// The bytes of a file after which the next round begins another one.
+    /// The size of a file after which the next round begins a new one.
     file: u64,
 }
 
@@ -96,13 +98,13 @@ struct Folder {
 /// The recordings in a folder.
 #[derive(Default)]
 struct Held {
-    /// The recordings that nobody writes, oldest first, with their bytes.
+    /// The finished recordings with their sizes in bytes, oldest first.
     finished: BTreeMap<(SystemTime, PathBuf), u64>,
-    /// The blocks of all recordings.
+    /// The total size of all recordings, in blocks.
     blocks: u64,
 }
 
-/// The bytes that a file takes of a disk at least, with its name.
+/// The least disk space that a file takes, including its directory entry.
 const BLOCK: u64 = 4 << 10;
 
 impl Default for Bounds {
@@ -115,7 +117,7 @@ impl Recording for RecordedRoom {
     fn begin(&mut self, header: &Header) -> io::Result<()> {
         let most = self.folder.bounds.file;
         if self.file.as_ref().is_none_or(|file| file.bytes >= most) {
-            // The file of the rounds before is finished first, so that it can make room for this one.
+            // Finish the previous file first, so that it can be removed to make room for the new one.
             self.file = None;
             self.file = RecordedFile::create(&self.folder, self.room)
                 .inspect_err(|error| {
@@ -137,7 +139,7 @@ impl Recording for RecordedRoom {
 }
 
 impl RecordedRoom {
-    /// Writes all of `text` or nothing. The text of a recording that has ended is lost.
+    /// Writes all of `text` or nothing. Discards it if the recording has ended.
     fn write(&mut self, text: &str) -> io::Result<()> {
         let Some(file) = &mut self.file else { return Ok(()) };
         if file.has_room_for(text.len() as u64) {
@@ -151,7 +153,7 @@ impl RecordedRoom {
 }
 
 impl RecordedFile {
-    /// A file that did not exist before.
+    /// Creates a new file in the folder.
     fn create(folder: &Arc<Folder>, room: RoomId) -> io::Result<Self> {
         private::create_folder(&folder.path)?;
         if !folder.take(1) {
@@ -163,7 +165,7 @@ impl RecordedFile {
         Ok(Self { folder: Arc::clone(folder), path, output: BufWriter::new(file), bytes: 0 })
     }
 
-    /// Takes room in the folder for more bytes, if there is any.
+    /// Reserves space in the folder for `more` bytes; returns false if there is not enough.
     fn has_room_for(&mut self, more: u64) -> bool {
         let bytes = self.bytes + more;
         let has_room =
@@ -177,7 +179,7 @@ impl RecordedFile {
 
 impl Drop for RecordedFile {
     fn drop(&mut self) {
-        // A fault was reported when the entries were written.
+        // Errors were already reported when the entries were written.
         _ = self.output.flush();
         let key = (SystemTime::now(), mem::take(&mut self.path));
         locked(&self.folder.held, |held| held.finished.insert(key, self.bytes));
@@ -185,7 +187,7 @@ impl Drop for RecordedFile {
 }
 
 impl Folder {
-    /// A folder, with the recordings that are in it.
+    /// Opens a folder and counts the recordings in it.
     fn open(path: PathBuf, bounds: Bounds) -> Self {
         let mut held = Held::default();
         for (key, bytes) in recordings(&path) {
@@ -197,8 +199,8 @@ impl Folder {
         folder
     }
 
-    /// Takes so many blocks, after it has removed recordings that are too old or too many; returns whether there is
-    /// room for them.
+    /// Removes recordings that are too old or exceed the limit, then reserves `more` blocks. Returns whether
+    /// there is space for them.
     fn take(&self, more: u64) -> bool {
         let now = SystemTime::now();
         let most = self.bounds.bytes / BLOCK;
@@ -221,12 +223,13 @@ impl Folder {
     }
 }
 
-/// The blocks of a file.
+/// The number of blocks that a file takes.
 fn blocks(bytes: u64) -> u64 {
     bytes.div_ceil(BLOCK).max(1)
 }
 
-/// The recordings in a folder, with their times and bytes; none if it can't be read, as before the first one.
+/// The recordings in a folder, with their times and sizes in bytes; none if the folder cannot be read or does
+/// not exist yet.
 fn recordings(folder: &Path) -> impl Iterator<Item = ((SystemTime, PathBuf), u64)> {
     fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|entry| {
         let data = entry.metadata().ok()?;
@@ -235,7 +238,7 @@ fn recordings(folder: &Path) -> impl Iterator<Item = ((SystemTime, PathBuf), u64
     })
 }
 
-/// Whether it is the name of a recording, `room-7.log` or `room-7-2.log`.
+/// Returns true for the name of a recording, such as `room-7.log` or `room-7-2.log`.
 fn is_name(name: &OsStr) -> bool {
     let numbers = name.to_str().and_then(|name| name.strip_prefix("room-")?.strip_suffix(".log"));
     numbers.is_some_and(|text| text.split('-').all(|number| number.parse::<u32>().is_ok()))
@@ -255,7 +258,7 @@ fn new_file(folder: &Path, room: RoomId) -> io::Result<(PathBuf, File)> {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };
         let path = folder.join(format!("room-{room}{suffix}.log"));
         let mut options = OpenOptions::new();
-        // What players say to each other is in it.
+        // The file contains the players' chat.
         private::restrict_file(&mut options);
         match options.write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -276,7 +279,7 @@ mod tests {
 
     const DAY: Duration = Duration::from_hours(24);
 
-    /// A folder that does not exist yet, and is removed at the end.
+    /// A folder that does not exist yet and is removed at the end.
     struct Place(PathBuf);
 
     impl Place {
@@ -292,7 +295,7 @@ mod tests {
             Arc::new(Folder::open(self.0.clone(), bounds))
         }
 
-        /// The recordings of a server that has run before, so many days old.
+        /// Adds recordings of an earlier server run, with their ages in days.
         fn with_old(self, old: &[(&str, u64)]) -> Self {
             fs::create_dir_all(&self.0).unwrap();
             for (name, days) in old {
@@ -374,7 +377,7 @@ mod tests {
         assert_eq!(place.names(), ["room-1.log"]);
     }
 
-    /// However many rooms say however much, the folder keeps its bound, and each recording is one.
+    /// The folder stays within its limit, no matter how many rooms write how much, and every recording can be parsed.
     #[test]
     fn a_folder_never_has_more_than_its_bytes() {
         let place = Place::new("bytes");

@@ -12,18 +12,18 @@ use cellcaster::game::PlayerColor;
 use cellcaster::world::Difficulty;
 
 impl Rooms {
-    /// The newest snapshot of a room; `None` if there is no such room.
+    /// The latest snapshot of a room; `None` if there is no such room.
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
         locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.interface.view()))
     }
 
-    /// Ends a room as a fault does.
+    /// Closes a room, as a fault would.
     pub(crate) fn close(&self, id: RoomId, sentence: &str) {
         locked(&self.0.open, |open| open.rooms[&id].interface.close(sentence));
     }
 }
 
-/// A recording that panics at the first entry.
+/// A recording that panics on the first entry.
 struct Broken;
 
 impl Recording for Broken {
@@ -44,7 +44,7 @@ fn wish(mode: Mode) -> RoomWish {
     RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
-/// Rooms of which the ones in `broken` panic as soon as anybody joins. The first is a standing one.
+/// A directory whose first room is a standing one. The rooms in `broken` panic as soon as somebody joins.
 fn rooms(broken: &'static [u32]) -> Rooms {
     let limits = RoomLimits {
         most: 4,
@@ -59,7 +59,7 @@ fn rooms(broken: &'static [u32]) -> Rooms {
     Rooms::new(limits, Arc::new(Catalog::builtin()), recordings, load, 7)
 }
 
-/// What is logged of rooms while `act` runs.
+/// Runs `act`; returns the log messages about rooms.
 fn run(act: impl AsyncFnOnce()) -> String {
     let runtime = Builder::new_current_thread().enable_all().build().unwrap();
     logged(LogFormat::Text, "off,rooms=info", |_| runtime.block_on(act()))
@@ -122,7 +122,7 @@ fn a_standing_room_that_panics_is_opened_anew() {
     });
 }
 
-/// Whoever comes and goes leaves nothing behind but the standing rooms.
+/// Rooms that everybody has left are closed. Only the standing rooms remain.
 #[test]
 fn rooms_that_are_left_are_closed_and_forgotten() {
     run(async || {

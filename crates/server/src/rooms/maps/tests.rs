@@ -6,7 +6,7 @@ use super::*;
 const HALL: &str = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
                     [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
 
-/// A folder with files, which is removed at the end.
+/// A folder with files that is removed at the end.
 struct Scratch(PathBuf);
 
 impl Scratch {

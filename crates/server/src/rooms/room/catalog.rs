@@ -1,4 +1,4 @@
-//! The levels that rooms can be in: the built-in ones, and the host's own.
+//! The levels that rooms can use: the built-in ones, then the host's own.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use cellcaster::app::store::name_in_map_key;
 use cellcaster::map::builtin;
 use cellcaster::world::World;
 
-/// Levels by name, in their order. The name of a host's map is its key, which differs between two texts of the map.
+/// Levels by name, in lobby order. The name of a host's map is its key, which changes with the text of the map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Catalog {
     pub(crate) names: Vec<String>,
@@ -18,7 +18,7 @@ pub(crate) struct Catalog {
 
 #[derive(Clone, Debug)]
 struct Listed {
-    /// The name for people, without a hash.
+    /// The name shown to people, without the hash.
     short: String,
     world: Arc<World>,
     has_exit: bool,
@@ -56,36 +56,37 @@ impl Catalog {
         names.filter(|name| name_in_map_key(name).is_some())
     }
 
-    /// The level with that name.
+    /// The level with this name.
     pub(crate) fn world(&self, name: &str) -> Option<&Arc<World>> {
         self.levels.get(name).map(|level| &level.world)
     }
 
-    /// The name of a level for people, which is the name of its file.
+    /// The name of a level as shown to people: the name of its file.
     pub(crate) fn short<'a>(&'a self, name: &'a str) -> &'a str {
         self.levels.get(name).map_or(name, |level| level.short.as_str())
     }
 
-    /// The name of the level that people call `short`.
+    /// The name of the level that is shown as `short`.
     pub(crate) fn named<'a>(&'a self, short: &'a str) -> Option<&'a str> {
         let level = |name: &&String| self.short(name) == short;
         self.names.iter().find(level).map(String::as_str)
     }
 
-    /// The title of a level, or else its name.
+    /// The title of a level, or its name if it has no title.
     pub(crate) fn title<'a>(&'a self, name: &'a str) -> &'a str {
         let title = self.world(name).map(|world| world.title()).filter(|title| !title.is_empty());
         title.unwrap_or_else(|| self.short(name))
     }
 
-    /// Whether a level can be played in `mode`: where an exit ends a round, there is one.
+    /// Returns true if a level can be played in `mode`: a mode that ends at the exit needs a level with one.
     pub(crate) fn suits(&self, name: &str, mode: Mode) -> bool {
         let level = self.levels.get(name);
         level.is_some_and(|level| level.has_exit || !mode.moves_on())
     }
 
-    /// The name of the level with an exit after `name`. After the last one comes the first. Maps of the host follow
-    /// maps of the host only, so that rooms in built-in levels go on alike on hosts with other maps.
+    /// The name of the next level with an exit after `name`, wrapping around at the end. After a map of the
+    /// host comes another map of the host, and after a built-in level another built-in one. Rooms in built-in
+    /// levels therefore continue alike on hosts with different maps.
     pub(crate) fn after<'a>(&'a self, name: &'a str) -> &'a str {
         let index = self.names.iter().position(|it| it == name).map_or(0, |index| index + 1);
         let (before, after) = self.names.split_at(index);
@@ -106,7 +107,7 @@ impl Catalog {
     }
 }
 
-/// The reason why a recorded room has no level, and what to do.
+/// The reason why a recorded room's level is missing, and how to fix it.
 pub(crate) fn no_level(name: &str) -> String {
     match name_in_map_key(name) {
         Some(map) => format!(

@@ -1,11 +1,12 @@
-//! Checkpoints: the whole state of a room between two steps as bytes, and back.
+//! Checkpoints: the whole state of a room between two steps, as bytes.
 //!
-//! A host that has a checkpoint and the entries of the log from its step on has the room, bit for bit,
-//! and needs nothing of the log before. The level comes from the host's own catalog.
+//! A checkpoint and the entries of the log since its step determine the room, bit for bit. The earlier log is
+//! not needed. The level comes from the host's own catalog.
 //!
-//! The first line says who can read the rest, as in a [stored game](cellcaster::game::stored). The header of the round
-//! follows, then the room, and the game. Reading checks that a room can be in such a state, not that it ever was: hosts
-//! believe each other, but no byte makes one of them fail.
+//! The first line states the versions that can read the rest, as in a
+//! [stored game](cellcaster::game::stored). Then come the header of the round, the room, and the game.
+//! Reading checks that the state is possible, not that a room ever was in it. Hosts trust each other, but no
+//! input may make a host fail.
 
 use std::sync::Arc;
 
@@ -20,25 +21,25 @@ use cellcaster::game::PlayerColor;
 use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
 use cellcaster::rng;
 
-/// What the first line calls a room.
+/// The name of the format, in the first line.
 const KIND: &str = "room-checkpoint";
-/// The widest line of what is said, in columns: a name and what its owner does.
+/// The widest chat line, in columns: a name and the text of an emote or remark.
 const SAID_COLUMNS: usize = CHAT_COLUMNS + NAME_COLUMNS;
 
 impl Room {
-    /// The whole state.
+    /// The whole state as bytes.
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
         let talk = (&*self.header, &self.said, self.said_count);
         let mut bytes = written(KIND, &(talk, self.play()));
-        // A catalog has levels of maps, which all can be stored.
+        // This cannot fail: all levels of a catalog come from maps, and those can be stored.
         bytes.extend(self.game.stored().unwrap_or_default());
         bytes
     }
 
-    /// The room with that checkpoint.
+    /// Restores a room from a checkpoint.
     ///
     /// # Errors
-    /// A sentence: the bytes are damaged, of another version, or of a room in a level that the catalog does not have.
+    /// A sentence, if the bytes are damaged, have another version, or need a level that is not in the catalog.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let sentence = |error: Unrestorable| error.to_string();
         let mut input = Reader::new(KIND, bytes, (0, 0)).map_err(sentence)?;
@@ -51,13 +52,13 @@ impl Room {
         Ok(room)
     }
 
-    /// A number that differs, almost certainly, between rooms in different states. It leaves out what was said, which
-    /// goes on from round to round and changes nothing.
+    /// A hash of the room's state. Rooms in different states almost certainly have different checksums. It
+    /// excludes the chat, which continues across rounds and has no effect on the game.
     pub(crate) fn checksum(&self) -> u64 {
         rng::hash(self.step, [checksum(&self.play()), self.game.checksum()])
     }
 
-    /// All but the header, what was said, and the game.
+    /// The state without the header, the chat and the game.
     fn play(&self) -> impl Serialize {
         let Self {
             catalog: _,
@@ -71,9 +72,9 @@ impl Room {
             emotes,
             said: _,
             said_count: _,
-            // Filled in each step.
+            // Recomputed in each step.
             inputs: _,
-            // Those of the round.
+            // A copy of the round's standings.
             standings: _,
         } = self;
         (step, next_member, round, members, again, emotes)
@@ -89,7 +90,7 @@ impl Room {
         self.check()
     }
 
-    /// Refuses a state in which a step could fail, or with text that nobody can type.
+    /// Rejects a state in which a step could fail, or that contains text that no member can type.
     fn check(&self) -> Result<(), Unrestorable> {
         self.round.check(self.header.mode, self.step)?;
         check(self.next_member <= MemberId::MOST.0 + 1, "the number of the next member")?;
@@ -105,7 +106,7 @@ impl Room {
         check(is_said, "what was said")
     }
 
-    /// Whether each member has a number and a player of their own.
+    /// Returns true if each member has a number and a player of their own.
     fn are_members_possible(&self) -> bool {
         let color = |member: &Member| {
             let player = member.player?;

@@ -1,7 +1,7 @@
 //! The log of a room: the header of each round and the entries after it.
 //!
-//! A room is changed by nothing else, so that the header and the entries are the round, bit for bit. Rejected: hosts
-//! that send each other the states of rooms, which have a thousand times the bytes of what members want.
+//! Nothing else changes a room, so the header and the entries reproduce the round, bit for bit. Rejected:
+//! hosts that exchange the states of rooms. A state has a thousand times the bytes of the members' intents.
 //!
 //! In a recording, a log is text:
 //!
@@ -21,12 +21,13 @@
 //! 95 join 2 green Jon
 //! ```
 //!
-//! A `member` line holds a member's number, colour, points and name. Places are kept in clusters alone, whose rooms are
-//! not recorded.
+//! A `member` line contains a member's number, colour, points and name. Kept seats exist only in clusters,
+//! whose rooms are not recorded.
 //!
-//! An entry begins with the step before which it takes effect; after its verb comes the number of the member. The
-//! number after that in `want` is the step of the picture that the member saw. The angles of `want` count in one
-//! step, the rest of it until the member's next `want`: a resting hand turns nobody, however late the client says so.
+//! An entry begins with the step before which it takes effect, then a verb and the member's number. In
+//! `want`, the next number is the step of the frame that the member saw. The angles of `want` apply in one
+//! step only. Its other intents last until the member's next `want`. A hand at rest therefore turns nobody,
+//! however late the client says so.
 
 use std::fmt;
 
@@ -43,7 +44,7 @@ use cellcaster::world::Difficulty;
 
 /// The widest line of chat, in columns.
 pub(crate) const CHAT_COLUMNS: usize = 60;
-/// The version of the text. It also grows when the same entries do something else.
+/// The version of the format. It also changes when the same entries have a different effect.
 const VERSION: &str = "2";
 
 /// The state of a room at the start of a round.
@@ -53,14 +54,14 @@ pub(crate) struct Header {
     pub(crate) level: String,
     pub(crate) mode: Mode,
     pub(crate) difficulty: Difficulty,
-    /// The seed of all chance in the room.
+    /// The seed for all chance in the room.
     #[serde(with = "bits")]
     pub(crate) seed: u64,
     /// The number of the round, from 1.
     pub(crate) round: u32,
-    /// The number of the next member who joins.
+    /// The number that the next new member gets.
     pub(crate) next_member: u32,
-    /// The members at the start of the round, in the order of their numbers.
+    /// The members at the start of the round, ordered by number.
     pub(crate) members: Vec<Seat>,
 }
 
@@ -69,24 +70,24 @@ pub(crate) struct Header {
 pub(crate) struct Seat {
     pub(crate) id: MemberId,
     pub(crate) color: PlayerColor,
-    /// The points of the rounds before.
+    /// The points from earlier rounds.
     pub(crate) points: u32,
     #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
     pub(crate) name: Line,
-    /// The place that is kept for the member; `None` for a guest.
+    /// The seat that is kept for the member; `None` for a guest.
     pub(crate) kept: Option<KeptPlace>,
 }
 
 /// An entry of a room's log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Entry {
-    /// The step of the round before which it takes effect.
+    /// The step of the round before which the entry takes effect.
     pub(crate) step: u64,
     pub(crate) member: MemberId,
     pub(crate) command: Command,
 }
 
-/// A command of a member.
+/// A member's command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Command {
     /// Enters the room.
@@ -97,27 +98,27 @@ pub(crate) enum Command {
     },
     /// Leaves the room.
     Leave,
-    /// Keeps the member's place while they are away, since they have an account.
+    /// Keeps the member's seat while they are away, because they have an account.
     Keep,
-    /// Is away: their host is gone.
+    /// Marks the member away: their host is gone.
     Away,
-    /// Returns from another host. No other return has the same token.
+    /// Returns from another host. Each return has a unique token.
     Return {
         #[serde(with = "bits")]
         token: u64,
     },
-    /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in the next step
-    /// only.
+    /// Sets the intents from now on. `seen` is the step of the game in the frame that the member saw. The
+    /// angles apply in the next step only.
     Intents { seen: u64, intents: Intents },
-    /// Says something to everybody.
+    /// Sends a chat line to everybody.
     Say(#[serde(deserialize_with = "line_within::<CHAT_COLUMNS, _>")] Line),
-    /// Shows an emotion to everybody.
+    /// Shows an emote to everybody.
     Emote(Emote),
-    /// Wants to begin the round again, which happens when all members do.
+    /// Asks to restart the round, which happens once all members have asked.
     Again,
 }
 
-/// An emotion, or a gesture.
+/// An emote: an emotion or a gesture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Emote {
     /// Greets, or says goodbye.
@@ -141,7 +142,7 @@ impl Header {
         Self { level, mode, difficulty, seed, round: 1, next_member: 1, members: Vec::new() }
     }
 
-    /// Reads the lines of a header; `None` if one of them does not belong to a header.
+    /// Parses the lines of a header; `None` if a line is invalid.
     fn parse<'t>(lines: impl IntoIterator<Item = &'t str>) -> Option<Self> {
         let mut lines = lines.into_iter();
         (lines.next()?.strip_prefix(ROOM_RECORDING)? == VERSION).then_some(())?;
@@ -157,7 +158,7 @@ impl Header {
         header.is_possible().then_some(header)
     }
 
-    /// Whether a room can begin like that: each member has their own number below the next one.
+    /// Returns true if a room can begin with this header. Each member must have a unique number below `next_member`.
     pub(crate) fn is_possible(&self) -> bool {
         let is_possible = |(index, seat): (usize, &Seat)| {
             seat.id.0 < self.next_member
@@ -208,7 +209,7 @@ impl Choice for Emote {
 }
 
 impl Emote {
-    /// What others read of the member: "Mara waves".
+    /// The text that others read after the member's name, as in "Mara waves".
     pub(crate) fn text(self) -> String {
         self.label()
     }
@@ -236,7 +237,7 @@ impl fmt::Display for Entry {
 }
 
 impl Entry {
-    /// Reads a line; `None` if it is no entry.
+    /// Parses a line; `None` if it is not an entry.
     pub(crate) fn parse(line: &str) -> Option<Self> {
         let (step, rest) = line.split_once(' ')?;
         let (verb, rest) = rest.split_once(' ')?;
@@ -263,13 +264,13 @@ impl Entry {
     }
 }
 
-/// Whether `text` begins with the header of another version.
+/// Returns true if `text` begins with the header of another version.
 pub(crate) fn is_of_other_version(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first.strip_prefix(ROOM_RECORDING).is_some_and(|version| version != VERSION)
 }
 
-/// The rounds of a recording: headers, each with its entries. `None` if a line is neither.
+/// Parses a recording into rounds: headers with their entries. `None` if a line is neither.
 pub(crate) fn parse_log(text: &str) -> Option<Vec<(Header, Vec<Entry>)>> {
     let mut rounds = Vec::new();
     let mut lines = text.lines().peekable();

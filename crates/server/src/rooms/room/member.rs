@@ -12,10 +12,10 @@ use cellcaster::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 
 /// The widest name, in columns.
 pub(crate) const NAME_COLUMNS: usize = 16;
-/// How long a member may be away, in steps. Then they leave.
+/// How long a member may be away before they leave, in steps.
 pub(crate) const AWAY: u64 = 60 * SECOND;
 
-/// The number of a member in a room. It is not used again after they leave.
+/// A member's number in a room. It is never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "u32")]
 pub(crate) struct MemberId(pub(crate) u32);
@@ -26,11 +26,11 @@ pub(crate) struct Member {
     pub(crate) id: MemberId,
     #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
     pub(crate) name: Line,
-    /// The colour of the figure; two members may have the same.
+    /// The colour of the figure. Two members may share a colour.
     pub(crate) color: PlayerColor,
-    /// The player in the game; `None` if there was no place for one.
+    /// The member's player in the game; `None` if the game had no free slot.
     pub(crate) player: Option<PlayerId>,
-    /// The points of the rounds before.
+    /// The points from earlier rounds.
     pub(crate) points: u32,
     /// The seat that is kept for the member; `None` for a guest.
     pub(crate) kept: Option<KeptPlace>,
@@ -38,25 +38,25 @@ pub(crate) struct Member {
     pub(crate) intents: Intents,
     /// The intents of the last step.
     pub(crate) acted: Intents,
-    /// The step of the game in the picture that the member saw last.
+    /// The step of the game in the last frame that the member saw.
     pub(crate) seen: u64,
 }
 
-/// The place that is kept for a member with an account.
+/// The seat that is kept for a member with an account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptPlace {
-    /// The token of the last return; 0 before the first one.
+    /// The token of the latest return; 0 before the first.
     #[serde(with = "bits")]
     pub(crate) token: u64,
-    /// The steps until the member leaves, if they are away.
+    /// The number of steps until the member leaves, if they are away.
     pub(crate) away: Option<u64>,
 }
 
 impl MemberId {
-    /// The greatest number, which a room that somebody joins each second reaches in 68 years.
+    /// The greatest number. A room that somebody joins every second would reach it after 68 years.
     pub(crate) const MOST: Self = Self(i32::MAX as u32);
 
-    /// Reads a number; `None` for one that no room reaches.
+    /// Parses a number; `None` if it is too large.
     pub(crate) fn parse(word: &str) -> Option<Self> {
         Self::try_from(word.parse::<u32>().ok()?).ok()
     }
@@ -77,19 +77,19 @@ impl fmt::Display for MemberId {
 }
 
 impl KeptPlace {
-    /// Returns whether a room can have it: the grace period never exceeds that of a member who has just gone.
+    /// Returns true if this state is possible: a member who is away has at least one step left, and at most [`AWAY`].
     pub(crate) fn is_possible(self) -> bool {
         self.away.is_none_or(|left| (1..=AWAY).contains(&left))
     }
 }
 
 impl Member {
-    /// Whether the member's host is gone, so that they stand still.
+    /// Returns true if the member's host is gone. The member stands still meanwhile.
     pub(crate) fn is_away(&self) -> bool {
         self.kept.is_some_and(|kept| kept.away.is_some())
     }
 
-    /// The intents for the step that begins. Their angles count in no other step.
+    /// The intents for the step that begins. Their angles apply in this step only.
     pub(crate) fn begin_step(&mut self) -> Intents {
         self.acted = self.intents;
         self.intents = self.intents.with_look(Look::NONE);
@@ -105,7 +105,7 @@ pub(crate) fn looking_only(intents: Intents) -> Intents {
     kept.with_look(intents.look())
 }
 
-/// Reads a line of at most `COLUMNS` columns, for `#[serde(deserialize_with)]`.
+/// Deserializes a line of at most `COLUMNS` columns, for `#[serde(deserialize_with)]`.
 pub(crate) fn line_within<'de, const COLUMNS: usize, D>(from: D) -> Result<Line, D::Error>
 where
     D: Deserializer<'de>,

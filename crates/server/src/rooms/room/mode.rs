@@ -1,36 +1,36 @@
-//! Modes: the games that can be played in a room, and their rules.
+//! Modes: the kinds of game that a room can play, and their rules.
 
 use serde::{Deserialize, Serialize};
 
 use cellcaster::game::{MultiplayerRules, STEPS_PER_SECOND, Sees, Strikes};
 use cellcaster::world::World;
 
-/// Steps of a game in a second.
+/// The number of steps per second.
 pub(crate) const SECOND: u64 = STEPS_PER_SECOND as u64;
 
-/// A game that can be played in a room.
+/// A kind of game that a room can play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Mode {
-    /// Walking about, without guards and without an end.
+    /// Free roaming, without guards and without an end.
     Roam,
-    /// A level of the campaign with its guards, for all together.
+    /// A campaign level with its guards, played together.
     Together,
-    /// A level of the campaign for one member, as at home: the result counts on the boards.
+    /// A campaign level for one member, as at home. The result counts on the boards.
     Alone,
-    /// The first at the exit wins.
+    /// A race: the first member at the exit wins.
     Race,
-    /// Whoever is "it" touches another one, who then is.
+    /// Tag: the member who is "it" passes that role on by touching another member.
     Tag,
-    /// Some seek, the others hide; the found ones seek, too.
+    /// Hide and seek: some members seek and the others hide. Found members become seekers.
     Hide,
 }
 
 impl Mode {
-    /// All of them, in the order of the lobby.
+    /// All modes, in lobby order.
     pub(crate) const ALL: [Self; 6] =
         [Self::Roam, Self::Tag, Self::Hide, Self::Race, Self::Together, Self::Alone];
 
-    /// The name in logs and files.
+    /// The name used in logs and files.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Roam => "roam",
@@ -42,12 +42,12 @@ impl Mode {
         }
     }
 
-    /// The mode with that name.
+    /// The mode with this name.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.name() == name)
     }
 
-    /// The name in menus.
+    /// The title in menus.
     pub(crate) const fn title(self) -> &'static str {
         match self {
             Self::Roam => "Roam",
@@ -59,7 +59,7 @@ impl Mode {
         }
     }
 
-    /// A description, in a line.
+    /// A description in one line.
     pub(crate) const fn about(self) -> &'static str {
         match self {
             Self::Roam => "Walk about and talk. Nobody is in danger.",
@@ -71,7 +71,7 @@ impl Mode {
         }
     }
 
-    /// The fewest members of a round.
+    /// The minimum number of members for a round.
     pub(crate) const fn fewest(self) -> usize {
         match self {
             Self::Roam | Self::Together | Self::Alone | Self::Race => 1,
@@ -79,7 +79,7 @@ impl Mode {
         }
     }
 
-    /// The most members.
+    /// The maximum number of members.
     pub(crate) const fn most(self) -> usize {
         match self {
             Self::Alone => 1,
@@ -88,17 +88,17 @@ impl Mode {
         }
     }
 
-    /// Whether there are guards, so that the difficulty matters.
+    /// Returns true if the mode has guards, which makes the difficulty matter.
     pub(crate) const fn has_guards(self) -> bool {
         matches!(self, Self::Together | Self::Alone)
     }
 
-    /// Whether the best runs of the level walk along.
+    /// Returns true if the best runs of the level walk along as ghosts.
     pub(crate) const fn has_ghosts(self) -> bool {
         matches!(self, Self::Race | Self::Alone)
     }
 
-    /// The rules among the players.
+    /// The multiplayer rules of the mode.
     pub(crate) fn multiplayer_rules(self) -> MultiplayerRules {
         let usual = MultiplayerRules::default();
         match self {
@@ -110,13 +110,13 @@ impl Mode {
         }
     }
 
-    /// The seed of the game's chance. Alone, it is the seed of the built-in levels at home, so that the same script
-    /// gives the same result there.
+    /// The seed for the game's chance. A member who plays alone gets the seed that built-in levels use at
+    /// home, so that a script has the same result in both places.
     pub(crate) const fn game_seed(self, of_room: u64) -> u64 {
         if matches!(self, Self::Alone) { 0 } else { of_room }
     }
 
-    /// The level as the mode needs it.
+    /// Adapts a level to the mode.
     pub(crate) fn prepared(self, world: World) -> World {
         match self {
             Self::Together | Self::Alone => world,
@@ -125,12 +125,12 @@ impl Mode {
         }
     }
 
-    /// Whether the next round is in the next level.
+    /// Returns true if the next round is played in the next level.
     pub(crate) const fn moves_on(self) -> bool {
         matches!(self, Self::Together | Self::Alone | Self::Race)
     }
 
-    /// The time between the start of a round and its play, in steps.
+    /// The countdown before the play, in steps.
     pub(crate) const fn countdown(self) -> u64 {
         match self {
             Self::Roam | Self::Together | Self::Alone => 0,
@@ -139,7 +139,8 @@ impl Mode {
         }
     }
 
-    /// How long a round goes on after the first member has reached the exit, in steps; `None` if it does not.
+    /// How long a round continues after the first member has reached the exit, in steps; `None` if the mode
+    /// has no such limit.
     pub(crate) const fn after_first(self) -> Option<u64> {
         match self {
             Self::Race => Some(60 * SECOND),
@@ -148,7 +149,7 @@ impl Mode {
         }
     }
 
-    /// The longest play of a round, in steps.
+    /// The maximum length of the play, in steps.
     pub(crate) const fn longest(self) -> u64 {
         match self {
             Self::Roam => 60 * 60 * SECOND,

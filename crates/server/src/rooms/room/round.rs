@@ -1,11 +1,11 @@
-//! Rounds: the phases of what is played in a room, and its standings.
+//! Rounds: their phases and standings.
 //!
-//! A round waits for enough members, counts down, is played, and shows its standings; then the next
-//! one begins. Time is counted in steps, and chance comes from the room's seed, so that the log
-//! alone determines who wins.
+//! A round waits for enough members, counts down, is played, and shows its standings. Then the next round
+//! begins. Time is counted in steps, and chance comes from the room's seed, so the log alone determines the
+//! winner.
 //!
-//! A member gains a point for each member that they beat in a round. Rejected: points for a place. With two members,
-//! the first place would be worth as much as with eight.
+//! A member gets a point for each member that they beat in a round. Rejected: points per place. First place
+//! among two members would be worth as much as first place among eight.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -19,19 +19,19 @@ use cellcaster::game::stored::{Unrestorable, check};
 use cellcaster::game::{Game, Outcome, PlayerId};
 use cellcaster::rng::SplitMix64;
 
-/// How long the standings are shown.
+/// How long the standings are shown, in steps.
 const STANDINGS: u64 = 10 * SECOND;
-/// Hide and seek: members for each seeker at the start.
+/// Hide and seek: the number of members per seeker at the start.
 const MEMBERS_A_SEEKER: usize = 4;
-/// Tag: how long a new "it" stands still, so that the others get away.
+/// Tag: how long the new "it" stands still, so that the others can get away.
 const PAUSE: u64 = SECOND + SECOND / 2;
-/// Tag: how long the member who was "it" before cannot be touched by the next one.
+/// Tag: how long the previous "it" cannot be touched.
 const SPARED: u64 = 4 * SECOND;
 
-/// The phase of a round. Times are steps of the round.
+/// The phase of a round. Times are in steps of the round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
-    /// There are not enough members; they walk about.
+    /// There are not enough members yet. They can walk about meanwhile.
     Waiting,
     /// The play begins at `ends`.
     Countdown { ends: u64 },
@@ -41,7 +41,7 @@ pub(crate) enum Phase {
     Over { ends: u64 },
 }
 
-/// The part of a member in a round.
+/// A member's role in a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Role {
     #[default]
@@ -56,9 +56,9 @@ pub(crate) enum Role {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Standing {
     pub(crate) member: MemberId,
-    /// The points that the round gives.
+    /// The points that the member gets for the round.
     pub(crate) points: u32,
-    /// The time to the exit, as "it", or hidden, in steps. `None` for a member who did not finish.
+    /// The time until the exit, as "it", or in hiding, in steps. `None` for a member who did not finish.
     pub(crate) steps: Option<u64>,
 }
 
@@ -75,7 +75,7 @@ impl Field<'_> {
         self.members.iter().map(|member| member.id)
     }
 
-    /// Whether `one` touches `other`, in the picture that `one` saw.
+    /// Returns true if `one` touches `other` in the frame that `one` saw.
     fn touches(&self, one: MemberId, other: MemberId) -> bool {
         let Some(seen) = self.member(one).map(|member| member.seen) else { return false };
         let [one, other] = [one, other].map(|id| self.player(id));
@@ -96,7 +96,6 @@ impl Field<'_> {
     }
 }
 
-/// A round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Round {
     mode: Mode,
@@ -106,7 +105,7 @@ pub(crate) struct Round {
     pub(crate) standings: Vec<Standing>,
 }
 
-/// The state of a round that only its mode has.
+/// The part of a round's state that is specific to its mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Play {
     Roam,
@@ -127,7 +126,7 @@ impl Round {
         Self { mode, phase: Phase::Waiting, play, chance, standings: Vec::new() }
     }
 
-    /// Checks that the round is one of `mode` and began no later than in `step`.
+    /// Checks that the round has this `mode` and began no later than `step`.
     pub(crate) fn check(&self, mode: Mode, step: u64) -> Result<(), Unrestorable> {
         check(self.mode == mode, "the mode")?;
         let is_possible = match (&self.play, self.mode) {
@@ -142,12 +141,11 @@ impl Round {
         check(is_possible, "what is played")
     }
 
-    /// Whether the next round is due.
+    /// Returns true when the next round must begin.
     pub(crate) fn is_over(&self, step: u64) -> bool {
         matches!(self.phase, Phase::Over { ends } if ends <= step)
     }
 
-    /// A member's part.
     pub(crate) fn role(&self, member: MemberId) -> Role {
         match &self.play {
             Play::Roam => Role::Player,
@@ -157,17 +155,17 @@ impl Round {
         }
     }
 
-    /// The finish of a member, if they have reached the exit.
+    /// A member's finish, if they have reached the exit.
     pub(crate) fn finish(&self, member: MemberId) -> Option<Finish> {
         self.finishes()?.of(member)
     }
 
-    /// The members who have finished in `step`.
+    /// The members who finished in `step`.
     pub(crate) fn finished_in(&self, step: u64) -> impl Iterator<Item = MemberId> {
         self.finishes().into_iter().flat_map(move |finishes| finishes.in_step(step))
     }
 
-    /// The step in which the play began, while it goes on in a mode that ends at the exit.
+    /// The step in which the play began; `None` unless the round is being played in a mode that ends at the exit.
     pub(crate) fn begun(&self) -> Option<u64> {
         let is_played = matches!(self.phase, Phase::Playing { .. });
         self.finishes().filter(|_| is_played).map(|finishes| finishes.begun)
@@ -177,7 +175,7 @@ impl Round {
         if let Play::ToExit(finishes) = &self.play { Some(finishes) } else { None }
     }
 
-    /// Whether a member cannot walk at present.
+    /// Returns true if a member currently cannot walk.
     pub(crate) fn holds(&self, member: MemberId, step: u64) -> bool {
         match (&self.play, self.phase) {
             (_, Phase::Waiting | Phase::Countdown { .. }) if self.mode == Mode::Race => true,
@@ -187,7 +185,7 @@ impl Round {
         }
     }
 
-    /// Whether a member sees nothing at present.
+    /// Returns true if a member currently sees nothing.
     pub(crate) fn is_blind(&self, member: MemberId) -> bool {
         matches!(self.mode, Mode::Hide) && self.holds(member, 0)
     }
@@ -246,7 +244,7 @@ impl Round {
         }
     }
 
-    /// The step in which the round ends at the latest, once the first member has finished.
+    /// The last possible step of the round, once the first member has finished.
     fn last_step(&self) -> Option<u64> {
         Some(self.finishes()?.first()? + self.mode.after_first()?)
     }
@@ -263,14 +261,14 @@ impl Round {
     }
 }
 
-/// A member's result: the lower rank wins, and the steps are shown.
+/// A member's result. The lower rank wins; the steps are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Score {
     rank: u64,
     steps: Option<u64>,
 }
 
-/// The standings from `scores`. Members of the same rank have the same points.
+/// The standings from `scores`. Members of equal rank get equal points.
 fn standings(scores: &BTreeMap<MemberId, Score>) -> Vec<Standing> {
     let beaten = |score: &Score| scores.values().filter(|other| other.rank > score.rank).count();
     let standing = |(&member, score): (&MemberId, &Score)| Standing {
@@ -283,20 +281,20 @@ fn standings(scores: &BTreeMap<MemberId, Score>) -> Vec<Standing> {
     standings
 }
 
-/// The finish of a member.
+/// A member's finish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Finish {
-    /// The place, from 1. Members who reach the exit in the same step have the same place.
+    /// The place, from 1. Members who reach the exit in the same step share a place.
     pub(crate) place: usize,
     /// The steps from the start to the exit.
     pub(crate) steps: u64,
 }
 
-/// The times at the exit, in modes that end there: races, and the campaign, alone and together.
+/// The finish times, in modes that end at the exit: races, and the campaign, alone or together.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 struct Finishes {
     begun: u64,
-    /// The steps to the exit, also of members who have left since.
+    /// The steps to the exit. Members who have left since are included.
     times: BTreeMap<MemberId, u64>,
 }
 
@@ -311,13 +309,13 @@ impl Finishes {
         Some(Finish { place: before + 1, steps })
     }
 
-    /// The members who have finished in `step`.
+    /// The members who finished in `step`.
     fn in_step(&self, step: u64) -> impl Iterator<Item = MemberId> {
         let finished = self.times.iter().filter(move |(_, time)| self.begun + **time == step);
         finished.map(|(&member, _)| member)
     }
 
-    /// The step in which the first member has finished.
+    /// The step in which the first member finished.
     fn first(&self) -> Option<u64> {
         self.times.values().min().map(|time| self.begun + time)
     }
@@ -331,8 +329,8 @@ impl Finishes {
         field.ids().all(|id| self.times.contains_key(&id))
     }
 
-    /// The scores. Members who have not finished are last. The shortest time wins a race; in the campaign, all
-    /// members at the exit are equal.
+    /// The scores. Members who have not finished come last. In a race the shortest time wins. In the
+    /// campaign, all members who have reached the exit are equal.
     fn scores(&self, mode: Mode, field: Field) -> BTreeMap<MemberId, Score> {
         let rank = |time: u64| if mode == Mode::Together { 0 } else { time };
         let score = |id| {
@@ -344,7 +342,7 @@ impl Finishes {
 }
 
 impl Finish {
-    /// The place as people say it: 1st, 2nd and so on.
+    /// The place as an ordinal: 1st, 2nd and so on.
     pub(crate) fn ordinal(self) -> String {
         let ending = match (self.place % 10, self.place % 100) {
             (_, 11..=13) => "th",
@@ -356,7 +354,7 @@ impl Finish {
         format!("{}{ending}", self.place)
     }
 
-    /// The time to the exit.
+    /// The time to the exit, formatted for display.
     pub(crate) fn time(self) -> String {
         of_steps(self.steps)
     }
@@ -368,13 +366,13 @@ impl fmt::Display for Finish {
     }
 }
 
-/// The state of a round of tag: one member is "it" until they touch another one.
+/// The state of a round of tag. One member is "it" until they touch another member.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 struct Tag {
     it: Option<MemberId>,
     /// The step in which "it" last changed.
     since: u64,
-    /// The member who was "it" before.
+    /// The previous "it".
     before: Option<MemberId>,
     /// How long each member was "it", in steps.
     times: BTreeMap<MemberId, u64>,
@@ -392,14 +390,14 @@ impl Tag {
         if self.it == Some(member) { Role::Seeker } else { Role::Player }
     }
 
-    /// Whether a member stands still since they have just been touched.
+    /// Returns true while a member stands still because they have just become "it".
     fn holds(&self, member: MemberId, step: u64) -> bool {
         self.it == Some(member) && step < self.since + PAUSE
     }
 
     fn step(&mut self, field: Field) {
         let Some(it) = self.it.filter(|&it| field.member(it).is_some()) else {
-            // The member who was "it" has left. The one with the longest time follows, so that nobody gains.
+            // The member who was "it" has left. The member with the longest time follows, so that nobody gains by it.
             let longest = field.ids().max_by_key(|id| self.time(*id));
             return self.become_it(longest, field.step);
         };
@@ -433,10 +431,10 @@ impl Tag {
     }
 }
 
-/// The state of a round of hide and seek: the seekers seek the others, and found members seek, too.
+/// The state of a round of hide and seek. Found members become seekers.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 struct Hide {
-    /// The seekers, with the steps for which they stayed hidden; `None` for the first seekers.
+    /// The seekers, with the number of steps that they stayed hidden; `None` for the first seekers.
     seekers: BTreeMap<MemberId, Option<u64>>,
     /// The step in which the search began.
     since: Option<u64>,
@@ -457,8 +455,8 @@ impl Hide {
         if self.seekers.contains_key(&member) { Role::Seeker } else { Role::Player }
     }
 
-    /// Finds the members that a seeker touches; returns whether the round is decided, since all are found or nobody
-    /// seeks any more.
+    /// Finds the hidden members that a seeker touches. Returns true once the round is decided: all are found,
+    /// or no seeker is left.
     fn step(&mut self, field: Field) -> bool {
         let since = *self.since.get_or_insert(field.step);
         let is_seeker = |id: &MemberId| self.seekers.contains_key(id);
@@ -470,7 +468,7 @@ impl Hide {
         left == 0 || seekers.is_empty()
     }
 
-    /// The scores: the longest time in hiding wins, and the first seekers are last.
+    /// The scores: the longest time in hiding wins, and the first seekers come last.
     fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
         let whole = field.step - self.since.unwrap_or(field.step);
         let hidden = |id| match self.seekers.get(&id) {

@@ -6,7 +6,7 @@ use crate::simulation;
 use cellcaster::game::{Intent, Outcome, PlayerColor};
 use cellcaster::world::{Difficulty, FieldOfView};
 
-/// Two levels with a hall in which the exit is straight ahead.
+/// Two levels with a hall whose exit is straight ahead of the start.
 fn catalog() -> Arc<Catalog> {
     let map = simulation::HALL
         .replace("............>#", ".............#")
@@ -113,7 +113,7 @@ fn all_are_told_of_a_finish_and_of_how_long_the_race_goes_on() {
     advance(&mut room, 4 * SECOND);
     let finished = said(&room).pop().unwrap();
     assert!(finished.starts_with("Jon finished 2nd, 0:0"), "{finished}");
-    // Another finish gives nobody more time.
+    // A second finish does not extend the round.
     assert!(left(&room) < 55 * SECOND);
     advance(&mut room, 55 * SECOND);
     assert!(matches!(room.phase(), Phase::Over { .. }));
@@ -142,7 +142,7 @@ fn members_begin_apart_in_every_round() {
 fn a_touch_passes_it_on() {
     let mut room = room(Mode::Tag);
     let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
-    // The one who stands before the other steps back until they touch.
+    // The member in front steps back until the two touch.
     want(&mut room, ids[1], &[Intent::Back]);
     advance(&mut room, 3 * SECOND + 1);
     let it = |room: &Room| {
@@ -207,7 +207,7 @@ fn a_full_room_admits_nobody() {
     assert!(room.is_full());
 }
 
-/// A list of entries in order, with the steps between them.
+/// A list of commands in order, each with the steps before it and the number of its member.
 fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
     let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..4);
     let intents = intents.prop_map(|it| it.into_iter().collect::<Intents>());
@@ -224,7 +224,7 @@ fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
     prop::collection::vec((0_u64..40, 0_u32..10, command), 0..40)
 }
 
-/// Plays a round.
+/// Plays a round for `steps` steps with these entries.
 fn played(entries: &[Entry], header: &Header, steps: u64) -> Room {
     let mut room = Room::new(&catalog(), header.clone()).unwrap();
     let mut entries = entries.iter().peekable();
@@ -237,7 +237,7 @@ fn played(entries: &[Entry], header: &Header, steps: u64) -> Room {
     room
 }
 
-/// A round as it is recorded.
+/// The text of a round's recording.
 fn recorded(header: &Header, entries: &[Entry]) -> String {
     let lines = entries.iter().map(|entry| format!("{entry}\n"));
     header.to_string() + &lines.collect::<String>()
@@ -298,7 +298,7 @@ fn a_recording_is_played_again() {
     assert!(replayed("nonsense", &catalog()).is_err());
 }
 
-/// A room with two members, of whom the first has an account.
+/// A room with two members. The first one has an account.
 fn room_of_two(mode: Mode) -> (Room, [MemberId; 2]) {
     let mut room = room(mode);
     let members = ["Mara", "Jon"].map(|name| join(&mut room, name));
@@ -319,7 +319,7 @@ fn one_who_is_away_stands_still_and_goes_on_from_there() {
     assert_eq!(last_line(&room), "Mara is away.");
     advance(&mut room, 60);
     let place = position(&room, mara);
-    // What their old host sends late has no effect.
+    // Late commands from the old host have no effect.
     want(&mut room, mara, &[Intent::Forward]);
     do_now(&mut room, mara, Command::Again);
     advance(&mut room, AWAY - 61);
@@ -338,7 +338,7 @@ fn one_who_is_away_for_too_long_leaves() {
     let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, mara, Command::Away);
     advance(&mut room, AWAY - 1);
-    // It is counted once.
+    // A second `away` does not restart the count.
     do_now(&mut room, mara, Command::Away);
     assert_eq!(room.len(), 2);
     advance(&mut room, 1);

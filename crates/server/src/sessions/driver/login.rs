@@ -1,4 +1,4 @@
-//! The beginning of a visit: the account, bans, names, limits over all hosts, and the terminal.
+//! The start of a visit: the account, bans, names, cluster-wide limits, and the terminal.
 
 use std::sync::atomic::Ordering;
 
@@ -14,25 +14,26 @@ use crate::rooms::room::NAME_COLUMNS;
 use crate::ssh::{Departure, Visitor};
 use cellcaster::terminal::{Options, locale_without_utf8};
 
-/// A visitor as the store knows them.
+/// The account data of a visitor.
 #[derive(Debug)]
 pub(crate) struct Known {
     /// The key; `None` for a guest.
     pub(crate) key: Option<AccountKey>,
-    /// The account; `None` for a guest, and before the name is chosen.
+    /// The account; `None` for a guest, and before a name is chosen.
     pub(crate) account: Option<Account>,
     pub(crate) settings: AccountSettings,
-    /// The name that is offered.
+    /// The name offered to the visitor.
     pub(crate) offer: Name,
 }
 
-/// Shown to a visitor while the store cannot be asked.
+/// Shown to a visitor while the store or the cluster cannot be reached.
 const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
-/// Shown to a visitor whose name cannot be kept.
+/// Shown to a visitor whose name cannot be stored.
 const NOT_NOW: &str = "The host can't keep this now; try again later.";
 
 impl Shared {
-    /// Looks a visitor up, or returns the reason why they may not play and how they depart.
+    /// Looks up a visitor. On failure, returns the sentence that tells them why they may not play, and their
+    /// departure.
     pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
@@ -70,14 +71,14 @@ impl Shared {
         Ok(Known { key, account, settings, offer })
     }
 
-    /// A name for a new visitor: their user name, if it is valid and free.
+    /// A name to offer to a new visitor: their user name, if it is valid and free, or else a guest name.
     fn offer(&self, user: &str) -> Name {
         let own = Name::new(user).ok().filter(|name| !self.visitors.has_guest(name));
         own.unwrap_or_else(|| Name::of_guest(self.next_guest.fetch_add(1, Ordering::Relaxed)))
     }
 }
 
-/// Gives a visitor the name that they want.
+/// Assigns the requested name to a visitor.
 pub(crate) fn choose_name(
     store: &mut HostStore,
     origin: &Origin,
@@ -119,14 +120,15 @@ fn banned(ban: &Ban) -> String {
     }
 }
 
-/// A name as lines have it.
+/// A name as a line.
 pub(crate) fn line(name: &Name) -> Line {
-    // A name is printable, and fits.
+    // This cannot fail, because a name is printable and short enough.
     Line::of(name.as_str(), NAME_COLUMNS).unwrap_or_else(|| Line::of("guest", 5).expect("a line"))
 }
 
 impl Shared {
-    /// Counts a visitor on all hosts of a cluster, or returns the reason why they may not play and how they depart.
+    /// Counts a visit across all hosts of a cluster. On failure, returns the sentence that tells the visitor
+    /// why they may not play, and their departure.
     pub(crate) async fn begin_visit(
         &self,
         visitor: &Visitor,
@@ -154,7 +156,7 @@ impl Shared {
     }
 }
 
-/// A visitor's terminal, as their client describes it.
+/// The properties of a visitor's terminal, as described by their client.
 pub(crate) fn terminal_options(visitor: &Visitor) -> Options {
     Options {
         is_remote: true,
@@ -163,8 +165,7 @@ pub(crate) fn terminal_options(visitor: &Visitor) -> Options {
     }
 }
 
-/// The setting of the visitor's locale that restricts them to ASCII. `None` for UTF-8, and if their
-/// client sends no locale.
+/// The locale setting that restricts the visitor to ASCII. `None` for UTF-8, and if their client sends no locale.
 pub(crate) fn ascii_locale(visitor: &Visitor) -> Option<String> {
     locale_without_utf8(|name| variable(visitor, name))
 }

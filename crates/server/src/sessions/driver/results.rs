@@ -1,10 +1,10 @@
-//! Results: a run counts after its script was replayed.
+//! Results: a run counts once its script has been replayed.
 //!
-//! Results that have waited for the store: recorded as soon as it answers.
+//! Results that wait for the store are recorded as soon as it is available.
 //!
-//! Each is a call of its own, so that those of players come in between. While the store refuses results although
-//! it answers, they are tried again less often. Results that a full disk keeps in memory are written as soon as
-//! there is room.
+//! Each waiting result is a separate call to the store, so that calls for players run in between. If the
+//! store is available but refuses results, they are retried less often. Results that a full disk keeps in
+//! memory are written as soon as there is space.
 
 use std::sync::{Arc, Mutex, Weak};
 use std::time::Duration;
@@ -28,21 +28,21 @@ use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::Improved;
 use cellcaster::world::{Difficulty, World};
 
-/// The most entries of a board that are shown, and the places that are told.
+/// The maximum number of board entries shown, and the lowest place that a player is told.
 const MOST_ROWS: usize = 100;
 
-/// What replays runs and records them, on the thread of the store.
+/// Replays runs and records them, on the store's thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Recorder {
     pub(crate) catalog: Arc<Catalog>,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) visitors: Visitors,
-    /// The results that wait for a store that is away or full; `None` where none do.
+    /// The results that wait while the store is unreachable or full; `None` if results do not wait on this host.
     pub(crate) waiting: Option<Arc<Mutex<WaitingResults>>>,
 }
 
 impl Recorder {
-    /// Replays a run of an account and records it; a sentence about it for the player.
+    /// Replays a run and records it for the account; returns a sentence for the player.
     pub(crate) fn record(
         &self,
         store: &mut HostStore,
@@ -80,7 +80,7 @@ impl Recorder {
         logging::store_failed(failure);
     }
 
-    /// What a run that was recorded has improved.
+    /// The sentence for a recorded run: its time, its rank and its place on the board.
     fn placed(
         &self,
         store: &mut HostStore,
@@ -102,7 +102,7 @@ impl Recorder {
         }
     }
 
-    /// Keeps a run until the store takes it, on the disk or else in memory. Returns whether it is kept.
+    /// Keeps a run until the store accepts it, on disk or else in memory. Returns whether it was kept.
     fn keep(&self, account: &Account, run: &VerifiedRun, at: UnixTime) -> bool {
         let Some(waiting) = &self.waiting else { return false };
         let result = WaitingResult { key: account.key, at, script: run.script().to_owned() };
@@ -121,7 +121,7 @@ impl Recorder {
     }
 }
 
-/// What a player is told whose result waits because of `failure`.
+/// The sentence for a player whose result waits because of `failure`.
 fn kept(failure: &StoreFailure) -> &'static str {
     match failure {
         StoreFailure::Away(_) => {
@@ -134,7 +134,7 @@ fn kept(failure: &StoreFailure) -> &'static str {
     }
 }
 
-/// The entries of a board.
+/// The entries of a board for display.
 pub(crate) fn board(
     store: &mut HostStore,
     level: &str,
@@ -157,17 +157,17 @@ pub(crate) fn board(
     scores.into_iter().filter_map(row).collect()
 }
 
-/// The time from one round to the next.
+/// The pause between two passes over the waiting results.
 const PERIOD: Duration = Duration::from_secs(2);
-/// The same after a round in which the store has refused results.
+/// The pause after a pass in which the store has refused results.
 const REFUSED_PERIOD: Duration = Duration::from_mins(1);
 
-/// Records what waits, again and again, as long as the host exists.
+/// Records the waiting results in repeated passes, for as long as the host exists.
 pub(crate) async fn record_all(shared: Weak<Shared>) {
     loop {
         let mut refused = 0;
         loop {
-            // The host is not held while the store is waited for: its last owner ends the thread of the store.
+            // The host is not held while waiting: its last owner shuts down the store's thread.
             let Some(answer) = shared.upgrade().map(|shared| {
                 let recorder = shared.recorder.clone();
                 shared.store.call(move |store| recorder.record_late(store, refused))
@@ -184,24 +184,24 @@ pub(crate) async fn record_all(shared: Weak<Shared>) {
     }
 }
 
-/// What comes after a result.
+/// The step that follows an attempt to record a result.
 enum Next {
-    /// The result waits no more.
+    /// The result is settled: go on.
     Recorded,
-    /// It waits on, and the next one may be tried.
+    /// The result stays; try the one after it.
     Refused,
-    /// None: the store is away or full, or no more results wait.
+    /// Stop: the store is unreachable or full, or no more results wait.
     None,
 }
 
 impl Recorder {
-    /// Records the result that waits after `skipped` others.
+    /// Tries to record the result after the first `skipped` ones.
     fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
             let late = waiting.record(skipped, store, |name| self.world(name), UnixTime::now());
             if matches!(late, None | Some(Late::NotNow)) {
-                // The failure was logged when the first of them began to wait. It is tried again.
+                // The error was logged when the first of these results began to wait. Saving is tried again later.
                 _ = waiting.save();
             }
             (late, waiting.len())
@@ -229,12 +229,12 @@ impl Recorder {
         Next::Recorded
     }
 
-    /// Leaves everything on the disk when the host ends: results that wait in memory, and the log of the store.
+    /// Writes everything to disk when the host shuts down: the results in memory, and the store's log.
     pub(crate) fn end(&self, store: &mut HostStore) {
         if let Some(waiting) = &self.waiting
             && locked(waiting, WaitingResults::save).is_err()
         {
-            // The store may lie on another disk.
+            // The store may be on another disk, which still has space.
             while matches!(self.record_late(store, 0), Next::Recorded) {}
             if let Err(failure) = locked(waiting, WaitingResults::save) {
                 logging::store_failed(format!("results that wait are lost: {failure}"));

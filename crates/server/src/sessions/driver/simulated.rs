@@ -1,4 +1,4 @@
-//! Drivers in simulated time: a store that is a task, and visits that can be looked into.
+//! Drivers in simulated time: the store runs as a task, and tests can inspect visits.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,20 +26,20 @@ pub(crate) struct Simulated {
     host: GameHost,
 }
 
-/// What a host in simulated time begins with.
+/// The parts of a host in simulated time.
 pub(crate) struct Setup {
     pub(crate) live: LiveConfig,
     pub(crate) visitors: Visitors,
     pub(crate) catalog: Catalog,
     pub(crate) recordings: Recordings,
     pub(crate) store: HostStore,
-    /// How long the store takes for a call.
+    /// The duration of each call to the store.
     pub(crate) store_time: Duration,
     pub(crate) worker: Worker,
     pub(crate) seed: u64,
 }
 
-/// A visit that runs.
+/// A running visit.
 pub(crate) struct Visiting {
     looks: mpsc::UnboundedSender<Look>,
     task: JoinHandle<u8>,
@@ -48,7 +48,7 @@ pub(crate) struct Visiting {
 type Look = Box<dyn FnOnce(&mut Driver) + Send>;
 
 impl Simulated {
-    /// It is to be called within a runtime.
+    /// Must be called within a runtime.
     pub(crate) fn new(setup: Setup) -> Self {
         let metrics = Arc::<Metrics>::default();
         let (store, mut queue) = StoreWorker::new(super::MOST_CALLS);
@@ -82,7 +82,7 @@ impl Simulated {
         &self.host.shared.rooms
     }
 
-    /// Serves a visitor, of whose terminal `change` knows more than their environment tells.
+    /// Serves a visitor. `change` adjusts the terminal options found in their environment.
     pub(crate) fn serve(
         &self,
         visitor: Visitor,
@@ -97,7 +97,7 @@ impl Simulated {
     }
 }
 
-/// Does what [`GameHost`] does for a visitor, and lets others look in between.
+/// Serves a visitor like [`GameHost`] does, with inspections in between.
 async fn serve(
     shared: Arc<Shared>,
     visitor: Visitor,
@@ -120,7 +120,7 @@ async fn serve(
 }
 
 impl Visiting {
-    /// Looks into the session with the newest snapshot of its room; `None` if it has ended.
+    /// Inspects the session together with the latest snapshot of its room; `None` if the session has ended.
     pub(crate) async fn look<T: Send + 'static>(
         &self,
         look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,

@@ -1,10 +1,10 @@
-//! The driver of one visitor: it moves bytes between the link and the session, carries out the session's requests,
-//! and holds the visitor's place in a room.
+//! A visitor's driver: moves bytes between the link and the session, carries out the session's requests, and
+//! holds the visitor's place in a room.
 //!
-//! - A visitor who leaves, or whose connection ends, has left the room.
-//! - In a cluster, a visitor whose host ends is away. With an account, they are where they were when they connect to
-//!   any host within a minute. While this host looks for the place, the visitor may go elsewhere; then they have
-//!   left.
+//! - A visitor leaves the room when they ask to or when their connection ends.
+//! - In a cluster, a visitor becomes away when their host shuts down. A visitor with an account who connects
+//!   to any host within a minute gets their place back. If they go elsewhere while the host is looking for
+//!   that place, they have left the room.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -41,35 +41,35 @@ pub(crate) struct Driver {
     pub(crate) shared: Arc<Shared>,
     pub(crate) session: Session,
     key: Option<AccountKey>,
-    /// The address that the visitor connects from.
+    /// The address from which the visitor connects.
     address: IpAddr,
     account: Option<Account>,
-    /// The name that a guest may take without asking.
+    /// The name that a guest may take without further checks.
     offer: Name,
-    /// The name, once it is chosen.
+    /// The name, once it has been chosen.
     name: Option<Name>,
     presence: Presence,
     pub(crate) place: Option<Place>,
     rooms: watch::Receiver<Arc<[RoomSummary]>>,
-    /// Whether the session is told of the rooms.
+    /// Whether the session is told about changes of the rooms.
     in_lobby: bool,
     replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
-    /// When the session was woken last.
+    /// The time at which the session was last woken.
     woken_at: Duration,
-    /// When the oldest key came that the frame on its way answers.
+    /// The arrival time of the oldest key that the frame in flight answers.
     answers_key: Option<Duration>,
-    /// When the session is ended, since the server ends.
+    /// The time at which the session ends because the server shuts down.
     ends_at: Option<Duration>,
-    /// Whether a frame is on its way.
+    /// Whether a frame is in flight.
     is_sending: bool,
-    /// Whether the server ends.
+    /// Whether the server is shutting down.
     is_draining: bool,
-    /// Whether the visitor waits for the place in which they were before.
+    /// Whether the host is looking for the place that the visitor had before.
     is_returning: bool,
 }
 
-/// The events that a driver waits for.
+/// An event that a driver waits for.
 enum DriverEvent {
     Arrived(Arrival),
     Drained,
@@ -79,33 +79,33 @@ enum DriverEvent {
     Time,
 }
 
-/// The interval at which a session is woken again if waking it has changed nothing.
+/// The interval at which a session is woken again if waking it had no effect.
 const RETRY_INTERVAL: Duration = Duration::from_millis(250);
-/// The interval at which a driver wakes while it sends, or while it has a room and does not look at it: the visitor
-/// may be idle for too long, and the room may close, even if nothing is read or answered.
+/// The interval at which a driver wakes while it sends, or while it is in a room but does not wait for
+/// snapshots. The visitor may become idle and the room may close even if nothing is read or acknowledged.
 const WAKE_INTERVAL: Duration = Duration::from_secs(1);
-/// The most bytes that wait behind a frame. They are queries and no frame, so some hundred are usual.
+/// The maximum number of bytes queued behind a frame. They are only queries, so a few hundred are usual.
 const MAX_WAITING_BYTES: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 
-/// An answer of the store or of the cluster.
+/// A reply from the store or the cluster.
 enum Reply {
-    /// A name, with the account that has it now; `None` for a guest.
+    /// A name, with the account that now has it; `None` for a guest.
     Named(Name, Result<Option<Account>, String>),
     SessionEvent(SessionEvent),
-    /// A place in a room of the cluster.
+    /// A place in one of the cluster's rooms.
     Place(Result<Place, RoomRefusal>),
-    /// The place in which the visitor was before.
+    /// The place that the visitor had before.
     Returned(Result<Place, RoomRefusal>),
 }
 
-/// The most answers that wait for a session. Further ones are dropped: they answer a flood of requests.
+/// The maximum number of queued replies. Further ones are dropped, because they answer a flood of requests.
 const MAX_REPLIES: usize = 16;
 
-/// Shown while the host looks for the visitor's place.
+/// Shown while the host is looking for the visitor's place.
 const LOOKS: &str = "You were in a room; the host looks for your place.";
-/// Shown after the search.
+/// Shown when the place has been found.
 const WELCOME: &str = "Welcome back: you are where you were.";
 const GONE: &str = "Your place in the room is gone.";
 
@@ -122,7 +122,7 @@ impl Driver {
             name: login::line(&offer),
             is_named: account.is_some(),
             preferences: settings.preferences,
-            // What does not parse was written by another version.
+            // Settings that cannot be parsed were written by another version.
             configuration: Configuration::parse(&settings.configuration, "settings")
                 .unwrap_or_default(),
         };
@@ -167,8 +167,8 @@ impl Driver {
         }
     }
 
-    /// Drives the session to its end; returns the exit status. The future may be dropped before, and
-    /// the session driven on.
+    /// Drives the session to its end; returns the exit status. If the future is dropped earlier, `run` can be
+    /// called again.
     pub(crate) async fn run(&mut self, link: &mut Link) -> u8 {
         let status = self.drive(link).await;
         if self.is_draining {
@@ -191,7 +191,7 @@ impl Driver {
                     return 0;
                 }
                 self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
-                // A frame without bytes leaves at no time.
+                // An empty frame is never in flight.
                 self.answers_key.take_if(|_| !self.is_sending);
             }
             let event = self.wait(inbound, outbox, wakes_at).await;
@@ -229,21 +229,21 @@ impl Driver {
                 DriverEvent::Time => self.wake(now),
             }
             if self.is_sending && self.session.output(now).len() > MAX_WAITING_BYTES {
-                // A client that reads no frame, and sends what the session must answer.
+                // The client reads no frames but keeps sending queries that the session must answer.
                 self.leave();
                 return 1;
             }
         }
     }
 
-    /// Waits for the turn of a session whose frames are large. Others have none.
+    /// Waits for a permit to draw, if the session's frames are large. Other sessions need none.
     async fn turn(&self) -> Option<OwnedSemaphorePermit> {
         let turns = self.session.is_large().then(|| Arc::clone(&self.shared.large_frames))?;
-        // It is never closed.
+        // This cannot fail, because the semaphore is never closed.
         turns.acquire_owned().await.ok()
     }
 
-    /// The bytes to send: waiting bytes, or else a frame if one is due.
+    /// The bytes to send: queued bytes, or else a frame if one is due.
     fn frame(&mut self, wakes_at: &mut Option<Duration>) -> Vec<u8> {
         let now = self.shared.now();
         let waiting = std::mem::take(self.session.output(now));
@@ -265,7 +265,7 @@ impl Driver {
         } else if let Some(view) = &view {
             self.session.look_at(view);
         }
-        // What waking did not change, waking again will not, as where a terminal never answers.
+        // If waking had no effect, for example because the terminal never replies, do not wake again at once.
         let time = self.session.wakes_at(view.as_deref(), now);
         *wakes_at = time
             .map(|time| if time > self.woken_at { time } else { self.woken_at + RETRY_INTERVAL });
@@ -284,7 +284,7 @@ impl Driver {
         let looks_at = self.session.looks_at(now).filter(|_| is_free);
         let looks = looks_at.is_some_and(|time| time <= now);
         let quiet_end = looks_at.filter(|_| !looks);
-        // Elsewhere, it is told when something happens.
+        // In the other states, the driver is told of every change.
         let is_patient = is_sending || self.place.is_some() && !looks;
         let patience = is_patient.then_some(now + WAKE_INTERVAL);
         let times = [wakes_at, quiet_end, self.ends_at, patience];
@@ -321,9 +321,9 @@ impl Driver {
     }
 }
 
-/// The requests of the session.
+/// Requests from the session.
 impl Driver {
-    /// Does what the session requests.
+    /// Carries out all requests of the session.
     fn run_requests(&mut self) {
         loop {
             let requests = self.session.requests();
@@ -353,7 +353,7 @@ impl Driver {
         }
     }
 
-    /// Records an answer of the store.
+    /// Handles a reply.
     fn hear(&mut self, reply: Reply) {
         let event = match reply {
             Reply::SessionEvent(event) => event,
@@ -365,7 +365,7 @@ impl Driver {
         self.notify(event);
     }
 
-    /// Has a run verified and recorded.
+    /// Submits a run to be verified and recorded.
     fn submit(&mut self, run: FinishedRun) {
         let Some(account) = self.account.clone() else {
             let sentence = "A guest's result does not rank: come with a public key.";
@@ -435,8 +435,7 @@ impl Driver {
         });
     }
 
-    /// Has the best runs of a level played, for this visitor alone: who else is in the room may want
-    /// other ones.
+    /// Loads the ghosts of a level. They are for this visitor only, because each member may want different ones.
     fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
         let own = self.account.as_ref().map(|account| account.id);
         let (runs, catalog) =
@@ -465,7 +464,7 @@ impl Driver {
         });
     }
 
-    /// Acts on the store, whose reply is heard later; returns whether it will.
+    /// Queues a call to the store, whose reply arrives later; returns whether it was accepted.
     fn call_store(
         &self,
         act: impl FnOnce(&mut HostStore) -> Option<Reply> + Send + 'static,
@@ -479,9 +478,9 @@ impl Driver {
     }
 }
 
-/// The place in a room.
+/// The visitor's place in a room.
 impl Driver {
-    /// Enters a room. Only a visitor with a name can be a member.
+    /// Enters or watches a room. Only a visitor with a name can become a member.
     fn go(&mut self, way: Way) {
         if !matches!(way, Way::Watch(_)) {
             self.leave();
@@ -499,7 +498,7 @@ impl Driver {
                     (Way::Open(wish), Some(entrant)) => rooms.open(wish, entrant).await,
                     (_, None) => Err(RoomRefusal::Gone),
                 };
-                // A visitor who has gone leaves the room when the place is dropped.
+                // If the visitor has gone, the place is dropped, which leaves the room.
                 _ = replies.send(Reply::Place(place)).await;
             });
             return;
@@ -528,13 +527,13 @@ impl Driver {
         }
     }
 
-    /// Leaves the room, and submits what was won in it.
+    /// Leaves the room, and submits a run won in it.
     fn leave(&mut self) {
         self.give_place_up();
         self.part();
     }
 
-    /// Ends the stay in the room, and submits what was won in it. If the server ends, the room keeps the place.
+    /// Ends the stay in the room, and submits a run won in it. During a shutdown, the room keeps the place.
     fn part(&mut self) {
         let Some(place) = self.place.take() else { return };
         self.presence.set_room(None);
@@ -543,7 +542,7 @@ impl Driver {
         }
     }
 
-    /// The server ends soon.
+    /// Handles the announcement that the server will shut down soon.
     fn drain(&mut self, now: Duration) {
         let time = self.shared.config.get().drain;
         self.is_draining = true;
@@ -556,7 +555,7 @@ impl Driver {
         self.ends_at = Some(ends_at);
     }
 
-    /// The sentence at the end of the server.
+    /// The visitor's last sentence when the server shuts down.
     fn last_sentence(&self) -> &'static str {
         if self.can_return() {
             "This server has ended. Connect again, and you are where you were."
@@ -565,12 +564,12 @@ impl Driver {
         }
     }
 
-    /// Whether a visitor finds the room as it was on another host.
+    /// Returns true if the visitor can return to the room through another host.
     fn can_return(&self) -> bool {
         self.shared.cluster.is_some() && self.account.is_some()
     }
 
-    /// Takes a visitor with an account back to the room in which their last host has left them.
+    /// Brings a visitor with an account back to the room that they had on another host.
     pub(crate) fn look_for_place(&mut self) {
         let Some(rooms) = self.shared.cluster.clone() else { return };
         let Some(key) = self.account.as_ref().map(|account| account.key) else { return };
@@ -584,7 +583,7 @@ impl Driver {
         });
     }
 
-    /// Records where a visitor has returned to.
+    /// Handles the result of the search for the visitor's place.
     fn returned(&mut self, place: Result<Place, RoomRefusal>) {
         if !std::mem::take(&mut self.is_returning) {
             return;
@@ -605,12 +604,12 @@ impl Driver {
         place
     }
 
-    /// The room does not keep the place any more.
+    /// Tells the room and the cluster not to keep the place any longer.
     fn give_place_up(&mut self) {
         let Some(place) = &mut self.place else { return };
         place.set_kept(false);
         let key = self.account.as_ref().map(|account| account.key);
-        // One who was removed may be somewhere else now.
+        // A member who was removed may have a place elsewhere by now.
         let is_member = place.member_id().is_some() && place.closed().is_none();
         if let (Some(rooms), Some(key), true) = (self.shared.cluster.clone(), key, is_member) {
             tokio::spawn(async move { rooms.forget_place(key).await });
@@ -618,14 +617,14 @@ impl Driver {
     }
 }
 
-/// Draws a frame. For a large one, other tasks go on meanwhile.
+/// Draws a frame. A large frame does not block other tasks.
 fn aside(is_large: bool, draw: impl FnOnce()) {
-    // There is one thread in simulated time.
+    // Simulated time uses a single thread.
     let has_threads = Handle::current().runtime_flavor() == RuntimeFlavor::MultiThread;
     if is_large && has_threads { block_in_place(draw) } else { draw() }
 }
 
-/// The name of the host as the lobby shows it.
+/// The host's name for the lobby.
 fn host_name(name: &str) -> Line {
     const COLUMNS: usize = 40;
     let line = Line::of(name, COLUMNS).or_else(|| Line::of("Cellcaster", COLUMNS));

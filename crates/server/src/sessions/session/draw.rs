@@ -1,4 +1,4 @@
-//! Drawing: what a visitor sees.
+//! Drawing a visitor's screen.
 
 mod members;
 pub(crate) mod overhead;
@@ -28,25 +28,25 @@ use cellcaster::tui::canvas::Canvas;
 use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
-/// The keys in a room that bindings do not change.
+/// The keys in a room that bindings cannot change.
 const ROOM_KEYS: [&str; 2] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
     "Tab lists the members, or watches another one.",
 ];
-/// The advice on a link that may make pictures coarse.
+/// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
-/// The least rows of a picture with a banner above a menu.
+/// The minimum height, in rows, for a banner above the menu.
 const LEAST_WITH_BANNER: u16 = 20;
 
 thread_local! {
-    /// The renderer of the sessions that are drawn on this thread. Its memory is half a megabyte in a
-    /// level with steps, and a picture needs nothing of the one before.
+    /// The renderer shared by the sessions drawn on this thread. It takes half a megabyte in a level with
+    /// steps, and keeps no state from one picture to the next.
     static VIEW: Cell<Option<View>> = const { Cell::new(None) };
 }
 
 impl Ui {
-    /// Draws the page, with `room` as the newest snapshot.
+    /// Draws the current page, with `room` as the latest snapshot.
     pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
         let area = canvas.bounds();
         if is_too_small(area) {
@@ -81,7 +81,7 @@ impl Ui {
         self.draw_panel(canvas, below);
     }
 
-    /// Draws what the page shows over the picture.
+    /// Draws the page's panel over the picture.
     fn draw_panel(&mut self, canvas: &mut impl Canvas, area: Rect) {
         match self.page() {
             Page::Name => self.draw_name(canvas, area),
@@ -112,13 +112,13 @@ impl Ui {
         menu.draw(canvas, area);
     }
 
-    /// The notes about the link and the terminal in the help.
+    /// The notes on the link and the terminal for the help page.
     fn help_notes(&self) -> Vec<String> {
         let compression = self.wants_compression.then(|| COMPRESSION.to_owned());
         compression.into_iter().chain(self.detection.lines()).collect()
     }
 
-    /// Draws the line of chat that is typed.
+    /// Draws the line of chat that is being typed.
     fn draw_chat_entry(&self, canvas: &mut impl Canvas, picture: Rect) {
         const PROMPT: &str = " say: ";
         let room = usize::from(picture.width).saturating_sub(PROMPT.len());
@@ -169,7 +169,7 @@ impl Ui {
     }
 }
 
-/// How pictures are drawn: as the visitor has chosen, or as the terminal shows best.
+/// Display options: the visitor's choices, or else the best that the terminal supports.
 impl Ui {
     pub(crate) fn glyphs(&self) -> GlyphSet {
         let best = if self.has_ascii_only { GlyphSet::Ascii } else { self.terminal.glyphs };
@@ -180,7 +180,7 @@ impl Ui {
         self.identity.preferences.colors.unwrap_or(self.terminal.depth)
     }
 
-    /// Whether only ASCII is sent: the terminal shows no more, and the visitor has not chosen blocks.
+    /// Returns true if only ASCII is sent: the terminal shows nothing else, and the visitor has not chosen blocks.
     pub(crate) fn is_ascii(&self) -> bool {
         self.has_ascii_only && !self.glyphs().has_blocks()
     }
@@ -201,7 +201,7 @@ impl Ui {
     }
 }
 
-/// The world with the figures of `ghosts`. Where there are some, it is copied, since the room and other
+/// The world with the figures of `ghosts`. The world is copied if there are any, because the room and other
 /// sessions share it.
 fn with_ghosts<'w>(world: &'w World, ghosts: &[SeenGhost]) -> Cow<'w, World> {
     let mut world = Cow::Borrowed(world);
@@ -213,7 +213,7 @@ fn with_ghosts<'w>(world: &'w World, ghosts: &[SeenGhost]) -> Cow<'w, World> {
     world
 }
 
-/// Draws the darkness in which seekers wait.
+/// Draws the blank view of seekers who wait.
 fn draw_darkness(canvas: &mut impl Canvas, area: Rect, room: &RoomView, depth: ColorDepth) {
     let style = match depth {
         ColorDepth::Mono => Style::new(),
@@ -225,7 +225,7 @@ fn draw_darkness(canvas: &mut impl Canvas, area: Rect, room: &RoomView, depth: C
     message(canvas, area, "you seek", Text::from(text).centered());
 }
 
-/// Draws a sentence in the first row of the picture.
+/// Draws a sentence in the top row of the picture.
 fn notice(canvas: &mut impl Canvas, picture: Rect, text: &str) {
     let line = Line::raw(format!(" {text} "));
     let width = (line.width() as u16).min(picture.width);

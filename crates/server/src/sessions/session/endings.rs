@@ -1,12 +1,12 @@
-//! Ends of a session that come with time: the visitor is idle, or the server ends.
+//! Timed endings of a session: the visitor is idle, or the server shuts down.
 
 use std::time::Duration;
 
-/// How long a member of a room may press no key. Then they are in the lobby.
+/// How long a member of a room may be idle before returning to the lobby.
 pub(crate) const IN_ROOM: Duration = Duration::from_mins(5);
-/// How long others may press no key. Then the session ends.
+/// How long other visitors may be idle before the session ends.
 pub(crate) const ELSEWHERE: Duration = Duration::from_mins(15);
-/// How long before that they are warned.
+/// How long before that they get a warning.
 const WARNING: Duration = Duration::from_mins(1);
 
 /// The time since the last key.
@@ -16,29 +16,29 @@ pub(crate) struct Idle {
     is_warned: bool,
 }
 
-/// The consequence of pressing no key.
+/// The consequence of being idle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum IdleAction {
-    /// They are warned.
+    /// The visitor gets a warning.
     Warn,
-    /// They leave the room, or the session ends.
+    /// The visitor leaves the room, or the session ends.
     End,
 }
 
 impl Idle {
-    /// Counts from `now` on. Returns whether a warning was shown, which now is not any more.
+    /// Restarts the count at `now`. Returns whether a warning was shown, which is now hidden.
     pub(crate) fn restart(&mut self, now: Duration) -> bool {
         let was_warned = self.is_warned;
         *self = Self { since: now, is_warned: false };
         was_warned
     }
 
-    /// Whether the warning is shown.
+    /// Returns true while the warning is shown.
     pub(crate) fn is_warned(&self) -> bool {
         self.is_warned
     }
 
-    /// The consequence at `now`, if the visitor may press no key for `limit`.
+    /// The consequence that is due at `now` if the visitor may be idle for `limit`.
     pub(crate) fn step(&mut self, limit: Duration, now: Duration) -> Option<IdleAction> {
         if self.next_at(limit) > now {
             return None;
@@ -50,29 +50,29 @@ impl Idle {
         Some(IdleAction::Warn)
     }
 
-    /// The time of the next thing that happens if no key is pressed.
+    /// The time of the next consequence if no key is pressed.
     pub(crate) fn next_at(&self, limit: Duration) -> Duration {
         let wait = if self.is_warned { limit } else { limit.saturating_sub(WARNING) };
         self.since + wait
     }
 }
 
-/// The end of the server, to which visitors see the seconds counted down.
+/// The server's shutdown, with a countdown for the visitors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Draining {
     pub(crate) ends_at: Duration,
-    /// Whether the visitor finds the room as it was on another host.
+    /// Whether the visitor can return to the room through another host.
     pub(crate) can_return: bool,
 }
 
 impl Draining {
-    /// The whole seconds to the end, rounded up.
+    /// The number of seconds left, rounded up.
     pub(crate) fn seconds(self, now: Duration) -> u64 {
         let left = self.ends_at.saturating_sub(now).as_millis();
         u64::try_from(left.div_ceil(1000)).unwrap_or(u64::MAX)
     }
 
-    /// The time at which the number of seconds changes; `None` at the end.
+    /// The time at which the number of seconds changes; `None` once it is 0.
     pub(crate) fn next_at(self, now: Duration) -> Option<Duration> {
         let after = Duration::from_secs(self.seconds(now).checked_sub(1)?);
         Some(self.ends_at.saturating_sub(after))

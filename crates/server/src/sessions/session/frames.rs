@@ -1,14 +1,16 @@
-//! The frames of a session: when the next one may be drawn, which keys it answers, and which step of the game the
-//! visitor sees.
+//! The timing of a session's frames: when the next frame may be drawn, which keys it answers, and which step
+//! of the game the visitor sees.
 //!
-//! - **Pace.** The answer to a key is drawn early, so that the frame rate does not delay it, but on credit: a
-//!   visitor who holds a key gets no more frames in the long run than others. Without credit, the keys of
-//!   300 visitors drew all their frames, and the [governor](crate::load) governed nothing.
-//! - **Answers.** A frame answers a key if it shows the effect. What a key changes on the screen is in the next picture.
-//!   What it wants of the room is in the first picture of a snapshot in which the room has acted on it, if the room
-//!   has changed then. Keys without an effect are not answered: with each key counted until the next frame, whatever
-//!   that showed, the mean of [`Metrics::key_time`](crate::metrics::Metrics::key_time) was 2.5 s.
-//! - **Steps.** The visitor sees the step of the newest frame that their terminal has answered.
+//! - **Pace.** A frame that answers a key is drawn early, so that the frame rate does not delay the answer.
+//!   It is drawn on credit: a visitor who holds a key gets no more frames than others in the long run.
+//!   Without this limit, the keys of 300 visitors triggered all their frames, and the [governor](crate::load)
+//!   had no effect.
+//! - **Answers.** A frame answers a key if it shows the key's effect. A change of the screen appears in the
+//!   next picture. A change of intents appears in the first picture of a snapshot in which the room has acted
+//!   on them, if the room has changed by then. Keys without an effect are not counted. When every key counted
+//!   until the next frame of any kind, the mean of [`Metrics::key_time`](crate::metrics::Metrics::key_time)
+//!   was 2.5 s.
+//! - **Steps.** The visitor sees the step of the last frame that their terminal has acknowledged.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -18,11 +20,11 @@ use std::time::Duration;
 pub(crate) struct Pace {
     frame_time: Duration,
     drawn_at: Option<Duration>,
-    /// When all frames so far would have been drawn at the frame rate.
+    /// The time at which all frames would have been drawn at the frame rate.
     paid_at: Duration,
 }
 
-/// The least time between two frames.
+/// The shortest interval between two frames.
 const PROMPT: Duration = Duration::from_millis(16);
 
 impl Pace {
@@ -30,12 +32,12 @@ impl Pace {
         Self { frame_time, drawn_at: None, paid_at: Duration::ZERO }
     }
 
-    /// Sets the time between two frames.
+    /// Sets the interval between frames.
     pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
         self.frame_time = frame_time;
     }
 
-    /// The time of the next frame, earlier if it answers a key.
+    /// The time of the next frame, which is earlier if it answers a key.
     pub(crate) fn next(&self, answers_key: bool) -> Duration {
         let Some(drawn_at) = self.drawn_at else { return Duration::ZERO };
         if answers_key {
@@ -46,24 +48,24 @@ impl Pace {
         }
     }
 
-    /// Records a frame.
+    /// Records that a frame was drawn.
     pub(crate) fn drawn(&mut self, now: Duration) {
         self.drawn_at = Some(now);
         self.paid_at = now.max(self.paid_at + self.frame_time);
     }
 }
 
-/// The keys that no frame has answered yet: the time of the oldest one.
+/// The arrival times of the oldest unanswered keys.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unanswered {
-    /// Of the keys that have changed the screen.
+    /// The oldest key that has changed the screen.
     shown: Option<Duration>,
-    /// Of the keys that have changed the visitor's intents in the room.
+    /// The oldest key that has changed the visitor's intents in the room.
     wanted: Option<Duration>,
 }
 
 impl Unanswered {
-    /// Records the effect of a key that came at `now`.
+    /// Records the effects of a key that arrived at `now`.
     pub(crate) fn press(&mut self, is_shown: bool, is_wanted: bool, now: Duration) {
         if is_shown {
             self.shown.get_or_insert(now);
@@ -73,32 +75,32 @@ impl Unanswered {
         }
     }
 
-    /// Records that the room has acted on all that was wanted, and that nothing has changed.
+    /// Records that the room has acted on all intents without a visible change.
     pub(crate) fn forget_wanted(&mut self) {
         self.wanted = None;
     }
 
-    /// When the oldest key came that a new picture answers, where `has_acted` says that the room has acted on all
-    /// that was wanted.
+    /// Returns the arrival time of the oldest key that a new picture answers. `has_acted` states whether the
+    /// room has acted on all intents.
     pub(crate) fn answer(&mut self, has_acted: bool) -> Option<Duration> {
         let wanted = self.wanted.take_if(|_| has_acted);
         self.shown.take().into_iter().chain(wanted).min()
     }
 }
 
-/// The most frames that are remembered: more than can be unanswered.
+/// The number of frames that are remembered. It exceeds the number that can be unacknowledged.
 const MAX_FRAMES: usize = 8;
 
-/// The steps that the last frames showed.
+/// The steps shown in the latest frames.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ShownSteps {
-    /// The number of the frame, and the step; the newest frame last.
+    /// The frame's number and its step, newest last.
     frames: VecDeque<(u64, u64)>,
 }
 
 impl ShownSteps {
-    /// Records that after `frame` frames, the last one shows the state after `step`. A frame that
-    /// has changed nothing has no number of its own: the last one shows the new step, too.
+    /// Records that after `frame` frames, the last one shows the state after `step`. A frame without changes
+    /// has no number of its own; the last numbered frame then shows the new step, too.
     pub(crate) fn drawn(&mut self, frame: u64, step: u64) {
         match self.frames.back_mut() {
             Some(last) if last.0 == frame => last.1 = step,
@@ -109,14 +111,14 @@ impl ShownSteps {
         }
     }
 
-    /// The step that the visitor sees if `answered` frames are answered. Before the first answer it
-    /// is the first frame's.
+    /// The step that the visitor sees when `answered` frames have been acknowledged. Before the first
+    /// acknowledgement, it is the step of the first frame.
     pub(crate) fn seen(&self, answered: u64) -> u64 {
         let seen = self.frames.iter().rfind(|frame| frame.0 <= answered);
         seen.or(self.frames.front()).map_or(0, |&(_, step)| step)
     }
 
-    /// Forgets all frames, at the beginning of a game.
+    /// Forgets all frames, at the start of a game.
     pub(crate) fn forget(&mut self) {
         self.frames.clear();
     }
@@ -152,7 +154,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever asks for frames, there are two more than the rate allows at most.
+        /// Any sequence of requests draws at most two frames more than the frame rate allows.
         #[test]
         fn keys_draw_no_more_frames_in_the_long_run(
             frame_time in 20_u32..500,

@@ -1,36 +1,35 @@
-//! The intents of a member, on its way into the log of the room.
+//! A member's intents, on their way into the log of the room.
 //!
-//! An intent is sent when it changes, at most 30 times a second, and none is left out: a tap may
-//! begin and end between two of those times. In rooms where touches are judged by what the member
-//! saw, what they want is also sent again while they move, since it tells the room what they saw.
+//! Intents are sent when they change, at most 30 times a second, and no change is left out: a tap may begin
+//! and end within one interval. In addition, the intents of a moving member are sent again regularly, because
+//! they also tell the room which step the member saw. Rooms judge touches by that step.
 //!
-//! The angles of the mouse add up until they are sent, since they count in one step of the room.
+//! The mouse's angles add up until they are sent, because they apply in only one step of the room.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use cellcaster::game::{Intents, Look};
 
-/// The least time between two changes that are sent: two steps, so that each takes effect in a step
-/// of its own.
+/// The shortest interval between two changes: two steps, so that each change takes effect in a separate step.
 const LEAST_INTERVAL: Duration = Duration::from_millis(34);
-/// The time after which a member who moves tells again what they saw.
+/// The interval at which a moving member's intents are sent again.
 const RENEWAL_INTERVAL: Duration = Duration::from_millis(250);
-/// The most changes that wait. If more do, all but the newest are left out.
+/// The maximum number of queued changes. If it is exceeded, all but the newest are dropped.
 const MAX_WAITING: usize = 8;
 
-/// The intents of a member.
+/// A queue of a member's intents.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IntentQueue {
     sent: Intents,
     sent_at: Option<Duration>,
     waiting: VecDeque<Intents>,
-    /// The turn and the tilt that are not sent yet, in units of [`Look`].
+    /// The turn and the tilt not sent yet, in units of [`Look`].
     angles: [i32; 2],
 }
 
 impl IntentQueue {
-    /// Records the member's intents from now on.
+    /// Sets the member's intents from now on.
     pub(crate) fn set(&mut self, intents: Intents) {
         if self.newest() == intents {
             return;
@@ -41,13 +40,13 @@ impl IntentQueue {
         self.waiting.push_back(intents);
     }
 
-    /// Records that the member turns and tilts by these angles.
+    /// Adds angles by which the member turns and tilts.
     pub(crate) fn turn(&mut self, by: Look) {
         let [turn, tilt] = self.angles;
         self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
     }
 
-    /// The member's present intents.
+    /// The member's current intents.
     pub(crate) fn newest(&self) -> Intents {
         *self.waiting.back().unwrap_or(&self.sent)
     }
@@ -63,7 +62,7 @@ impl IntentQueue {
         Some(self.sent.with_look(Look { turn, tilt }))
     }
 
-    /// The time of the next [`take`](Self::take) that gives something; `None` for never.
+    /// The time at which [`take`](Self::take) next returns intents; `None` for never.
     pub(crate) fn next_at(&self) -> Option<Duration> {
         let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
         let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
@@ -75,7 +74,7 @@ impl IntentQueue {
     }
 }
 
-/// The nearest angle that a [`Look`] can have.
+/// The nearest angle that fits into a [`Look`].
 fn within(angle: i32) -> i32 {
     angle.clamp(-i32::from(i16::MAX), i16::MAX.into())
 }

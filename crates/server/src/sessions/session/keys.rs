@@ -1,4 +1,4 @@
-//! The effect of each key on each page, and in a room.
+//! The effect of each key on each page and in a room.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use cellcaster::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use cellcaster::tui::Press;
 
 impl Ui {
-    /// Handles an event of the terminal.
+    /// Handles a terminal event.
     pub(crate) fn event(&mut self, event: Event, now: Duration) {
         self.advance(now);
         match event {
@@ -58,7 +58,7 @@ impl Ui {
         self.want();
     }
 
-    /// Handles an event of the mouse, which turns the player and does nothing else, as at home.
+    /// Handles a mouse event. As at home, the mouse only steers the player.
     fn mouse(&mut self, event: MouseEvent) {
         self.is_stale |= self.idle.restart(self.now);
         let plays = self.is_playing();
@@ -78,13 +78,13 @@ impl Ui {
         }
     }
 
-    /// Answers the question on the page by `key`, now or once it is certain that the key does not repeat.
+    /// Answers the question on the page with `key`, either now or once the key is known not to be repeating.
     fn press_to_answer(&mut self, key: Key, press: Press) {
         let effect = self.pages.press_to_answer(key, press, &self.bindings, self.now);
         self.carry_out(effect);
     }
 
-    /// Answers the question on the page by a pending key that did not repeat.
+    /// Answers the question on the page with a pending key that did not repeat.
     pub(crate) fn settle(&mut self) {
         let effect = self.pages.settle(&self.bindings, self.now);
         self.carry_out(effect);
@@ -99,12 +99,12 @@ impl Ui {
             Effect::Leave(true) => self.say_goodbye(),
             Effect::Leave(false) => self.close(),
             Effect::Answer(_) if self.page() == Page::RoomMenu => self.leave_by_request(),
-            // After a death.
+            // The question after a death.
             Effect::Answer(_) => self.retry(),
         }
     }
 
-    /// Handles Ctrl-C. In a room and elsewhere, the first one asks and the second one leaves.
+    /// Handles Ctrl-C: the first one asks for confirmation, and the second one leaves.
     fn interrupted(&mut self) {
         match self.page() {
             Page::Leaving | Page::RoomMenu => self.say_goodbye(),
@@ -117,7 +117,7 @@ impl Ui {
         self.farewell = Some("Goodbye.".to_owned());
     }
 
-    /// Whether `key` leaves, other than Escape, which goes back.
+    /// Returns true if `key` leaves. Escape does not count, because it goes back.
     fn leaves(&self, key: Key) -> bool {
         key != Key::Escape && self.bindings.action(key) == Some(Action::Leave)
     }
@@ -140,7 +140,7 @@ impl Ui {
         }
     }
 
-    /// Handles the keys that do the same on every page with a menu, and on the help.
+    /// Handles the keys that act the same on the help page and on every page with a menu.
     fn press_command(&mut self, key: Key, press: Press) {
         if press == Press::Repeat {
             return;
@@ -164,7 +164,7 @@ impl Ui {
     }
 }
 
-/// Typing: a name, or a line of chat.
+/// Typing a name or a line of chat.
 impl Ui {
     fn press_while_typing(&mut self, event: KeyEvent) {
         match (self.page(), event.key) {
@@ -175,7 +175,7 @@ impl Ui {
         }
     }
 
-    /// Takes the line that was typed.
+    /// Submits the typed line.
     fn submit(&mut self) {
         if self.page() == Page::Chat {
             if let Some(line) = self.entry.line() {
@@ -194,7 +194,7 @@ impl Ui {
     }
 }
 
-/// In a room.
+/// Keys in a room.
 impl Ui {
     fn press_in_room(&mut self, key: Key, press: Press) {
         let action = self.bindings.action(key);
@@ -254,7 +254,7 @@ impl Ui {
         self.is_stale = true;
     }
 
-    /// Goes on after a death by Enter, from the same time on as at home.
+    /// Handles Enter after a death. It takes effect after the same delay as at home.
     fn press_to_go_on(&mut self, press: Press) {
         let Some(dead_since) = self.stay.as_ref().and_then(|stay| stay.dead_since) else { return };
         if is_answerable(&self.controls.held, dead_since, self.now) {
@@ -262,7 +262,7 @@ impl Ui {
         }
     }
 
-    /// Goes on after a death: from the last checkpoint, or from the beginning.
+    /// Retries after a death, from the last checkpoint or from the start of the round.
     fn retry(&mut self) {
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.dead_since.is_some()) else {
             return;

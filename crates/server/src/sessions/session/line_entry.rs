@@ -1,4 +1,4 @@
-//! A line of text that the visitor types.
+//! Entry of a line of text.
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -6,24 +6,23 @@ use crate::accounts::printable;
 use crate::line::Line;
 use cellcaster::terminal::{Key, KeyEvent};
 
-/// A line that is being typed. What is typed is what [`printable`] leaves of it, except for a blank at
-/// its end.
+/// A line that is being typed. Its text always equals its [`printable`] form, except for a trailing blank.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LineEntry {
     text: String,
-    /// The most columns.
+    /// The maximum width, in columns.
     columns: usize,
-    /// Whether the text is an offer, in whose place the first character is typed.
+    /// Whether the text is an offer, which the first typed character replaces.
     is_offer: bool,
 }
 
 impl LineEntry {
-    /// An empty line of at most `columns`.
+    /// An empty entry of at most `columns` columns.
     pub(crate) fn new(columns: usize) -> Self {
         Self { columns, ..Self::default() }
     }
 
-    /// A line with an offer in it.
+    /// An entry that contains an offer.
     pub(crate) fn offering(offer: &Line, columns: usize) -> Self {
         Self { text: offer.to_string(), columns, is_offer: true }
     }
@@ -33,7 +32,7 @@ impl LineEntry {
         Line::of(&self.text, self.columns)
     }
 
-    /// Changes the text by a key. Returns whether it has changed.
+    /// Handles a key. Returns whether the text has changed.
     pub(crate) fn press(&mut self, event: KeyEvent) -> bool {
         if event.key == Key::Backspace {
             self.is_offer = false;
@@ -49,7 +48,7 @@ impl LineEntry {
         is_taken
     }
 
-    /// The end of the text that fits in `columns` with a cursor after it.
+    /// The end of the text, with a cursor, that fits into `columns`.
     pub(crate) fn shown(&self, columns: usize) -> String {
         let mut room = columns.saturating_sub(1);
         let fits = |character: &char| {
@@ -64,14 +63,14 @@ impl LineEntry {
     }
 }
 
-/// Appends a character to `line`, with whose last one it may combine. Returns whether it is taken.
+/// Appends a character to `line`, where it may combine with the last one. Returns whether it was accepted.
 fn append(line: &mut String, character: char, columns: usize) -> bool {
     if character.is_whitespace() {
         let is_taken = !line.is_empty() && !line.ends_with(' ') && line.width() < columns;
         line.extend(is_taken.then_some(' '));
         return is_taken;
     }
-    // No earlier character than the last one combines with it.
+    // A character can combine only with the last one.
     let last = line.chars().next_back().filter(|last| *last != ' ');
     line.truncate(line.len() - last.map_or(0, char::len_utf8));
     let room = columns.saturating_sub(line.width());
@@ -116,7 +115,7 @@ mod tests {
     fn only_what_is_printable_and_fits_is_taken() {
         let mut entry = LineEntry::new(6);
         type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
-        // The accent combines with what was typed before.
+        // The accent combines with the character before it.
         assert_eq!(entry.text, "á日b日");
         assert_eq!(entry.shown(4), "b日_");
         assert_eq!(entry.shown(0), "_");

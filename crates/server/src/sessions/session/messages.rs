@@ -1,4 +1,4 @@
-//! Messages between a session and its driver, and the facts that a session begins with.
+//! The messages between a session and its driver, and the facts that a session starts with.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,98 +13,99 @@ use cellcaster::app::store::Preferences;
 use cellcaster::game::Rank;
 use cellcaster::world::Difficulty;
 
-/// The visitor's identity and choices.
+/// The visitor's identity and settings.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Identity {
-    /// Whether they have an account, so that their results rank. Otherwise they are a guest.
+    /// Whether they have an account, which makes their results rank. Otherwise they are a guest.
     pub(crate) has_account: bool,
-    /// The name of the account, or else a name that nobody has, to be offered.
+    /// The name of the account, or else a free name to offer.
     pub(crate) name: Line,
-    /// Whether the account has that name already.
+    /// Whether the account already has this name.
     pub(crate) is_named: bool,
     pub(crate) preferences: Preferences,
-    /// The keys that they use, and how the game begins.
+    /// The visitor's configuration, including key bindings and start-up settings.
     pub(crate) configuration: Configuration,
 }
 
-/// The host and the connection, as a session knows them.
+/// The facts about the host and the connection.
 #[derive(Clone, Debug)]
 pub(crate) struct HostFacts {
-    /// The name of the host.
+    /// The host's name.
     pub(crate) name: Line,
     /// The message of the day.
     pub(crate) message: Option<Line>,
     /// A notice about the visitor's key.
     pub(crate) notice: Option<Line>,
-    /// Whether the connection compresses what is sent.
+    /// Whether the connection compresses output.
     pub(crate) compresses: bool,
-    /// The setting of the visitor's locale that restricts them to ASCII, such as `LANG=C`.
+    /// The locale setting that restricts the visitor to ASCII, such as `LANG=C`.
     pub(crate) ascii_locale: Option<Line>,
     pub(crate) catalog: Arc<Catalog>,
-    /// The least time between two frames, at first.
+    /// The initial interval between frames.
     pub(crate) frame_time: Duration,
 }
 
 /// A way into a room.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Way {
-    /// To watch it.
+    /// Watch an existing room.
     Watch(RoomId),
-    /// As a member.
+    /// Become a member of an existing room.
     Enter(RoomId),
-    /// As a member of a new room.
+    /// Open a new room and become its member.
     Open(RoomWish),
 }
 
-/// A request of a session to its driver.
+/// A request from a session to its driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Request {
-    /// To have this name: [`SessionEvent::Named`].
+    /// Take this name. Answered by [`SessionEvent::Named`].
     Name(String),
-    /// The rooms, now and whenever they change, until the session is in a room: [`SessionEvent::Rooms`].
+    /// Send the rooms, now and on every change, until the session enters a room. Answered by [`SessionEvent::Rooms`].
     Rooms,
-    /// To be in a room: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
+    /// Enter a room. Answered by [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
     Go(Way),
-    /// To do something in the room: neither [`Command::Join`] nor [`Command::Leave`].
+    /// Submit a command to the room, other than [`Command::Join`] or [`Command::Leave`].
     Command(Command),
-    /// To be in the room no more. Nothing is answered.
+    /// Leave the room. Not answered.
     Leave,
-    /// A board: [`SessionEvent::Board`].
+    /// Load a board. Answered by [`SessionEvent::Board`].
     Board { level: String, difficulty: Difficulty },
-    /// The runs that walk along in a level: [`SessionEvent::Ghosts`].
+    /// Load the ghosts of a level. Answered by [`SessionEvent::Ghosts`].
     Ghosts { level: String, difficulty: Difficulty },
-    /// To keep the settings. Nothing is answered.
+    /// Save the settings. Not answered.
     Save(AccountSettings),
 }
 
-/// An event that the driver reports to a session.
+/// An event from the driver to a session.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SessionEvent {
-    /// The visitor has this name, or a sentence why they cannot have it.
+    /// The visitor's new name, or a sentence that says why they cannot have it.
     Named(Result<Line, String>),
-    /// The rooms.
+    /// The rooms for the lobby.
     Rooms(Arc<[RoomSummary]>),
-    /// The visitor is in a room; `None` if they watch.
+    /// The visitor has entered a room; `member` is `None` if they watch.
     Entered { room: RoomId, member: Option<MemberId> },
-    /// A sentence why they cannot be in the room.
+    /// The visitor cannot enter the room, for the reason in the sentence.
     Refused(String),
-    /// The visitor is in the room no more, and why: a sentence.
+    /// The visitor has left the room, for the reason in the sentence.
     Left(String),
-    /// A board, the best first.
+    /// A board, best entry first.
     Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
-    /// The runs that walk along in a level.
+    /// The ghosts of a level.
     Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
-    /// The outcome of a result: a sentence.
+    /// A sentence about a result, or another message from the host.
     Result(String),
-    /// A line from the host to all.
+    /// A line from the operator.
     Said(Line),
-    /// The server ends at `ends_at`; whether the visitor finds the room as it was on another one.
+    /// The server shuts down at `ends_at`. `can_return` states whether the visitor can return to the room
+    /// through another host.
     Draining { ends_at: Duration, can_return: bool },
-    /// The session ends, and why: a sentence.
+    /// The session ends, for the reason in the sentence.
     Ended(String),
 }
 
-/// An entry of a board.
+/// An entry on a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct BoardRow {
     pub(crate) name: Line,
@@ -112,6 +113,6 @@ pub(crate) struct BoardRow {
     pub(crate) steps: u64,
     /// The highest rank.
     pub(crate) rank: Rank,
-    /// Whether it is the visitor's own.
+    /// Whether the entry is the visitor's own.
     pub(crate) is_own: bool,
 }

@@ -1,8 +1,8 @@
-//! The pages of a session, their menus, and what choosing an entry does.
+//! The pages of a session, their menus, and the effects of menu entries.
 //!
-//! The pages outside of a room lead from the name to the lobby, to the card of a room, and into it.
-//! The selected entry of each is the usual choice, so that Enter alone leads to a first walk. Escape
-//! goes back, and asks before it leaves.
+//! Outside of a room, the pages lead from the name to the lobby, to a room's card, and into the room. On each
+//! page, the usual choice is selected, so Enter alone leads to a first walk. Escape goes back. Before the
+//! session ends, the visitor is asked to confirm.
 
 use super::draw::COMPRESSION;
 use super::messages::{Request, Way};
@@ -14,61 +14,61 @@ use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use cellcaster::app::parts::{self, Choice as _, Kind, Menu, of_steps};
 use cellcaster::world::Difficulty;
 
-/// The rooms that the lobby lists itself; the others are on a page of their own.
+/// The number of rooms listed in the lobby. If there are more, another page lists all of them.
 const ROOMS_IN_LOBBY: usize = 5;
-/// The level of a first walk.
+/// The level for the first walk.
 const FIRST_LEVEL: &str = "museum";
 
-/// A page. The effect of keys depends on it.
+/// A page, which determines the effect of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// The name is typed.
+    /// The visitor types a name.
     Name,
     Lobby,
-    /// All rooms, to enter or to watch one.
+    /// All rooms, to enter or to watch.
     Rooms {
         watches: bool,
     },
-    /// The mode of a new room.
+    /// A choice of the mode of a new room.
     Modes,
-    /// The level of a new room.
+    /// A choice of the level of a new room.
     Levels(Mode),
-    /// The level whose board is wanted.
+    /// A choice of the level whose board is shown.
     Boards,
     Board,
     /// A description of a room, before the visitor enters it.
     Card(Target),
-    /// The room is asked for.
+    /// The driver has been asked for the room.
     Entering,
     Settings,
     Help,
     /// The question whether to end the session.
     Leaving,
-    /// In the room, with keys to walk.
+    /// The room itself, where keys control the player.
     Room,
-    /// A line of chat is typed.
+    /// The visitor types a line of chat.
     Chat,
     Emotes,
-    /// Further actions in the room.
+    /// More actions in a room.
     RoomMenu,
 }
 
-/// The effect of an entry of a menu.
+/// The effect of a menu entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice {
     /// Opens a page.
     Open(Page),
-    /// Enters the room of the card.
+    /// Enters or watches the room on the card.
     Enter { watches: bool },
-    /// Shows the board of the level with that index.
+    /// Shows the board of the level with this index.
     Board(usize),
-    /// Changes the setting in that row of the settings page.
+    /// Changes the setting in this row of the settings page.
     Change(usize),
-    /// Returns to the page before.
+    /// Returns to the previous page.
     Back,
-    /// Shows all an emotion.
+    /// Shows an emote to everybody.
     Emote(Emote),
-    /// Wishes to begin the round again.
+    /// Asks to restart the round.
     Again,
     /// Leaves the room.
     LeaveRoom,
@@ -79,9 +79,9 @@ pub(crate) enum Choice {
 /// A room to enter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A room of the list.
+    /// A room on the list.
     Existing(RoomId),
-    /// A new one, in the level of the catalog with that index.
+    /// A new room, in the level with this index in the catalog.
     New { mode: Mode, level: usize, difficulty: Difficulty },
 }
 
@@ -98,7 +98,7 @@ impl parts::Page for Page {
 }
 
 impl Page {
-    /// Whether a line is typed.
+    /// Returns true if the visitor types a line on this page.
     pub(crate) fn is_typed_in(self) -> bool {
         matches!(self, Self::Name | Self::Chat)
     }
@@ -109,13 +109,13 @@ impl Ui {
         self.pages.page()
     }
 
-    /// Shows `page`, from which there is no way back.
+    /// Shows `page`, with no way back.
     pub(crate) fn show(&mut self, page: Page) {
         self.leave_page(page);
         self.pages.show(page, self.menu_of(page), self.now);
     }
 
-    /// Opens `page` over the present one.
+    /// Opens `page` on top of the current one.
     pub(crate) fn open(&mut self, page: Page) {
         self.leave_page(page);
         self.pages.open(page, self.menu_of(page), self.now);
@@ -128,7 +128,7 @@ impl Ui {
         self.renew_menu();
     }
 
-    /// Makes the menu again, after something that it shows has changed.
+    /// Rebuilds the menu after a change of something that it shows.
     pub(crate) fn renew_menu(&mut self) {
         self.pages.renew(self.menu_of(self.page()));
         self.is_stale = true;
@@ -183,7 +183,7 @@ impl Ui {
         self.open(Page::Entering);
     }
 
-    /// Asks for the board of the chosen level.
+    /// Requests the board of the chosen level.
     pub(crate) fn ask_for_board(&mut self) {
         self.board.rows = None;
         let difficulty = self.identity.preferences.difficulty;
@@ -192,13 +192,13 @@ impl Ui {
         }
     }
 
-    /// Leaves the room as the visitor wishes.
+    /// Leaves the room at the visitor's request.
     pub(crate) fn leave_by_request(&mut self) {
         self.ask(Request::Leave);
         self.leave_room(None);
     }
 
-    /// Records that the visitor has left the room.
+    /// Records that the visitor has left the room, and returns to the lobby.
     pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
         self.stay = None;
         self.note = sentence;
@@ -208,7 +208,7 @@ impl Ui {
 }
 
 impl Ui {
-    /// The menu of `page`; an empty one if it has none.
+    /// The menu of `page`; empty if the page has none.
     pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
         match page {
             Page::Lobby => self.lobby_menu(),
@@ -263,7 +263,7 @@ impl Ui {
             .entry("Leave", Choice::Open(Page::Leaving))
     }
 
-    /// The rooms for several in levels that this host has, the one with the most members first, the full ones last.
+    /// The multiplayer rooms whose levels this host has, by number of members in descending order, full rooms last.
     fn rooms_by_life(&self) -> Vec<&RoomSummary> {
         let is_offered = |room: &&RoomSummary| {
             room.mode != Mode::Alone && self.host.catalog.world(&room.level).is_some()
@@ -274,7 +274,7 @@ impl Ui {
         rooms
     }
 
-    /// The offered room: the liveliest room that is not full, or else a new room.
+    /// The offered room: the room with the most members that is not full, or else a new room.
     fn offer(&self, rooms: &[&RoomSummary]) -> Target {
         let open = rooms.first().filter(|room| !room.is_full());
         open.map_or_else(|| self.first_walk(), |room| Target::Existing(room.id))
@@ -286,7 +286,7 @@ impl Ui {
         Target::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
     }
 
-    /// The label and the value of an entry for a room.
+    /// The label and the value of a room's menu entry.
     fn label_of(&self, target: Target) -> (String, String) {
         let catalog = &self.host.catalog;
         match target {
@@ -302,7 +302,7 @@ impl Ui {
         }
     }
 
-    /// The title of the level of a room.
+    /// The title of a room's level.
     pub(crate) fn level_title(&self, target: Target) -> String {
         let catalog = &self.host.catalog;
         let name = match target {
@@ -343,7 +343,7 @@ impl Ui {
         self.each_level(Menu::new("board"), Mode::Alone, Choice::Board)
     }
 
-    /// `menu` with an entry for each level that suits a mode.
+    /// Adds an entry to `menu` for each level that suits the mode.
     fn each_level(
         &self,
         menu: Menu<Choice>,
@@ -420,7 +420,7 @@ impl Ui {
     }
 }
 
-/// The names of a room's members.
+/// A sentence with the names of a room's members and the number of watchers.
 fn who_is_here(room: &RoomSummary) -> String {
     let watchers = match room.watchers {
         0 => String::new(),

@@ -1,7 +1,7 @@
 //! The settings page.
 //!
-//! It has the settings of the page at home, the preset of keys, and chat. What is chosen is kept with the
-//! account, except the map and chat, which belong to a stay in a room.
+//! The page shows the settings of the game at home, the preset of key bindings, and the chat switch. The
+//! choices are saved with the account, except for the map and chat, which belong to a stay in a room.
 
 use super::messages::Request;
 use super::pages::Choice;
@@ -36,7 +36,7 @@ const PRESET: Setting<SessionChoices> =
 const CHAT: Setting<SessionChoices> =
     Setting { key: "chat", about: "Chat", value: &At(|it: &mut SessionChoices| &mut it.chat) };
 
-/// The rows in their order on the page. The last ones are shown in a room only.
+/// The rows in the order of the page. The last ones appear only in a room.
 const ROWS: [Setting<SessionChoices>; 12] = [
     Setting::DIFFICULTY,
     PRESET,
@@ -65,7 +65,7 @@ impl Ui {
         settings_menu(note, !self.is_ascii(), rows)
     }
 
-    /// The values in force.
+    /// The current values.
     fn choices(&self) -> SessionChoices {
         let Self { identity, stay, .. } = self;
         let preferences = Preferences { glyphs: Some(self.glyphs()), ..identity.preferences };
@@ -78,12 +78,12 @@ impl Ui {
         }
     }
 
-    /// Changes the setting in that row to its next value, or to the one before if `forward` is false.
+    /// Changes the setting in this row to its next value, or to the previous one if `forward` is false.
     pub(crate) fn change_setting(&mut self, row: usize, forward: bool) {
         self.change_choices(|choices| ROWS[row].value.change(choices, forward));
     }
 
-    /// Changes some of the values in force, and keeps the account's values.
+    /// Changes some of the current values, and saves the account's settings if they are affected.
     pub(crate) fn change_choices(&mut self, change: impl FnOnce(&mut SessionChoices)) {
         let before = self.choices();
         let mut after = before;

@@ -1,4 +1,4 @@
-//! A visitor's stay in a room, as a member or to watch.
+//! A visitor's stay in a room, as a member or a watcher.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,35 +17,35 @@ use cellcaster::world::{Camera, Difficulty, FieldOfView, Figure};
 /// A stay in a room.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(crate) struct Stay {
-    /// The visitor as a member; `None` if they watch.
+    /// The visitor's number as a member; `None` if they watch.
     pub(crate) member: Option<MemberId>,
-    /// The member that they watch, unless they play themselves.
+    /// The member that is watched while the visitor does not play.
     watched: Option<MemberId>,
-    /// Whether the last picture shows another member's view: the visitor is no member, or has finished.
+    /// Whether the last picture shows another member's view, because the visitor is a watcher or has finished.
     pub(crate) is_watching: bool,
     pub(crate) talk: Talk,
     pub(crate) intents: IntentQueue,
     pub(crate) frames: ShownSteps,
     pub(crate) map: MapPanel,
-    /// Watches for events that ring the bell.
+    /// Detects events that ring the bell.
     pub(crate) watch: Watch,
-    /// The time in the game at which the last picture changes without a cause.
+    /// The game time at which the last picture changes by itself.
     pub(crate) next_change: Option<f64>,
     pub(crate) ghosts: Ghosts,
     pub(crate) shows_members: bool,
-    /// Whether the player is in the air in the last picture.
+    /// Whether the player is airborne in the last picture.
     pub(crate) is_airborne: bool,
-    /// The time since which pictures show the player dead; `None` if the last one does not.
+    /// The time since when pictures have shown the player dead; `None` if the last one does not.
     pub(crate) dead_since: Option<Duration>,
-    /// Whether the dead begin the round again, in place of going on from a checkpoint.
+    /// Whether a dead player restarts the round instead of continuing from a checkpoint.
     pub(crate) dies_for_good: bool,
     /// The members who could be watched in the last picture.
     members: Vec<MemberId>,
-    /// The content of the last picture; `None` before the first one.
+    /// The state shown in the last picture; `None` before the first.
     shown: Option<Shown>,
 }
 
-/// The part of a room that a picture depends on.
+/// The part of a room's state that a picture depends on.
 #[derive(Debug)]
 struct Shown {
     header: Arc<Header>,
@@ -56,7 +56,7 @@ struct Shown {
     members: Vec<MemberView>,
     ghosts: Vec<Figure>,
     standings: usize,
-    /// The time in the game of the next change that nobody causes.
+    /// The game time at which the picture next changes by itself.
     animates_at: Option<f64>,
 }
 
@@ -82,7 +82,7 @@ impl Stay {
         }
     }
 
-    /// Takes over what is new in `room` before it is drawn; returns what is wanted to draw it.
+    /// Updates the stay from `room` before it is drawn; returns a request for data that the picture needs.
     pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
         self.talk.hear(&room.said, now);
         self.talk.forget_old(now);
@@ -98,7 +98,7 @@ impl Stay {
             }
             self.watch.look_at(&room.game, player);
         }
-        // A picture without the level changes with nothing in it.
+        // The blank view contains no part of the level that could change.
         self.next_change = None;
         let playing = room.members.iter().filter(|member| member.finish.is_none());
         self.members = playing.map(|member| member.id).collect();
@@ -107,7 +107,7 @@ impl Stay {
         }
         let seen_through = self.seen_through(room).map(|(member, _)| member.id);
         self.is_watching = self.member.is_none() || seen_through != self.member;
-        // Tab chooses another one then.
+        // Tab selects another member then.
         self.shows_members &= !self.is_watching;
         let own = self.member.and_then(|id| room.game.seen_by(room.member(id)?.player?));
         self.is_airborne = own.is_some_and(|player| player.is_airborne());
@@ -118,7 +118,7 @@ impl Stay {
         begins.then(|| self.ghosts.begin(room)).flatten()
     }
 
-    /// Whether `room` has acted on all that the member wants.
+    /// Returns true if `room` has acted on all of the member's intents.
     pub(crate) fn has_acted(&self, room: &RoomView) -> bool {
         let acted = self.member.and_then(|id| room.acted(id));
         acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
@@ -139,8 +139,9 @@ impl Stay {
         self.ghosts.seen(room, own, is_on).map(|seen| seen.figure)
     }
 
-    /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
-    /// Those who have finished are seen through only if nobody else plays. `None` if nobody is there.
+    /// The member through whose eyes the room is shown: the visitor until they finish, and then the watched
+    /// member. Members who have finished are used only if nobody is still playing. `None` if the room is
+    /// empty.
     pub(crate) fn seen_through<'r>(
         &self,
         room: &'r RoomView,
@@ -159,7 +160,7 @@ impl Stay {
         self.seen_through(room).map_or_else(start, |(_, player)| player.camera(view))
     }
 
-    /// Watches the next member, or the one before.
+    /// Watches the next member, or the previous one if `forward` is false.
     pub(crate) fn watch_another(&mut self, forward: bool) {
         let count = self.members.len();
         if count > 0 {
@@ -169,7 +170,7 @@ impl Stay {
         }
     }
 
-    /// Whether a picture of `room` would differ from the last one.
+    /// Returns true if a picture of `room` would differ from the last one.
     pub(crate) fn differs_from(
         &self,
         room: &RoomView,
@@ -206,15 +207,15 @@ impl Stay {
     }
 }
 
-/// The ghosts of the level that is played.
+/// The ghosts of the current level.
 #[derive(Debug, Default)]
 pub(crate) struct Ghosts {
-    /// The level that they were asked for.
+    /// The level for which they were requested.
     level: Option<(String, Difficulty)>,
     ghosts: Option<Arc<[Ghost]>>,
 }
 
-/// A ghost in a step.
+/// A ghost at its current position.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SeenGhost<'g> {
     pub(crate) ghost: &'g Ghost,
@@ -223,7 +224,7 @@ pub(crate) struct SeenGhost<'g> {
 }
 
 impl Ghosts {
-    /// Forgets all at the beginning of a round; returns the request for the ghosts of its level.
+    /// Resets the ghosts at the start of a round; returns the request for the ghosts of its level.
     pub(crate) fn begin(&mut self, room: &RoomView) -> Option<Request> {
         *self = Self::default();
         let header = &room.header;
@@ -234,15 +235,15 @@ impl Ghosts {
         })
     }
 
-    /// Takes the ghosts of a level, if it is still played.
+    /// Stores the ghosts of a level, if it is still the current one.
     pub(crate) fn receive(&mut self, level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]>) {
         if self.level == Some((level, difficulty)) {
             self.ghosts = Some(ghosts);
         }
     }
 
-    /// The ghosts where they are now, if they are switched on; the visitor's own one in their colour. There are
-    /// some only while the round is played.
+    /// The ghosts at their current positions, if they are switched on. The visitor's own ghost has their
+    /// colour. There are none unless the round is being played.
     pub(crate) fn seen<'g>(
         &'g self,
         room: &'g RoomView,
@@ -266,7 +267,7 @@ fn times(room: &RoomView) -> [Option<u64>; 2] {
     [seconds_left(room), run_seconds(room)]
 }
 
-/// The seconds of a round whose time counts; `None` in the others.
+/// The running time of the round, in seconds; `None` in modes that do not count it.
 pub(crate) fn run_seconds(room: &RoomView) -> Option<u64> {
     match room.header.mode {
         Mode::Race | Mode::Together | Mode::Alone => {
@@ -276,11 +277,11 @@ pub(crate) fn run_seconds(room: &RoomView) -> Option<u64> {
     }
 }
 
-/// The seconds until something that the picture counts down to; `None` if it counts nothing down.
+/// The seconds left in the countdown that the picture shows; `None` if it shows none.
 pub(crate) fn seconds_left(room: &RoomView) -> Option<u64> {
     let counts = |ends: u64| match room.header.mode {
         Mode::Tag | Mode::Hide => true,
-        // Others may go on for a while after the first one has finished.
+        // After the first finish, the time left is limited.
         mode => mode.after_first().is_some_and(|last| ends.saturating_sub(room.step) <= last),
     };
     match room.phase {

@@ -1,4 +1,4 @@
-//! The latest lines of chat, at the lower left of the picture for as long as they are shown.
+//! The latest chat lines, shown for a while at the lower left of the picture.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use cellcaster::tui::canvas::Canvas;
 
 /// How long a line is shown.
 const SHOWN: Duration = Duration::from_secs(8);
-/// The most lines that are shown.
+/// The maximum number of lines shown.
 const MAX_LINES: usize = 5;
 /// The number of earlier lines that a new arrival sees.
 const EARLIER: u64 = 2;
@@ -30,18 +30,18 @@ pub(crate) struct Remark {
     is_of_host: bool,
 }
 
-/// The lines that are shown.
+/// The lines on display.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Talk {
-    /// The number of the last line in the room that is known; `None` before the first look.
+    /// The number of the last line received from the room; `None` before the first look.
     known: Option<u64>,
     remarks: VecDeque<Remark>,
-    /// Whether the visitor does not want to read chat.
+    /// Whether the visitor has switched chat off.
     is_off: bool,
 }
 
 impl Talk {
-    /// Takes what is new in `said`.
+    /// Adds the new lines in `said`.
     pub(crate) fn hear(&mut self, said: &[Said], now: Duration) {
         let Some(last) = said.last().map(|said| said.number) else { return };
         let known = self.known.unwrap_or(last.saturating_sub(EARLIER));
@@ -52,24 +52,24 @@ impl Talk {
         }
     }
 
-    /// Shows a line of the host, even if chat is off.
+    /// Shows a line from the host, even if chat is off.
     pub(crate) fn hear_host(&mut self, text: String, now: Duration) {
         self.push(Remark { by: None, text, until: now + SHOWN, is_of_host: true });
     }
 
-    /// Whether `said` has lines that are new.
+    /// Returns true if `said` contains new lines.
     pub(crate) fn is_behind(&self, said: &[Said]) -> bool {
         said.last().is_some_and(|said| self.known != Some(said.number))
     }
 
-    /// Removes the lines that have been shown for long enough.
+    /// Removes expired lines; returns whether there were any.
     pub(crate) fn forget_old(&mut self, now: Duration) -> bool {
         let before = self.remarks.len();
         self.remarks.retain(|remark| remark.until > now);
         self.remarks.len() < before
     }
 
-    /// When the next line is removed.
+    /// The time at which the next line expires.
     pub(crate) fn next_end(&self) -> Option<Duration> {
         self.remarks.iter().map(|remark| remark.until).min()
     }
@@ -79,12 +79,12 @@ impl Talk {
         self.is_off = !self.is_off;
     }
 
-    /// Whether chat is shown.
+    /// Returns true if chat is shown.
     pub(crate) fn is_on(&self) -> bool {
         !self.is_off
     }
 
-    /// The lines to show, the newest last.
+    /// The lines to show, newest last.
     pub(crate) fn shown(&self) -> impl DoubleEndedIterator<Item = &Remark> {
         self.remarks.iter().filter(|remark| !self.is_off || remark.is_of_host)
     }
@@ -97,10 +97,10 @@ impl Talk {
     }
 }
 
-/// The rows of a picture that are left to others.
+/// The rows at the top of the picture that stay free.
 const ROWS_ABOVE: u16 = 3;
 
-/// Draws `remarks`, the newest at the bottom; above the typed line if there is one.
+/// Draws `remarks`, newest at the bottom, or above the typed line if there is one.
 pub(crate) fn draw<'r>(
     canvas: &mut impl Canvas,
     picture: Rect,

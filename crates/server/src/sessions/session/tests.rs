@@ -1,4 +1,4 @@
-//! Sessions of clients with terminal emulators and one room, in simulated time.
+//! Tests of sessions: clients with terminal emulators and one room, in simulated time.
 
 mod bytes;
 mod ghosts;
@@ -15,17 +15,17 @@ use cellcaster::terminal::CellWriter;
 use cellcaster::world::FieldOfView;
 
 impl Session {
-    /// The number of the visitor as a member.
+    /// The visitor's number as a member.
     pub(crate) fn member(&self) -> Option<MemberId> {
         self.ui.stay.as_ref()?.member
     }
 
-    /// Whether the terminal shows all that there is to see.
+    /// Returns true if the terminal shows the current picture in full.
     pub(crate) fn is_settled(&self, room: Option<&RoomView>) -> bool {
         !self.ui.is_stale(room) && self.protocol.is_settled()
     }
 
-    /// What the next frame waits for.
+    /// Describes what the next frame is waiting for.
     pub(crate) fn wait(&self, room: Option<&RoomView>) -> String {
         let Self { protocol, ui, ending, pace, .. } = self;
         let (is_ready, is_settled) = (protocol.is_ready(ui.now), protocol.is_settled());
@@ -37,7 +37,7 @@ impl Session {
         )
     }
 
-    /// The bytes that draw the present picture on an empty terminal.
+    /// The bytes that draw the current picture on an empty terminal.
     pub(crate) fn whole_picture(&mut self, room: Option<&RoomView>) -> Vec<u8> {
         let size = self.protocol.size();
         let size = ratatui::layout::Size::new(size.columns, size.rows);

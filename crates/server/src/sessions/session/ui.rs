@@ -1,5 +1,4 @@
-//! The interface of a session, without the terminal: its state, the events of the driver, and what is due at
-//! which time.
+//! The user interface of a session, without the terminal: its state, the driver's events, and timed actions.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -20,10 +19,10 @@ use cellcaster::game::Intents;
 use cellcaster::terminal::Key;
 use cellcaster::world::FieldOfView;
 
-/// The most requests that wait for the driver. Further ones are dropped: they come from a paste.
+/// The maximum number of queued requests. Further ones are dropped, because only a paste produces that many.
 const MAX_REQUESTS: usize = 64;
 
-/// The state of a session.
+/// The state of a session's user interface.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(crate) struct Ui {
     pub(crate) identity: Identity,
@@ -40,39 +39,39 @@ pub(crate) struct Ui {
     pub(crate) detection: Detection,
     pub(crate) pages: Pages<Page, Choice>,
     pub(crate) entry: LineEntry,
-    /// Whether the driver is asked about the name.
+    /// Whether a request for a name is pending.
     pub(crate) awaits_name: bool,
-    /// A sentence about what happened last.
+    /// A sentence about the latest event.
     pub(crate) note: Option<String>,
-    /// When the server ends, if it does.
+    /// The server's shutdown, once announced.
     pub(crate) draining: Option<Draining>,
     pub(crate) rooms: Arc<[RoomSummary]>,
     pub(crate) board: Board,
-    /// The room that the visitor is in.
+    /// The visitor's stay in a room; `None` in the lobby.
     pub(crate) stay: Option<Stay>,
     pub(crate) status: StatusLine,
-    /// The figures of frames and the link, and whether the status line shows them.
+    /// The statistics of frames and the link, and whether the status line shows them.
     pub(crate) stats: Option<Stats>,
     pub(crate) shows_stats: bool,
     /// Whether compression would make pictures finer, as far as is known.
     pub(crate) wants_compression: bool,
     pub(crate) idle: Idle,
-    /// The number of frames that the terminal has answered.
+    /// The number of frames that the terminal has acknowledged.
     pub(crate) answered: u64,
     /// The time of the last event.
     pub(crate) now: Duration,
-    /// Whether the screen must be drawn again, whatever the room does.
+    /// Whether the screen must be redrawn, regardless of the room.
     pub(crate) is_stale: bool,
-    /// Why the session ends, if it does.
+    /// The reason why the session ends, once it does.
     pub(crate) farewell: Option<String>,
 }
 
-/// The board that is shown.
+/// The board on display.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Board {
     /// The index of the level in the catalog.
     pub(crate) level: usize,
-    /// The entries; `None` before they are known.
+    /// The entries; `None` until they arrive.
     pub(crate) rows: Option<Arc<[BoardRow]>>,
 }
 
@@ -123,19 +122,19 @@ impl Ui {
         }
     }
 
-    /// Requests something of the driver.
+    /// Queues a request to the driver.
     pub(crate) fn ask(&mut self, request: Request) {
         if self.requests.len() < MAX_REQUESTS {
             self.requests.push(request);
         }
     }
 
-    /// The room with that number, if it is listed.
+    /// The room with this number, if it is listed.
     pub(crate) fn room(&self, id: RoomId) -> Option<&RoomSummary> {
         self.rooms.iter().find(|room| room.id == id)
     }
 
-    /// Whether a new picture would differ from the present one.
+    /// Returns true if a new picture would differ from the current one.
     pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
         let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
         let differs =
@@ -143,7 +142,7 @@ impl Ui {
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 
-    /// Does what is due at `now`.
+    /// Handles everything that is due at `now`.
     pub(crate) fn wake(&mut self, now: Duration) {
         self.advance(now);
         self.settle();
@@ -157,7 +156,7 @@ impl Ui {
         }
     }
 
-    /// The time at which to wake again.
+    /// The time of the next wake-up.
     pub(crate) fn wakes_at(&self) -> Option<Duration> {
         let held = &self.controls.held;
         let tap = self.is_playing() && held.has_taps();
@@ -175,7 +174,7 @@ impl Ui {
         times.into_iter().flatten().min()
     }
 
-    /// Counts the steps up to `now`, and tells the room what the visitor wants in them.
+    /// Advances the controls step by step up to `now`, and sends the visitor's intents to the room.
     pub(crate) fn advance(&mut self, now: Duration) {
         let before = std::mem::replace(&mut self.now, now);
         if self.draining.is_some_and(|it| it.seconds(before) != it.seconds(now)) {
@@ -192,7 +191,7 @@ impl Ui {
         self.want();
     }
 
-    /// Turns by what the mouse has moved in a step.
+    /// Turns the player by the mouse's movement in one step.
     fn turn(&mut self) {
         if !self.is_playing() {
             return;
@@ -203,7 +202,7 @@ impl Ui {
         self.pointer.passed(1);
     }
 
-    /// Tells the room what the held keys and the buttons of the mouse want.
+    /// Sends the intents of held keys and mouse buttons to the room.
     pub(crate) fn want(&mut self) {
         let intents = if self.is_playing() {
             let keys = self.controls.intents(&self.bindings, self.key_context());
@@ -219,7 +218,7 @@ impl Ui {
         }
     }
 
-    /// Whether keys walk.
+    /// Returns true if keys control the player.
     pub(crate) fn is_playing(&self) -> bool {
         self.page() == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
     }
@@ -229,7 +228,7 @@ impl Ui {
         KeyContext { plays: self.is_playing(), is_airborne, flies: false }
     }
 
-    /// Releases all keys, as if nobody touched the keyboard.
+    /// Releases all held keys and stops continuous walking.
     pub(crate) fn release_keys(&mut self) {
         self.controls.held.release_all();
         self.controls.toggles.keeps_walking = false;
@@ -243,7 +242,7 @@ impl Ui {
         }
     }
 
-    /// Puts out a visitor who has pressed no key for too long.
+    /// Removes an idle visitor from the room, or ends the session.
     fn put_out(&mut self) {
         let minutes = self.idle_limit().as_secs().div_ceil(60);
         self.idle.restart(self.now);
@@ -257,9 +256,9 @@ impl Ui {
     }
 }
 
-/// The events of the driver.
+/// Events from the driver.
 impl Ui {
-    /// Records an event of the driver.
+    /// Handles an event from the driver.
     pub(crate) fn notify(&mut self, event: SessionEvent) {
         self.is_stale = true;
         match event {
@@ -314,7 +313,7 @@ impl Ui {
         }
     }
 
-    /// Shows the lobby for the first time.
+    /// Shows the lobby after the name is chosen.
     pub(crate) fn enter_lobby(&mut self) {
         self.note = None;
         self.ask(Request::Rooms);
@@ -331,7 +330,7 @@ impl Ui {
     }
 }
 
-/// The bindings without the keys that have another meaning in a room.
+/// The key bindings without the keys that have another meaning in a room.
 pub(crate) fn bindings_of(configuration: &Configuration) -> Bindings {
     let keys = ['/', ';', '1'].map(Key::Char);
     configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])

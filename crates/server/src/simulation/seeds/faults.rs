@@ -1,13 +1,13 @@
-//! What happens to the clients of a run, their links and the server.
+//! Faults of a run's clients, their links and the server.
 
 use std::time::Duration;
 
 use super::{CLIENTS, HOSTILE, Run};
 
-/// The time after which a connection notices that its client is gone, as the configuration has it.
+/// How long a connection takes at most to notice that its client is gone, in milliseconds; the
+/// configuration's default.
 const SILENCE: u64 = 12_000;
-/// The most frames that are sent to a client after it has stopped reading: one that it had begun to
-/// take, and one that waits.
+/// The maximum number of frames sent to a client after it stops reading: one partly received, and one waiting.
 const MOST_HELD: u64 = 2;
 const KEYS: [&str; 20] = [
     "\x1b[119;1:1u",
@@ -33,7 +33,7 @@ const KEYS: [&str; 20] = [
 ];
 
 impl Run {
-    /// Something happens to a client that is not the steady one.
+    /// Disturbs a random client other than the steady one.
     pub(crate) fn disturb(&mut self) {
         let others = &self.connected[1..];
         if others.is_empty() {
@@ -75,14 +75,13 @@ impl Run {
         }
     }
 
-    /// The terminal of the client answers nothing any more. It gets no frame after the one that it has
-    /// not answered.
+    /// Stops the terminal's replies. The client gets no frame after the frame that it has not acknowledged.
     fn mute(&mut self, client: usize) {
         self.rig.clients[client].set(|link| link.answers = false);
         self.mute.push(client);
     }
 
-    /// The client takes nothing any more.
+    /// Stops the client from reading.
     fn stall(&mut self, client: usize) {
         let Self { rig, silent, .. } = self;
         if silent.iter().all(|(other, _)| *other != client) {
@@ -102,7 +101,7 @@ impl Run {
         }
     }
 
-    /// The link of a client is cut without a word. Its connection notices that later.
+    /// Cuts a client's link silently. The connection notices it later.
     fn cut(&mut self, client: usize) {
         self.stall(client);
         self.rig.clients[client].set(|link| link.answers = false);
@@ -112,7 +111,7 @@ impl Run {
         self.cut.push((client, notices));
     }
 
-    /// The client closes its connection.
+    /// Closes the client's connection.
     pub(crate) fn leave(&mut self, client: usize) {
         self.connected.retain(|other| *other != client);
         self.silent.retain(|(other, _)| *other != client);
@@ -124,7 +123,7 @@ impl Run {
         self.connected.iter().for_each(|&client| self.rig.clients[client].drain());
     }
 
-    /// The connections whose clients are gone for long enough notice it.
+    /// Lets connections notice that their clients are gone, where that is due.
     pub(crate) fn notice(&mut self) {
         let now = self.rig.now();
         let due: Vec<usize> = self

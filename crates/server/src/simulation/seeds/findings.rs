@@ -1,4 +1,4 @@
-//! What is true after each run.
+//! The conditions that hold after each run.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,14 +12,14 @@ use crate::simulation::looks::looks;
 use crate::simulation::tapes::{assert_same, replayed};
 use crate::simulation::{ROOM, Speaks, catalog};
 
-/// The longest time between two pictures of the steady member: three frames of thirty a second.
+/// The longest time between two frames of the steady member: three frames at thirty per second.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 
-/// The longest time from a key of the bystander to the picture that answers it.
+/// The longest time from the bystander's key to the frame that answers it.
 const LONGEST_ANSWER: Duration = Duration::from_millis(100);
 
 impl Run {
-    /// Nothing has delayed the pictures of the steady member.
+    /// Asserts that the frames of the steady member were never delayed.
     pub(crate) fn assert_steady(&self, begun: Instant, end: Instant) {
         let arrivals = self.rig.clients[STEADY].arrivals();
         let times: Vec<Instant> =
@@ -29,7 +29,7 @@ impl Run {
         assert!(longest <= Some(LONGEST_PAUSE), "{longest:?} without a picture");
     }
 
-    /// Each key of the bystander was answered in time.
+    /// Asserts that each of the bystander's keys was answered in time.
     pub(crate) fn assert_answered(&mut self) {
         self.rig.pump(BETWEEN_KEYS.as_millis() as u64);
         let Some(Bystander { client, pressed }) = &self.bystander else { return };
@@ -41,7 +41,7 @@ impl Run {
         }
     }
 
-    /// The recordings of all rooms that are open give their states again.
+    /// Asserts that replaying the recordings of all open rooms reproduces their states.
     pub(crate) fn assert_replays(&self) {
         let levels = Arc::new(catalog(&hall()));
         for room in self.rig.tapes.rooms() {
@@ -53,7 +53,7 @@ impl Run {
         }
     }
 
-    /// The members of rooms are those who are connected and think so.
+    /// Asserts that the members of the rooms are the connected visitors whose sessions are in a room.
     pub(crate) fn assert_members(&self) {
         let rooms = self.rig.rooms().summaries().borrow().clone();
         let mut members: Vec<String> =
@@ -70,11 +70,11 @@ impl Run {
         assert_eq!(members, connected);
     }
 
-    /// Each screen shows what its session draws on an empty one.
+    /// Asserts that each screen shows the picture that its session would draw on an empty screen.
     pub(crate) fn assert_screens(&mut self) {
         let answering = self.connected.iter().filter(|client| !self.mute.contains(client));
         for client in answering.copied().collect::<Vec<_>>() {
-            // While a picture counts seconds down, a new one may be on its way.
+            // While the picture contains a countdown, a new frame may be in flight.
             let is_settled = (0..50).any(|_| {
                 self.rig.pump(30);
                 self.is_settled(client)
@@ -101,7 +101,7 @@ impl Run {
                 && self.rig.session(client, |session, room| session.is_settled(room))
     }
 
-    /// Nothing that somebody typed has reached a terminal but printable characters.
+    /// Asserts that no escape sequence in a visitor's input has reached a terminal.
     pub(crate) fn assert_harmless(&self) {
         for client in &self.rig.clients {
             let (title, is_obeyed) = client.look(|emulator| {
@@ -112,7 +112,7 @@ impl Run {
         }
     }
 
-    /// All leave, and no task is left but those of the host.
+    /// Disconnects everybody and asserts that only the host's tasks are left.
     pub(crate) fn assert_no_task_left(mut self) {
         let bystander = self.bystander.take().map(|bystander| bystander.client);
         for client in std::mem::take(&mut self.connected).into_iter().chain(bystander) {
@@ -120,7 +120,7 @@ impl Run {
         }
         self.rig.pump(100);
         assert_eq!(self.rig.view().members.len(), 0);
-        // Rooms that others have opened are closed after a minute.
+        // Rooms opened by visitors close after a minute.
         self.rig.pump(61_000);
         self.rig.clients.clear();
         self.rig.pump(100);
@@ -130,7 +130,7 @@ impl Run {
     }
 }
 
-/// The columns and rows of a screen.
+/// The number of columns and rows of a screen.
 fn size(emulator: &Emulator) -> (u16, u16) {
     let (rows, columns) = emulator.screen().size();
     (columns.get(), rows.get())

@@ -1,4 +1,4 @@
-//! `cellcaster admin`.
+//! `cellcaster-server admin`.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -17,7 +17,7 @@ fn admin(folder: &Path, arguments: &[&str]) -> Output {
     server(&["admin"]).args(arguments).args(["--data"]).arg(folder).output().unwrap()
 }
 
-/// What `admin` writes, which succeeds.
+/// Runs `admin`, asserts success, and returns its output.
 fn written(folder: &Path, arguments: &[&str]) -> String {
     let output = admin(folder, arguments);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -25,7 +25,7 @@ fn written(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The sentence of `admin`, which fails.
+/// Runs `admin`, asserts failure, and returns the error message.
 fn complaint(folder: &Path, arguments: &[&str]) -> String {
     let output = admin(folder, arguments);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -89,7 +89,7 @@ fn a_ban_ends_sessions_and_is_kept() {
     visitor.wait_for("You are banned from this host: floods");
     visitor.wait_for_end();
     let bans = running.admin_says(&["bans"]);
-    // A second later it is less than seven days.
+    // A second later, the remaining time is less than seven days.
     let has_time = bans.contains("7d 0h") || bans.contains("6d 23h");
     assert!(has_time && bans.contains("127.0.0.1/32") && bans.contains("floods"), "{bans}");
 }
@@ -102,7 +102,7 @@ fn bans_work_while_no_server_runs() {
     store.create_account(None, &key, &Name::new("Ada").unwrap(), now).unwrap();
     drop(store);
     assert_eq!(written(&folder, &["bans"]), "nobody is banned\n");
-    // The key of an account goes with its name.
+    // A ban on a name includes the key of its account.
     let said = written(&folder, &["ban", "ADA", "--reason", "'; DROP TABLE bans; --"]);
     assert_eq!(said, format!("banned ADA and {key} for ever; no server runs\n"));
     written(&folder, &["ban", "--key", &AccountKey::new([2; 32]).to_string(), "--for", "30m"]);
@@ -150,7 +150,7 @@ fn what_is_wrong_is_told_in_a_sentence() {
     assert!(!folder.join("host.db").exists());
 }
 
-/// The answer to `line` at the socket of a server.
+/// The response of a server's admin socket to `line`.
 fn answer(folder: &Path, line: &[u8]) -> String {
     let mut stream = UnixStream::connect(folder.join("admin.sock")).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();

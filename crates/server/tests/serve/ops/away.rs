@@ -1,4 +1,4 @@
-//! Results of runs that end while the database is away.
+//! Results of runs that end while the database is unreachable.
 
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -13,7 +13,7 @@ use crate::player::Player;
 use crate::postgres_server::PostgresServer;
 use crate::transport::{folder, wait_until};
 
-/// A host over a database of its own, with one map and metrics.
+/// A host with its own database, one map and metrics.
 struct Host {
     postgres: PostgresServer,
     store: String,
@@ -38,7 +38,7 @@ impl Host {
         scrape(self.metrics)["cellcaster_results_waiting"]
     }
 
-    /// Names, steps and times of the results in the database, in the order of the times.
+    /// The name, steps and time of each result in the database, ordered by time.
     fn results(&self) -> Vec<(String, u64, u64)> {
         let place = self.store.rsplit_once("%3D").unwrap().1;
         let rows = self.postgres.sql(&format!(
@@ -53,22 +53,22 @@ impl Host {
     }
 }
 
-/// A new key.
+/// A new key for a user.
 fn key() -> PathBuf {
     user_key(&folder())
 }
 
-/// Goes into the map of the host, alone.
+/// Enters the host's own map in single-player mode.
 fn go_in(player: &Player) {
     player.wait_for("The moss hall");
-    // The last level of the list.
+    // The last level in the list.
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
     player.wait_for("comes in.");
 }
 
-/// Walks to the exit, until `sentence` says what became of the result.
+/// Walks to the exit until `sentence` appears, which states the outcome of the result.
 fn win(player: &Player, sentence: &str) {
     wait_until(sentence, || {
         player.send("w");
@@ -98,7 +98,7 @@ fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_we
         let start = now();
         win(player, KEPT);
         told.push(start..=now());
-        // Times are whole seconds.
+        // Stored times are whole seconds.
         wait_until("the next second", || now() > *told.last().unwrap().end());
     }
     assert_eq!(host.waiting(), 2.0);
@@ -125,7 +125,7 @@ fn a_player_who_is_still_there_reads_that_the_result_is_recorded() {
     let mara = host.running.player(Some(&key()));
     choose(&mara, "Mara", "4");
     go_in(&mara);
-    // The server neither answers nor closes its connections.
+    // A paused server neither answers nor closes its connections.
     host.postgres.pause();
     win(&mara, KEPT);
     host.postgres.resume();

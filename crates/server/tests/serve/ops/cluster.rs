@@ -1,4 +1,4 @@
-//! Three hosts over one NATS server and one PostgreSQL.
+//! Three hosts with one NATS server and one PostgreSQL database.
 
 mod cut_off;
 mod limits;
@@ -26,16 +26,16 @@ use crate::postgres_server::PostgresServer;
 use crate::support::server;
 use crate::transport::folder;
 
-/// The longest time in which a room goes on after its host was killed.
+/// The longest time until a room continues after its host was killed.
 const TAKEOVER: Duration = Duration::from_secs(5);
 
 /// Hosts that share their rooms.
 struct Hosts {
-    /// Each with the address of its metrics.
+    /// The hosts, each with the address of its metrics.
     running: Vec<(Running, SocketAddr)>,
     nats: NatsServer,
     postgres: PostgresServer,
-    /// The address of their store.
+    /// The address of the shared store.
     store: String,
 }
 
@@ -44,7 +44,7 @@ impl Hosts {
         Self::start_with(count, "")
     }
 
-    /// Hosts with these settings.
+    /// Hosts with these extra settings.
     fn start_with(count: usize, settings: &str) -> Self {
         let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
         let (bus, store) = (nats.address(), postgres.address());
@@ -53,7 +53,7 @@ impl Hosts {
         Self { running, nats, postgres, store }
     }
 
-    /// Two hosts, of which the first one is in a network of its own.
+    /// Two hosts, the first of which runs in a separate network.
     fn start_behind(network: &Network) -> Self {
         let shared = network.shared();
         let (nats, postgres) = (NatsServer::start_at(shared), PostgresServer::start_at(shared));
@@ -65,7 +65,7 @@ impl Hosts {
         Self { running, nats, postgres, store }
     }
 
-    /// A player on a host, who is in the first room.
+    /// A player on a host who has entered the first room.
     fn player(&self, host: usize, name: &str) -> Player {
         let player = self.running[host].0.visitor();
         enter_room(&player, name);
@@ -76,7 +76,7 @@ impl Hosts {
         self.figures(host)[&format!("cellcaster_{name}")]
     }
 
-    /// All figures of a host, each of which has the name of the host, which is left out here.
+    /// All metrics of a host, without the host label that each of them has.
     fn figures(&self, host: usize) -> BTreeMap<String, f64> {
         let lines = scrape_at(self.running[host].1).into_iter().map(|(line, value)| {
             let (name, rest) = line.split_once("{host=\"").expect(&line);
@@ -88,20 +88,20 @@ impl Hosts {
         lines.collect()
     }
 
-    /// Asserts that hosts have compared the states of rooms since, and found no difference.
+    /// Asserts that the hosts have compared room states at least `least` times and found no difference.
     fn assert_equal(&self, hosts: &[usize], least: f64) {
         for &host in hosts {
             assert_eq!(self.figure(host, "room_checks_total{result=\"different\"}"), 0.0);
         }
         let equal = |host: &usize| self.figure(*host, "room_checks_total{result=\"equal\"}");
         let equal: Vec<f64> = hosts.iter().map(equal).collect();
-        // The sequencer's own host has nothing to compare with.
+        // The host that runs the sequencer has nothing to compare.
         let compared = equal.iter().filter(|count| **count >= least).count();
         assert!(compared >= hosts.len() - 1, "{equal:?}");
     }
 }
 
-/// A host in a namespace of networks, with metrics at `address`, and where they are.
+/// A host in a network namespace, with metrics at `address`; returns it with the address of its metrics.
 fn host(
     namespace: Option<&str>,
     address: Ipv4Addr,
@@ -116,7 +116,7 @@ fn host(
     (running, (address, port).into())
 }
 
-/// Says something that `other` reads, and returns the time that it takes.
+/// Sends a chat line and waits until `other` shows it; returns the time that this took.
 fn says(player: &Player, other: &Player, text: &str) -> Duration {
     let start = Instant::now();
     player.send(format!("/{text}\r"));
@@ -124,8 +124,8 @@ fn says(player: &Player, other: &Player, text: &str) -> Duration {
     start.elapsed()
 }
 
-/// Waits until a player reads what they say, in a room that has lost its host; returns the time. What is said
-/// before another one has the room is lost.
+/// In a room that has lost its host, sends chat lines until the player sees one of them; returns the time.
+/// Lines sent before another host takes over the room are lost.
 fn goes_on(player: &Player, text: &str) -> Duration {
     let start = Instant::now();
     while !player.text().contains(&format!("Jon {text}")) {

@@ -1,4 +1,4 @@
-//! What docs/hosting.md and docs/hosting/ say, tried.
+//! Tests of the examples in docs/hosting.md and docs/hosting/.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ fn document(name: &str) -> String {
     fs::read_to_string(docs.join(name)).unwrap()
 }
 
-/// The blocks of code in a language.
+/// The code blocks in a language.
 fn blocks(text: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}\n");
     let blocks = text.split(fence.as_str()).skip(1).filter_map(|rest| rest.split_once("```"));
@@ -32,8 +32,8 @@ fn configurations_in_the_documents_are_right() {
     }
 }
 
-/// Every line of a shell block that runs the program names a command and options that there are. A
-/// folder without a host answers commands about one with a sentence.
+/// Every line of a shell block that runs the program must use existing commands and options. A command about
+/// a host fails with a sentence if the folder contains none.
 #[test]
 fn commands_in_the_documents_are_right() {
     let text = document("hosting.md");
@@ -48,7 +48,7 @@ fn commands_in_the_documents_are_right() {
     for line in commands {
         let line = line.split(" #").next().unwrap().trim();
         let words: Vec<String> = words(line);
-        // A server would run on: its options are read before the help is written.
+        // `--help` keeps a server from running on. Its options are still parsed first.
         let help = if words.first().is_none_or(|word| word.starts_with("--")) {
             &["--help"][..]
         } else {
@@ -66,7 +66,7 @@ fn commands_in_the_documents_are_right() {
     }
 }
 
-/// The words of a command line, of which some are in double quotes.
+/// The words of a command line. Double quotes may enclose words with blanks.
 fn words(line: &str) -> Vec<String> {
     let parts = line.split('"').enumerate();
     parts
@@ -77,7 +77,7 @@ fn words(line: &str) -> Vec<String> {
         .collect()
 }
 
-/// The unit with the paths of this machine, and with its additions.
+/// The systemd unit with the paths of this machine and with its drop-in.
 fn unit() -> Option<PathBuf> {
     let has_systemd = Command::new("systemd-analyze").arg("--version").output().is_ok();
     has_systemd.then(|| {
@@ -87,7 +87,7 @@ fn unit() -> Option<PathBuf> {
         let folder = folder();
         let file = folder.join("cellcaster.service");
         fs::write(&file, text.replace("/usr/local/bin/cellcaster-server", program)).unwrap();
-        // What makes it a host of a cluster.
+        // The drop-in that makes the host part of a cluster.
         let additions = folder.join("cellcaster.service.d");
         fs::create_dir(&additions).unwrap();
         fs::write(additions.join("cluster.conf"), document("hosting/cluster.conf")).unwrap();
@@ -105,7 +105,7 @@ fn the_unit_is_what_systemd_takes() {
     assert!(about_it.is_empty() && output.status.success(), "{said}");
 }
 
-/// The commands of the unit are ones that the program takes.
+/// The unit must start the program with existing options.
 #[test]
 fn the_unit_starts_the_program_with_options_that_there_are() {
     let text = document("hosting/cellcaster.service");
@@ -126,7 +126,7 @@ fn the_unit_starts_the_program_with_options_that_there_are() {
 fn the_configuration_of_nats_is_what_it_takes() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     let output = Command::new("nats-server")
-        // The package puts it where the superuser looks.
+        // The package installs the program in a directory that only root's path contains.
         .env("PATH", format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default()))
         .args(["-t", "-c"])
         .arg(docs.join("hosting/nats-server.conf"))

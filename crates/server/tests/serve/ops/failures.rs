@@ -1,5 +1,5 @@
-//! Each system call that a host makes in the folder of its data fails once: while it starts and ends, and while a
-//! visitor takes a name and wins.
+//! Each system call that a host makes in its data folder fails once: while the host starts and stops, and
+//! while a visitor takes a name and wins.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -19,10 +19,10 @@ use crate::player::Player;
 use crate::strace::{Failure, Traced, failures};
 use crate::transport::{folder, wait_until};
 
-/// Of many calls of one name, one in this many fails, after the first ones.
+/// If a system call occurs often, only every nth failure is tested after the first n.
 const SAMPLED: u32 = 5;
 
-/// A closet with its exit in front of the start.
+/// A tiny room with the exit in front of the start.
 const CLOSET: &str = r##"title = "The moss closet"
 grid = '''
 #####
@@ -36,10 +36,10 @@ grid = '''
 ">" = { exit = true }
 "##;
 
-/// The account that is kept before.
+/// The key of an account that was stored earlier.
 const KEY: AccountKey = AccountKey::new([7; 32]);
 
-/// All that a host opens in the folder of its data.
+/// All paths in the data folder that a host opens.
 fn paths(folder: &Path) -> Vec<PathBuf> {
     let database = ["host.db", "host.db-wal", "host.db-shm", "host.db-journal"];
     let others =
@@ -53,7 +53,7 @@ fn sample(failures: Vec<Failure>) -> Vec<Failure> {
     failures.into_iter().filter(is_taken).collect()
 }
 
-/// Runs `test` for each failure, on as many threads as tests run on.
+/// Runs `test` for each failure, on four threads.
 fn for_each(failures: Vec<Failure>, test: impl Fn(&Failure) + Sync) {
     let waiting = Mutex::new(failures.into_iter());
     thread::scope(|scope| {
@@ -67,7 +67,7 @@ fn for_each(failures: Vec<Failure>, test: impl Fn(&Failure) + Sync) {
     });
 }
 
-/// A host that has run, with an account that has a result.
+/// The data folder of a host that has run before, with an account that has a result.
 fn host_that_has_run() -> PathBuf {
     let data = folder();
     let run = verify(WON, |_| None).unwrap();
@@ -90,8 +90,8 @@ fn copied(data: &Path) -> PathBuf {
     copy
 }
 
-/// Starts a host and ends it, unless it ends by itself. Returns its process; a host that fails says why in one
-/// sentence.
+/// Starts a host and stops it, unless it exits by itself. Returns its process id. A host that fails must
+/// state the reason in one sentence.
 #[track_caller]
 fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
     let log = data.join("log");
@@ -122,7 +122,8 @@ fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
 #[test]
 fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
     let before = host_that_has_run();
-    // While this store is open, its last change is in the log beside the file, as after a crash. The host copies it.
+    // While this store is open, its last change is only in the write-ahead log, as after a crash. The host
+    // gets a copy.
     let mut open = HostStore::open(&before).unwrap();
     let other = AccountKey::new([8; 32]);
     open.create_account(None, &other, &Name::new("Jon").unwrap(), UnixTime::new(1_795_300_001))
@@ -149,12 +150,12 @@ fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
     });
 }
 
-/// What a visitor was told that is kept.
+/// The promises that a visitor was given.
 #[derive(Debug, Default)]
 struct Told {
     name: bool,
     result: bool,
-    /// Recorded later.
+    /// The result is to be recorded later.
     waits: bool,
 }
 
@@ -164,7 +165,7 @@ fn wait_for_one(player: &Player, texts: &[&str]) {
     });
 }
 
-/// Takes the name Jon, and wins in the map of the host.
+/// Takes the name Jon and wins in the host's own map.
 fn win(player: &Player) -> Told {
     let mut told = Told::default();
     wait_for_one(player, &["Enter takes it", "can't look you up"]);
@@ -240,11 +241,11 @@ fn what_a_visitor_is_told_is_kept_whichever_system_call_fails() {
         happened.lock().unwrap().push(has_happened);
     });
     let happened = happened.into_inner().unwrap();
-    // What the host does in the background may move the last ones beyond the end.
+    // Background work of the host may shift the last failures beyond the end of the run.
     assert!(happened.iter().filter(|it| **it).count() * 2 > happened.len(), "{happened:?}");
 }
 
-/// Connections of clients that the system does not hand over now wait in its queue.
+/// While the system cannot hand over a connection, it waits in the queue.
 #[test]
 fn a_visitor_gets_in_after_a_failure_to_accept_one() {
     let running = Running::start("", "text");

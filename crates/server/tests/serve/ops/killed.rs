@@ -1,4 +1,4 @@
-//! What is left after a server was killed, and after it has drained.
+//! The data that remains after a server was killed, and after it has drained.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,14 +15,14 @@ use crate::player::Player;
 use crate::support::server;
 use crate::transport::folder;
 
-/// A host that records its rooms, and the folder of the recordings.
+/// A host that records its rooms, with the folder of the recordings.
 fn recorded(config: &str) -> (Running, PathBuf) {
     let recordings = folder();
     let options = ["--record-room", recordings.to_str().unwrap()];
     (Running::start_with(config, "text", &options), recordings)
 }
 
-/// A new user key.
+/// Creates a new user key.
 pub(crate) fn user_key(folder: &Path) -> PathBuf {
     let path = folder.join("user");
     let mut keygen = Command::new("ssh-keygen");
@@ -36,7 +36,7 @@ fn say(player: &Player, text: &str) {
     player.wait_for(text);
 }
 
-/// The recording of the first room, of which each line is whole, and which can be played again.
+/// The recording of the first room. Asserts that its last line is complete and that it can be replayed.
 fn recording(folder: &Path) -> String {
     let path = folder.join("room-1.log");
     let text = fs::read_to_string(&path).unwrap();
@@ -54,7 +54,7 @@ fn a_killed_server_loses_the_running_second_at_most() {
     let player = running.player(Some(&key));
     enter_room(&player, "Mara");
     say(&player, "the first words");
-    // The room writes its recording out once a second.
+    // The room flushes its recording once a second.
     thread::sleep(Duration::from_millis(1_500));
     say(&player, "the last words");
     running.signal(Signal::KILL);
@@ -84,7 +84,7 @@ fn a_server_that_drains_loses_nothing() {
     player.wait_for("The server ends in 2 seconds.");
     player.wait_for("The server ends in 1 second.");
     assert_eq!(player.wait_for_end().status.code(), Some(0));
-    // It was told up to a second after it began.
+    // The first countdown may come up to a second after the drain begins.
     assert!(begun.elapsed() >= Duration::from_secs(2), "{:?}", begun.elapsed());
     assert_eq!(running.wait_for_end(), Some(0));
     let text = recording(&recordings);
@@ -94,7 +94,7 @@ fn a_server_that_drains_loses_nothing() {
     running.player(Some(&key)).wait_for("> Mara");
 }
 
-/// A copy of `host.db` alone is a whole backup of a host that has ended.
+/// After a shutdown, a copy of `host.db` alone is a complete backup.
 #[test]
 fn a_server_that_ends_leaves_all_in_one_file() {
     let mut running = Running::start("drain-seconds = 0\n", "text");

@@ -1,4 +1,4 @@
-//! The host's own maps, and the rooms that its configuration names.
+//! The host's own maps, and the standing rooms in its configuration.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::player::Player;
 use crate::support::{game_program, server};
 use crate::transport::{folder, wait_until};
 
-/// A hall whose exit is a few steps ahead.
+/// A hall with the exit a few steps ahead of the start.
 pub(crate) const HALL: &str = r##"title = "The moss hall"
 grid = '''
 #########
@@ -27,7 +27,7 @@ grid = '''
 ">" = { exit = true }
 "##;
 
-/// A folder of maps.
+/// A folder with maps.
 pub(crate) fn maps(files: &[(&str, &str)]) -> PathBuf {
     let maps = folder();
     for (name, text) in files {
@@ -41,7 +41,7 @@ fn serve(arguments: &[&str]) -> Output {
     server(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
 }
 
-/// Asserts status 2, and returns the message.
+/// Asserts exit status 2 and returns the error message.
 fn complaint(arguments: &[&str]) -> String {
     let output = serve(arguments);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -60,7 +60,7 @@ fn replay(arguments: &[&Path]) -> Output {
     server(&["replay"]).args(arguments).output().unwrap()
 }
 
-/// Presses a number in the lobby and takes what the next pages offer, with a name that is new.
+/// Takes a new name, and presses `entry` in the lobby.
 pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
     player.wait_for("Enter takes it");
     player.send(format!("\x15{name}"));
@@ -111,7 +111,7 @@ fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
     let player = running.player(Some(&key));
     choose(&player, "Mara", "4");
     player.wait_for("The moss hall");
-    // The last level of the list.
+    // The last level in the list.
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
@@ -135,7 +135,7 @@ fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
         let text = String::from_utf8(replayed.stdout).unwrap();
         assert!(text.starts_with("round 1: Alone, for the board in The moss hall, "), "{text}");
     }
-    // A map with another text is another map.
+    // A map with different text counts as another map.
     fs::write(maps.join("moss.toml"), HALL.replace("#@....>.#", "#@...>..#")).unwrap();
     assert_eq!(replay(&[&recording, &maps]).status.code(), Some(2));
 }
@@ -156,7 +156,7 @@ fn standing_rooms_are_those_of_the_configuration_and_change_with_it() {
         text.lines().skip(1).map(row).collect::<Vec<_>>()
     };
     assert_eq!(rooms(), ["race moss", "hide cellar"]);
-    // Somebody is in the race.
+    // A player enters the race.
     let player = running.player(None);
     choose(&player, "Mara", "\r");
     player.wait_for("Mara's");
@@ -169,7 +169,7 @@ fn standing_rooms_are_those_of_the_configuration_and_change_with_it() {
     fs::write(&config, text(&format!("{hide}{tag}"))).unwrap();
     running.signal(Signal::HUP);
     wait_until("the new room", || rooms().contains(&"tag museum".to_owned()));
-    // The room that does not stand any more has a member.
+    // The old room is no longer standing, but it still has a member.
     assert_eq!(rooms(), ["race moss", "hide cellar", "tag museum"]);
     drop(player);
     wait_until("the end of the old room", || rooms() == ["hide cellar", "tag museum"]);

@@ -20,11 +20,11 @@ fn measured() -> (Running, u16) {
     (running, port)
 }
 
-/// The answer to what is sent, until the server closes the connection.
+/// Sends a request and returns everything that the server sends until it closes the connection.
 fn answer(address: impl ToSocketAddrs, request: &[u8]) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
-    // A server that has seen enough may have closed the connection.
+    // The server may close the connection before it has read everything.
     _ = stream.write_all(request);
     _ = stream.shutdown(Shutdown::Write);
     let mut answer = String::new();
@@ -36,7 +36,7 @@ pub(crate) fn scrape(port: u16) -> BTreeMap<String, f64> {
     scrape_at((Ipv4Addr::LOCALHOST, port))
 }
 
-/// The figures of a host that tells them at another address.
+/// The metrics of a host that serves them at `address`.
 pub(crate) fn scrape_at(address: impl ToSocketAddrs) -> BTreeMap<String, f64> {
     let answer = answer(address, b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
     let (head, body) = answer.split_once("\r\n\r\n").unwrap();
@@ -88,7 +88,7 @@ fn what_is_no_request_is_answered_and_costs_no_other() {
         let answer = answer(("127.0.0.1", port), request);
         assert!(answer.is_empty() || answer.contains(status), "{answer}");
     }
-    // These say nothing, and hold all places for two seconds.
+    // These clients send nothing, and occupy all slots for two seconds.
     let silent: Vec<TcpStream> =
         (0..20).map(|_| TcpStream::connect(("127.0.0.1", port)).unwrap()).collect();
     thread::sleep(Duration::from_millis(50));

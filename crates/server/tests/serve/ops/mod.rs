@@ -1,4 +1,4 @@
-//! Running a host: its log, its metrics, its operator, its signals, its ends, and the files that start it.
+//! Operation of a host: its log, metrics, operator, signals and shutdown, and the files that start it.
 
 mod admin;
 #[cfg(feature = "system-tests")]

@@ -1,4 +1,4 @@
-//! Results of runs that were played to the end over SSH.
+//! Results of runs that were finished over SSH.
 
 #[cfg(feature = "system-tests")]
 use std::fs::{self, File};
@@ -17,11 +17,11 @@ use super::running::Running;
 use crate::player::Player;
 use crate::transport::wait_until;
 
-/// Plays the map of the host alone until `sentence` says what became of the result.
+/// Plays the host's own map in single-player mode until `sentence` appears, which states the outcome of the result.
 fn win(player: &Player, name: &str, sentence: &str) {
     choose(player, name, "4");
     player.wait_for("The moss hall");
-    // The last level of the list.
+    // The last level in the list.
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
@@ -58,7 +58,7 @@ fn results_of_accounts_rank_and_outlive_a_kill_and_those_of_guests_do_not_rank()
     assert!(!player.text().contains("Jon"), "{}", player.text());
 }
 
-/// A file system of one megabyte, unmounted at the end.
+/// A file system of one megabyte, unmounted on drop.
 #[cfg(feature = "system-tests")]
 struct SmallDisk(PathBuf);
 

@@ -1,4 +1,4 @@
-//! A server in a process of its own.
+//! A server that runs in a separate process.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -21,22 +21,22 @@ pub(crate) struct Running {
     process: Child,
     port: String,
     options: Vec<String>,
-    /// Of its network; `None` for that of the tests.
+    /// The network namespace; `None` for the namespace of the tests.
     namespace: Option<String>,
 }
 
 impl Running {
-    /// A server with this configuration, logging in `format`.
+    /// A server with this configuration that logs in `format`.
     pub(crate) fn start(config: &str, format: &str) -> Self {
         Self::start_with(config, format, &[])
     }
 
-    /// As [`Running::start`], with more options.
+    /// Like [`Running::start`], with more options.
     pub(crate) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
         Self::start_in(None, config, format, options)
     }
 
-    /// As [`Running::start_with`], in a namespace of networks.
+    /// Like [`Running::start_with`], in a network namespace.
     pub(crate) fn start_in(
         namespace: Option<&str>,
         config: &str,
@@ -44,7 +44,7 @@ impl Running {
         options: &[&str],
     ) -> Self {
         let folder = folder();
-        // A host that has run before.
+        // The host has run before.
         drop(HostStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
         let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
@@ -58,13 +58,13 @@ impl Running {
         self.options.push(option.to_owned());
     }
 
-    /// Starts the server again in the same folder, with the same options.
+    /// Restarts the server in the same folder with the same options.
     pub(crate) fn restart(&mut self) {
         (self.process, self.port) =
             spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
     }
 
-    /// A connection that says nothing yet.
+    /// A connection that has sent nothing yet.
     pub(crate) fn connect(&self) -> TcpStream {
         TcpStream::connect(format!("127.0.0.1:{}", self.port)).unwrap()
     }
@@ -77,12 +77,12 @@ impl Running {
         wait_until(&format!("{text} in the log"), || self.log().contains(text));
     }
 
-    /// A client of OpenSSH in a terminal.
+    /// An OpenSSH client in a terminal.
     pub(crate) fn visitor(&self) -> Player {
         self.player(None)
     }
 
-    /// A client of OpenSSH with a key, or as a guest.
+    /// An OpenSSH client with a key, or without one as a guest.
     pub(crate) fn player(&self, key: Option<&Path>) -> Player {
         let key = key.map_or_else(|| "none".to_owned(), |key| key.display().to_string());
         let identity = format!("IdentityFile={key}");
@@ -95,7 +95,7 @@ impl Running {
         Player::start((80, 24), Speaks::Kitty, words[0], &words[1..], &[])
     }
 
-    /// Waits until the operator sees so many visitors.
+    /// Waits until the operator's list shows `count` visitors.
     pub(crate) fn wait_for_visitors(&self, count: usize) {
         wait_until("visitors", || {
             let lines = self.admin_says(&["who"]).lines().count();
@@ -108,7 +108,7 @@ impl Running {
         server(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
     }
 
-    /// What `admin` writes, which succeeds.
+    /// Runs `admin`, asserts success, and returns its output.
     pub(crate) fn admin_says(&self, arguments: &[&str]) -> String {
         let output = self.admin(arguments);
         let error = String::from_utf8(output.stderr).unwrap();
@@ -116,7 +116,7 @@ impl Running {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The number of the process.
+    /// The process id.
     #[cfg(all(target_os = "linux", feature = "system-tests"))]
     pub(crate) fn process(&self) -> u32 {
         self.process.id()
@@ -126,7 +126,7 @@ impl Running {
         kill_process(Pid::from_child(&self.process), signal).unwrap();
     }
 
-    /// The exit status of the process.
+    /// Waits for the process to exit; returns its exit status.
     pub(crate) fn wait_for_end(&mut self) -> Option<i32> {
         let end = Instant::now() + PATIENCE;
         loop {
@@ -139,12 +139,12 @@ impl Running {
     }
 }
 
-/// The words by which a command runs in a namespace of networks.
+/// The command prefix that runs a command in a network namespace.
 fn within(namespace: Option<&str>) -> Vec<&str> {
     namespace.map_or_else(Vec::new, |name| vec!["ip", "netns", "exec", name])
 }
 
-/// The process, and its port.
+/// Starts the process; returns it with its port.
 fn spawn(
     folder: &Path,
     format: &str,

@@ -1,4 +1,4 @@
-//! Two hosts over one PostgreSQL database.
+//! Two hosts with one PostgreSQL database.
 
 use std::process::{Command, Output};
 
@@ -11,7 +11,7 @@ use crate::postgres_server::PostgresServer;
 use crate::support::server;
 use crate::transport::{folder, wait_until};
 
-/// The program with the arguments, and a store named by the environment.
+/// Runs the program with the store named in its environment.
 fn with_store(store: &str, arguments: &[&str]) -> Output {
     let mut command: Command = server(arguments);
     command.env("CELLCASTER_DATA", folder()).env("CELLCASTER_STORE", store).output().unwrap()
@@ -35,7 +35,7 @@ fn hosts_share_accounts_and_bans_and_outlive_their_database() {
     other.player(Some(&key)).wait_for("> Mara");
     assert_eq!(written(&store, &["scores"]), "no results\n");
 
-    // While the database is away, players are told, and the host goes on.
+    // While the database is down, the host keeps running and tells players about it.
     server.crash();
     other.player(Some(&key)).wait_for("The host can't look you up now");
     server.restart();
@@ -70,7 +70,7 @@ fn hosts_count_the_new_accounts_of_a_network_together() {
     jon.wait_for("Enter takes it");
     jon.send("\x15Jon\r");
     jon.wait_for("Your network makes too many accounts; try again in 3 minutes.");
-    // Those who have an account come as before, and guests play.
+    // Existing accounts can still log in, and guests can play.
     other.player(Some(&keys[0])).wait_for("> Mara");
     choose(&other.visitor(), "Jon", "\x1b");
 }
@@ -89,7 +89,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
     assert!(said.contains("there is no store of a host in this database"), "{said}");
     let said = asked(&encrypted, &stranger);
     assert!(said.contains("certificate") && said.lines().count() == 1, "{said}");
-    // The server takes no other.
+    // The server accepts only encrypted connections.
     let said = asked(&store, &server);
     assert!(said.contains("no encryption") && said.lines().count() == 1, "{said}");
 }

@@ -1,4 +1,4 @@
-//! Signals: SIGHUP reads the configuration again, SIGTERM ends the server.
+//! Signals: SIGHUP reloads the configuration, SIGTERM shuts the server down.
 
 use std::fs;
 use std::io::Write;
@@ -22,7 +22,7 @@ fn a_hang_up_reads_the_configuration_again() {
     let log = running.log();
     let fault = log.lines().find(|line| line.contains("must be a whole number")).unwrap();
     assert!(fault.contains("ERROR host: configuration not reloaded"), "{fault}");
-    // The one before stays in force.
+    // The previous configuration stays in force.
     let visitor = running.visitor();
     running.wait_for_visitors(1);
     drop(visitor);
@@ -36,7 +36,7 @@ fn a_hang_up_reads_the_configuration_again() {
     .unwrap();
     running.signal(Signal::HUP);
     running.wait_for_log("configuration reloaded");
-    // The address of the command line goes before that of the file.
+    // The address on the command line takes precedence over the one in the file.
     running.wait_for_log("needs_restart=\"metrics.listen\"");
     let before = running.log().matches(" connections: ").count();
     let visitor = running.visitor();
@@ -91,7 +91,7 @@ fn a_flood_of_connections_is_a_few_lines_a_second() {
     let running = Running::start("", "json");
     let begun = Instant::now();
     for _ in 0..FLOOD {
-        // The other end may have closed it.
+        // The server may already have closed the connection.
         _ = running.connect().write_all(b"SSH-2.0-flood\r\n");
     }
     let connections = || -> Vec<Value> {

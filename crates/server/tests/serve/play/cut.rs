@@ -1,4 +1,4 @@
-//! A link that is cut between a client and the server: both ends stay open, and nothing passes.
+//! A cut link between a client and the server: both ends stay open, but no bytes pass.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-/// A relay to a server. Clones of its streams live in threads that end with the connections.
+/// A relay to a server. Its threads hold the streams and end with the connections.
 pub(crate) struct Relay {
     pub(crate) port: u16,
     is_cut: Arc<AtomicBool>,
@@ -31,7 +31,7 @@ impl Relay {
         Self { port, is_cut }
     }
 
-    /// Passes nothing on any more.
+    /// Stops passing bytes on.
     pub(crate) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
     }

@@ -1,4 +1,4 @@
-//! The game on a server: real clients of OpenSSH that see each other's pictures.
+//! The game on a server: real OpenSSH clients that see each other's pictures.
 
 mod cut;
 mod race;
@@ -15,10 +15,10 @@ use crate::emulator::Emulator;
 use crate::looks::looks;
 use crate::player::Player;
 
-/// Takes a name, and goes into the first room: Enter takes what is offered.
+/// Takes a name and enters the first room. Enter accepts the offer on each page.
 pub(crate) fn enter_room(player: &Player, name: &str) {
     player.wait_for("Enter takes it");
-    // Ctrl-U empties the line.
+    // Ctrl-U clears the line.
     player.send(format!("\x15{name}"));
     player.wait_for(name);
     player.send("\r");
@@ -60,19 +60,19 @@ fn players_see_each_other_walk() {
     see_each_other_walk(&mara, &jon);
 }
 
-/// Two who have come in, and look the same way.
+/// Two players have come in and look in the same direction; each must see the other walk.
 pub(crate) fn see_each_other_walk(mara: &Player, jon: &Player) {
     mara.wait_for("Jon comes in.");
-    // What was said is shown for some seconds.
+    // Chat lines are shown for some seconds.
     let says = |emulator: &Emulator| emulator.text().contains("comes in.");
     mara.wait_until("forgot what was said", |emulator| !says(emulator));
-    // He walks until she sees him, whose name is over his head.
+    // Jon walks until Mara sees him: his name is above his head.
     jon.send(HOLD_FORWARD);
     mara.wait_for("Jon");
     jon.send(RELEASE_FORWARD);
     jon.send(TURN_BACK);
     jon.wait_for("Mara");
-    // Nobody does anything, and the picture stays as it is, until she takes a step.
+    // While nobody moves, the picture stays the same, until Mara takes a step.
     let picture = || jon.look(|emulator| looks(emulator.screen()));
     thread::sleep(Duration::from_secs(1));
     let before = picture();

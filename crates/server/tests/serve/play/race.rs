@@ -4,7 +4,7 @@ use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify}
 
 use super::server::GameServer;
 
-/// A run whose first seven seconds lead straight on.
+/// A run that goes straight on for its first seven seconds.
 const RUN: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/archive.normal.script"));
 

@@ -36,7 +36,7 @@ impl GameServer {
         Self::open_with(|_| ())
     }
 
-    /// A server with what `fill` puts into its store.
+    /// A server with the data that `fill` puts into its store.
     pub(crate) fn open_with(fill: impl FnOnce(&mut HostStore)) -> Self {
         let folder = folder();
         let mut store = HostStore::open(&folder).unwrap();
@@ -46,13 +46,13 @@ impl GameServer {
         Self { folder, running }
     }
 
-    /// Ends the server, and starts another one with the same data.
+    /// Stops the server and starts another one with the same data.
     pub(crate) fn restart(&mut self) {
         self.end();
         self.running = Some(Running::start(&self.folder));
     }
 
-    /// Asks the server to end.
+    /// Tells the server to shut down.
     pub(crate) fn stop(&mut self) {
         let stop = self.running.as_mut().and_then(|running| running.stop.take());
         stop.map(|stop| stop.send(()));
@@ -62,12 +62,12 @@ impl GameServer {
         self.running.as_ref().unwrap().address
     }
 
-    /// A client of OpenSSH in a terminal.
+    /// An OpenSSH client in a terminal.
     pub(crate) fn player(&self, options: &[&str]) -> Player {
         player_at(self.address().port(), options)
     }
 
-    /// The path of a new key.
+    /// Creates a new key; returns its path.
     pub(crate) fn user_key(&self) -> String {
         let path = self.folder.join("user");
         let status = Command::new("ssh-keygen")
@@ -118,7 +118,7 @@ impl Running {
     }
 }
 
-/// A client of OpenSSH in a terminal that connects to `port`.
+/// An OpenSSH client in a terminal that connects to `port`.
 pub(crate) fn player_at(port: u16, options: &[&str]) -> Player {
     let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                  -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";

@@ -1,4 +1,4 @@
-//! A client that knows SSH, and asks for what nobody asks for.
+//! A client that speaks SSH but makes unusual requests.
 
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ fn a_session_begins_once() {
     run(async |house| {
         let client = guest(house).await;
         let mut channel = client.channel_open_session().await.unwrap();
-        // The client keeps up to 100 answers until they are taken.
+        // The client buffers up to 100 replies.
         for number in 0..40 {
             let value = "x".repeat(1000);
             channel.set_env(true, format!("LC_{}", "A".repeat(number)), value).await.unwrap();
@@ -90,7 +90,7 @@ fn a_session_begins_once() {
         }
         assert_eq!(answers.iter().take(40).filter(|is_kept| **is_kept).count(), 16);
         assert_eq!(answers[40..], [true, false, false, true, false]);
-        // Its window has one column.
+        // Its window has a single column.
         while shown.is_empty() {
             if let ChannelMsg::Data { data } = channel.wait().await.unwrap() {
                 shown.extend_from_slice(&data);

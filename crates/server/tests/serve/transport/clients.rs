@@ -1,4 +1,4 @@
-//! OpenSSH's client, with the options that people use.
+//! OpenSSH's client with commonly used options.
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
@@ -123,7 +123,7 @@ fn a_visitor_beyond_the_limit_of_their_address_reads_what_it_is() {
     house.assert_answers();
 }
 
-/// Their `ssh` asks for a passphrase meanwhile.
+/// The visitor's `ssh` waits for a passphrase meanwhile.
 #[test]
 fn a_visitor_who_is_displaced_reads_why() {
     let house = House::open_with(|config| config.admission.startups = 1);
@@ -162,15 +162,15 @@ fn nothing_is_forwarded() {
     house.assert_answers();
 }
 
-/// Megabytes of frames pass while keys are exchanged again and again, and each key reaches the session.
+/// Megabytes of frames pass during repeated key exchanges, and each key reaches the session.
 fn frames_outlive_key_exchanges(options: &[&str]) {
     let house = House::open();
     let limit = ["-o", "RekeyLimit=64K"];
     let player = house.visitor(&[options, &limit].concat());
     player.send("F");
-    // Between two frames there is hardly a moment at which the screen is complete.
+    // Between two frames, the screen is complete for hardly a moment.
     wait_until("frames stop", || player.look(|emulator| emulator.bytes().len()) > 1_000_000);
-    // The next frame shows how many bytes came before it.
+    // The next frame states how many bytes were sent before it.
     player.send("over");
     player.send("f");
     player.wait_for("overf]");
@@ -189,7 +189,7 @@ fn frames_outlive_key_exchanges_without_compression() {
     frames_outlive_key_exchanges(&[]);
 }
 
-/// Compression begins after authentication, and starts anew with each key exchange.
+/// Compression begins after authentication, and restarts with each key exchange.
 #[test]
 fn frames_outlive_key_exchanges_with_compression() {
     frames_outlive_key_exchanges(&["-C"]);
@@ -238,7 +238,7 @@ fn the_status_of_a_session_is_that_of_ssh() {
     house.assert_answers();
 }
 
-/// A client that was stopped answers nothing, as one behind a link that was cut.
+/// A stopped client answers nothing, like one behind a cut link.
 #[test]
 fn a_client_that_falls_silent_is_given_up() {
     let house = House::open_with(|config| config.silence = std::time::Duration::from_secs(3));
@@ -252,7 +252,7 @@ fn a_client_that_falls_silent_is_given_up() {
     house.assert_answers();
 }
 
-/// Questions whether a client is there come between its keys, and neither disturbs the other.
+/// Keep-alive questions arrive between the client's keys; neither may disturb the other.
 #[test]
 fn questions_disturb_no_keys() {
     let house = House::open_with(|config| config.silence = std::time::Duration::from_secs(2));

@@ -1,4 +1,4 @@
-//! `cellcaster serve`: its start, its faults and its end.
+//! The server program: its start, its errors and its exit.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -16,7 +16,7 @@ fn serve(data: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Asserts status 2, and returns the message.
+/// Asserts exit status 2 and returns the error message.
 fn complaint(data: &Path, arguments: &[&str]) -> String {
     let output = serve(data, arguments).output().unwrap();
     let error = String::from_utf8(output.stderr).unwrap();
@@ -25,7 +25,7 @@ fn complaint(data: &Path, arguments: &[&str]) -> String {
     error
 }
 
-/// The first lines of a server.
+/// The first four lines that a server prints.
 fn lines(server: &mut Child) -> Vec<String> {
     let output = BufReader::new(server.stdout.take().unwrap());
     output.lines().take(4).map(Result::unwrap).collect()

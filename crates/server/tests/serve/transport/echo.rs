@@ -1,8 +1,8 @@
-//! A session for tests: shows what it knows about its visitor, and what they type.
+//! A session for tests: it shows its data on the visitor, and their input.
 //!
-//! `q` ends it with status 7. From `F` to `f`, frames of random colours follow each other without
-//! a pause; then it shows how many bytes they had. After `T`, a frame is due every tenth of a second,
-//! and it shows how many were sent, and at how many times the one before had not left yet.
+//! `q` ends it with status 7. From `F` to `f`, it sends frames of random colours without a pause, and then
+//! shows their total size in bytes. After `T`, a frame is due every tenth of a second; it then shows how many
+//! frames were sent in time, and how often the previous frame had not left yet.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ use tokio::time::{Interval, interval};
 
 pub(crate) struct Echo;
 
-/// The time between two frames that are due.
+/// The interval between two due frames.
 const TICK: Duration = Duration::from_millis(100);
 
 struct Screen {
@@ -25,7 +25,7 @@ struct Screen {
     visitor: Visitor,
     typed: Vec<u8>,
     count: usize,
-    /// The bytes of all frames so far.
+    /// The total size of all frames, in bytes.
     sent: usize,
     size: WindowSize,
     drains: bool,
@@ -34,7 +34,7 @@ struct Screen {
     is_stale: bool,
 }
 
-/// Frames that are due at regular times.
+/// Frames that are due at regular intervals.
 struct Ticks {
     times: Interval,
     sent: u32,
@@ -55,7 +55,7 @@ impl Host for Echo {
                     link.outbox.try_send(screen.frame()).unwrap();
                 }
             }
-            // Asked once: the frame may drain at any time.
+            // `is_empty` is not consulted again, because the frame may drain at any time.
             let waits = screen.is_stale || is_over;
             tokio::select! {
                 arrival = link.inbound.next(), if !is_over => match arrival {

@@ -1,4 +1,4 @@
-//! Clients that send without end, or read nothing.
+//! Clients that send without end, and clients that read nothing.
 
 use std::io::Read;
 use std::net::TcpStream;
@@ -15,7 +15,7 @@ fn a_paste_bomb_arrives_bit_by_bit() {
         bomber.send("w".repeat(100_000));
         house.assert_answers();
         bomber.wait_for("[100000]");
-        // Four seconds' bytes come at once.
+        // The bytes of the first four seconds arrive at once.
         assert!(begun.elapsed() >= Duration::from_secs(2));
     });
     house.assert_answers();
@@ -33,7 +33,7 @@ fn what_is_no_text_reaches_the_session_as_it_is() {
     house.assert_answers();
 }
 
-/// Memory for a client that does not read is that of one frame, however long it lasts.
+/// A client that does not read takes the memory of one frame, no matter how long it stays.
 #[test]
 fn clients_that_never_read_hold_one_frame_each() {
     const CLIENTS: usize = 5;
@@ -49,7 +49,7 @@ fn clients_that_never_read_hold_one_frame_each() {
     house.beside_another(|| std::thread::sleep(Duration::from_secs(2)));
     for _ in 0..3 {
         house.assert_answers();
-        // A frame of noise has 80 × 24 cells of at most 40 bytes, in a buffer that has grown by doubling.
+        // A frame of noise has 80×24 cells of at most 40 bytes, in a buffer that grew by doubling.
         assert!(held() <= MOST, "{} bytes", held());
     }
     players[0].set_reading(true);
@@ -70,7 +70,7 @@ fn a_client_that_takes_nothing_is_disconnected() {
     house.assert_answers();
 }
 
-/// Of a flood of connections that are refused, few are told why, and all are closed.
+/// In a flood of refused connections, few clients are told the reason, and all are closed.
 #[test]
 fn a_flood_of_refused_connections_is_told_seldom() {
     let house = House::open_with(|config| config.admission.per_address = 1);
@@ -79,7 +79,7 @@ fn a_flood_of_refused_connections_is_told_seldom() {
         let mut stream = TcpStream::connect(house.address).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let mut answer = Vec::new();
-        // A connection that is closed without a word may be reset.
+        // A connection that is closed silently may be reset.
         _ = stream.read_to_end(&mut answer);
         assert!(answer.is_empty() || answer.starts_with(b"SSH-2.0-cellcaster\r\n"), "{answer:?}");
         String::from_utf8_lossy(&answer).contains("at most 1 connection from one address")

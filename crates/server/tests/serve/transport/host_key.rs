@@ -1,4 +1,4 @@
-//! The file of the host key.
+//! The host key's file.
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;

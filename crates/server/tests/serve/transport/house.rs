@@ -1,4 +1,4 @@
-//! A server in this process, and clients of it.
+//! A server in this process, with clients.
 
 use std::cell::Cell;
 use std::fs;
@@ -38,7 +38,7 @@ impl House {
         Self::open_with(|_| {})
     }
 
-    /// A server on a free port, at which any number of clients of this machine may play.
+    /// A server on a free port that accepts any number of clients from this machine.
     pub(crate) fn open_with(change: impl FnOnce(&mut Config)) -> Self {
         let folder = folder();
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
@@ -54,7 +54,7 @@ impl House {
         Self { address, metrics, folder, stop: Some(stop), thread: Some(thread) }
     }
 
-    /// What `ssh` is told to connect.
+    /// The arguments with which `ssh` connects.
     pub(crate) fn arguments(&self, options: &[&str]) -> Vec<String> {
         let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                      -o LogLevel=ERROR -o IdentitiesOnly=yes -p";
@@ -66,21 +66,21 @@ impl House {
         words.chain(options.iter().copied()).map(str::to_owned).collect()
     }
 
-    /// A client of OpenSSH in a terminal.
+    /// An OpenSSH client in a terminal.
     pub(crate) fn player(&self, options: &[&str]) -> Player {
         let mut arguments = self.arguments(options);
         arguments.extend(["-tt", "ann@127.0.0.1"].map(str::to_owned));
         Player::start(WINDOW, Speaks::Kitty, "ssh", arguments, &[])
     }
 
-    /// A client whose session runs.
+    /// A client whose session is running.
     pub(crate) fn visitor(&self, options: &[&str]) -> Player {
         let player = self.player(options);
         player.wait_for("[typed");
         player
     }
 
-    /// Runs `ssh` without a terminal, and returns its output, errors and status.
+    /// Runs `ssh` without a terminal; returns its output, its errors and its exit status.
     pub(crate) fn run(&self, options: &[&str], rest: &[&str]) -> (String, String, Option<i32>) {
         let output = Command::new("ssh").args(self.arguments(options)).args(rest).output().unwrap();
         (
@@ -90,7 +90,7 @@ impl House {
         )
     }
 
-    /// A new user key.
+    /// Creates a new user key; returns its path.
     pub(crate) fn user_key(&self, name: &str, comment: &str) -> String {
         self.user_key_of("ed25519", name, comment)
     }
@@ -105,7 +105,7 @@ impl House {
         path.display().to_string()
     }
 
-    /// Asserts that somebody who comes now gets an answer.
+    /// Asserts that a new visitor gets an answer.
     pub(crate) fn assert_answers(&self) {
         let mut player = self.visitor(&[]);
         player.send("x");
@@ -114,9 +114,8 @@ impl House {
         assert_eq!(player.wait_for_end().status.code(), Some(7));
     }
 
-    /// Does something beside a visitor to whom a frame is due every tenth of a second, and asserts that
-    /// they have lost none of them. On a machine under load, one of ten may leave later than the next
-    /// is due.
+    /// Runs `act` next to a visitor whose session is due a frame every tenth of a second, and asserts that no
+    /// frame is lost. Up to one frame in ten may be late, because the machine may be under load.
     pub(crate) fn beside_another<T>(&self, act: impl FnOnce() -> T) -> T {
         let bystander = self.visitor(&[]);
         bystander.send("T");
@@ -124,7 +123,7 @@ impl House {
         let [before, _] = due(&bystander);
         let result = act();
         let [sent, _] = due(&bystander);
-        // They still come.
+        // Frames still arrive.
         bystander.wait_until("got a frame", |emulator| due_of(&emulator.text())[0] > sent);
         let [sent, missed] = due(&bystander);
         assert!(missed * 10 <= sent + 10, "{missed} frames were lost, and {} sent", sent - before);
@@ -136,7 +135,7 @@ impl House {
         self.metrics.sessions.get()
     }
 
-    /// Asks the server to end.
+    /// Tells the server to shut down.
     pub(crate) fn stop(&mut self) {
         self.stop.take().map(|stop| stop.send(()));
     }
@@ -158,7 +157,7 @@ impl Drop for House {
     }
 }
 
-/// The frames that a visitor was sent when they were due, and the others.
+/// The number of frames that a visitor was sent in time, and of those that were late.
 fn due(visitor: &Player) -> [u32; 2] {
     let due = Cell::new([0; 2]);
     visitor.wait_until("showed a whole frame", |emulator| {
@@ -183,7 +182,7 @@ fn serve(runtime: &Runtime, server: Server, stopped: impl Future<Output = ()> + 
     }
 }
 
-/// An empty folder of its own.
+/// A new empty folder.
 pub(crate) fn folder() -> PathBuf {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let name = format!("serve-{}", COUNT.fetch_add(1, Ordering::Relaxed));

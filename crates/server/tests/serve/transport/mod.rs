@@ -1,4 +1,4 @@
-//! The transport, below any game: every test ends with a visitor who still gets an answer.
+//! The transport below the game. Every test ends with a visitor who still gets an answer.
 
 mod awkward;
 mod clients;

@@ -1,4 +1,4 @@
-//! Sockets that speak no SSH, or only its beginning.
+//! Sockets that do not speak SSH, or only its beginning.
 
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
@@ -37,7 +37,7 @@ fn read_to_end(stream: &mut TcpStream) -> Vec<u8> {
     }
 }
 
-/// A packet that is not encrypted.
+/// An unencrypted packet.
 fn packet(kind: u8, length: usize) -> Vec<u8> {
     let mut packet = (length as u32).to_be_bytes().to_vec();
     packet.extend([4, kind]);
@@ -58,7 +58,7 @@ fn a_connection_that_says_nothing_is_closed() {
     house.assert_answers();
 }
 
-/// A client says its version at once, however long it takes over its keys.
+/// A client sends its version at once, even if its key exchange takes long.
 #[test]
 fn the_version_has_less_time_than_the_keys() {
     let house = House::open_with(|config| config.handshake = PATIENCE);
@@ -99,7 +99,7 @@ fn a_connection_that_drips_is_closed() {
 fn garbage_is_refused() {
     let house = House::open_with(|config| {
         config.handshake = Duration::from_secs(2);
-        // Four failures from one address are enough to be refused by chance.
+        // Otherwise, after four failures, an address is refused at random.
         config.admission.failures = 1000;
     });
     let mut random = SplitMix64::new(1);
@@ -132,7 +132,7 @@ fn an_oversized_packet_is_refused() {
     house.assert_answers();
 }
 
-/// Packets that are to be ignored may come before the key exchange, but not without end.
+/// Packets to be ignored may precede the key exchange, but only up to a limit.
 #[test]
 fn bytes_before_authentication_are_counted() {
     let house = House::open();
@@ -141,14 +141,14 @@ fn bytes_before_authentication_are_counted() {
         stream.write_all(VERSION).unwrap();
         let ignored = packet(2, 1004);
         let written = (0..100_000).take_while(|_| stream.write_all(&ignored).is_ok()).count();
-        // The rest was on its way when the connection was closed.
+        // The rest was in flight when the connection was closed.
         assert!(written * ignored.len() < 16 << 20, "{written}");
         read_to_end(&mut stream);
     });
     house.assert_answers();
 }
 
-/// Without end, connections of eight networks come and say nothing. All who come from elsewhere come in.
+/// Silent connections arrive all the time from eight networks. Clients from all other networks still get in.
 #[test]
 fn half_open_connections_leave_room() {
     let house = House::open();
@@ -168,7 +168,7 @@ fn half_open_connections_leave_room() {
     house.assert_answers();
 }
 
-/// Opens connections from eight networks of /16, and keeps the last 400 of them.
+/// Opens connections from eight /16 networks, and keeps the last 400 of them open.
 fn flood(server: SocketAddr, is_over: &AtomicBool) {
     Runtime::new().unwrap().block_on(async {
         let mut streams = VecDeque::new();

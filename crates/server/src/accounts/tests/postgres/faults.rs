@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use super::proxy::{Cut, Proxy};
 use super::*;
 
-/// The most time of a call, with what a machine under load adds.
+/// The most time that a call takes, with a margin for a machine under load.
 const MOST: Duration = Duration::from_secs(8);
 
-/// Asks until the store answers again.
+/// Calls the store until it answers again.
 fn until_it_answers(store: &mut HostStore) {
     let start = Instant::now();
     while let Err(failure) = store.level_boards() {
@@ -39,7 +39,7 @@ fn what_was_acknowledged_survives_a_crash_amid_writes() {
                 }
                 None
             });
-            // Amid them: after some, while others are under way.
+            // Crash when some calls have ended and others are under way.
             for _ in 0..20 {
                 acknowledged.push(receiver.recv().unwrap());
             }
@@ -134,7 +134,7 @@ fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
         let Err(Refusal::Failed(failure)) = answer else { panic!("{answer:?}") };
         assert!(failure.to_string().ends_with("the last change may be kept or not"), "{failure}");
         assert!(proxy.has_cut());
-        // The server may still be about it.
+        // The server may still be executing the statement.
         thread::sleep(Duration::from_millis(600));
         assert_eq!(store.account(&key(number)).unwrap().is_some(), is_passed_on);
     }
@@ -144,7 +144,8 @@ fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
 fn a_change_that_is_not_kept_is_made_again() {
     let server = PostgresServer::shared();
     let address = server.address_over_tcp();
-    // The text of a statement goes over a connection once: each has one of its own.
+    // Each case has a connection of its own, because the text of a statement crosses a connection
+    // only once.
     for (number, text, is_passed_on) in
         [(1_u8, "BEGIN", true), (2, "INSERT INTO accounts", true), (3, "INSERT INTO names", false)]
     {

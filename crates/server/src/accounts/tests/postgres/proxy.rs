@@ -1,4 +1,4 @@
-//! A connection that is cut at a statement.
+//! A proxy that cuts a connection at a statement.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -6,18 +6,19 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
-/// A proxy before a server, which cuts one connection.
+/// A proxy in front of a server. It cuts one connection.
 pub(crate) struct Proxy {
     port: u16,
     cut: Arc<Mutex<Option<Cut>>>,
 }
 
-/// Where a connection is cut.
+/// The point at which a connection is cut.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cut {
     /// At the first packet from the client with this text.
     pub(crate) at: &'static str,
-    /// Whether the server gets the packet, and does what it says. The client never has the answer.
+    /// `true` if the server receives the packet, and does what it says. The client never receives
+    /// the answer.
     pub(crate) is_passed_on: bool,
 }
 
@@ -41,12 +42,12 @@ impl Proxy {
         address.replace(&format!(":{server}/"), &format!(":{}/", self.port))
     }
 
-    /// Cuts the connection that comes to `cut` first.
+    /// Cuts the first connection that reaches `cut`.
     pub(crate) fn cut(&self, cut: Cut) {
         *self.cut.lock().unwrap() = Some(cut);
     }
 
-    /// Whether it has done so.
+    /// Returns true if the connection was cut.
     pub(crate) fn has_cut(&self) -> bool {
         self.cut.lock().unwrap().is_none()
     }
@@ -62,7 +63,7 @@ fn join(client: TcpStream, server: u16, cut: &Mutex<Option<Cut>>) {
     pass_on(client, server, cut);
 }
 
-/// Passes packets on until the connection is cut or ends.
+/// Forwards packets until the connection is cut or ends.
 fn pass_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Option<Cut>>) {
     let mut packet = [0; 1 << 13];
     while let Ok(count @ 1..) = client.read(&mut packet) {
@@ -70,14 +71,14 @@ fn pass_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Option<Cut>
         let has = |at: &str| packet.windows(at.len()).any(|part| part == at.as_bytes());
         let found = cut.lock().unwrap().take_if(|cut| has(cut.at));
         if found.is_none_or(|cut| cut.is_passed_on) {
-            // First the answer is kept from the client.
+            // Close the client's side first, so that the client does not receive the answer.
             if found.is_some() {
                 _ = client.shutdown(Shutdown::Both);
             }
             _ = server.write_all(packet);
         }
         if found.is_some() {
-            // The server has the time to do it before it hears of the end.
+            // Give the server time to execute the packet before the connection ends.
             thread::sleep(Duration::from_millis(300));
             break;
         }

@@ -1,4 +1,4 @@
-//! Restored rooms are the rooms that they were, and damaged checkpoints are refused or a room.
+//! A restored room equals the original, and a damaged checkpoint is either rejected or yields a valid room.
 
 #[allow(dead_code, reason = "the game's tests use the rest")]
 #[path = "../../../../../../tests/support/crowd.rs"]
@@ -24,7 +24,7 @@ fn line(text: &str) -> Line {
     Line::of(text, CHAT_COLUMNS).unwrap()
 }
 
-/// Members who come, want, talk and go, for rooms that are equal.
+/// A source of members who join, move, talk and leave in the same way in several equal rooms.
 struct Party {
     crowd: Crowd,
     random: SplitMix64,
@@ -32,7 +32,7 @@ struct Party {
 }
 
 impl Party {
-    /// At most `most` members, of whom the first follows the script of the level.
+    /// At most `most` members. The first follows the script of the level, if there is one.
     fn new(header: &Header, most: usize, seed: u64) -> Self {
         let is_won = header.mode.has_guards() && LEVELS.iter().any(|it| it.name == header.level);
         let script = if is_won { winning(&header.level, header.difficulty) } else { Vec::new() };
@@ -41,7 +41,7 @@ impl Party {
         Self { crowd, random, most: most.min(header.mode.most()) }
     }
 
-    /// Lets the same happen in all `rooms`, and then a step.
+    /// Applies the same entries to all `rooms` and advances each by one step.
     fn step(&mut self, rooms: &mut [&mut Room]) {
         for entry in self.entries(rooms[0]) {
             for room in rooms.iter_mut() {
@@ -86,7 +86,7 @@ impl Party {
     }
 }
 
-/// The room that the checkpoint of `room` gives, which is the same.
+/// Restores a room from the checkpoint of `room` and asserts that both are equal.
 fn again(room: &Room) -> Room {
     let restored = Room::restore(&room.catalog, &room.checkpoint());
     let restored = restored.unwrap_or_else(|error| panic!("{error}"));
@@ -94,7 +94,7 @@ fn again(room: &Room) -> Room {
     restored
 }
 
-/// Both are equal in every field, to the bit, and sessions see the same.
+/// Asserts that both rooms are equal in every field, bit for bit, and in the view of their sessions.
 fn assert_same(one: &Room, other: &Room) {
     assert_eq!((one.step, one.next_member), (other.step, other.next_member));
     assert_eq!((&one.header, &one.round), (&other.header, &other.round));
@@ -110,7 +110,7 @@ fn assert_same(one: &Room, other: &Room) {
     assert!(one.game.world() == other.game.world(), "the pictures differ");
 }
 
-/// Plays `before` steps, restores the room, and plays both on.
+/// Plays `before` steps, restores the room, and continues with both copies.
 fn played(catalog: &Arc<Catalog>, header: Header, most: usize, before: u64, seed: u64) {
     let mut party = Party::new(&header, most, seed);
     let mut room = Room::new(catalog, header).unwrap();
@@ -157,7 +157,7 @@ proptest! {
     }
 }
 
-/// A room with four members, and its checkpoint.
+/// The catalog and the checkpoint of a room with up to four members, after ten seconds.
 fn busy(mode: Mode, seed: u64) -> (Arc<Catalog>, Vec<u8>) {
     let catalog = Arc::new(simulation::catalog(simulation::HALL));
     let header = Header::new("hall", mode, Difficulty::Normal, seed);
@@ -185,7 +185,7 @@ proptest! {
     fn damaged_checkpoints_are_refused_or_a_room(
         mode in prop::sample::select(&Mode::ALL[..]),
         seed in 0..4_u64,
-        // Before the positions of players, which are most of the bytes.
+        // Whether only the first bytes are damaged. Later ones are mostly players' positions.
         is_early: bool,
         flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..4),
     ) {
@@ -234,7 +234,7 @@ fn a_checkpoint_of_another_version_or_of_an_unknown_level_is_refused_with_a_sent
     assert_eq!(refused(&catalog, &longer), "the state goes on after its end");
 }
 
-/// The differences that the checksum of a room notices.
+/// A checksum must detect each of these changes, and must ignore the chat.
 #[test]
 fn a_checksum_notices_the_round_the_members_and_the_game() {
     let (catalog, bytes) = busy(Mode::Tag, 7);
@@ -260,8 +260,8 @@ fn a_checksum_notices_the_round_the_members_and_the_game() {
     })));
 }
 
-/// With `--nocapture`, it prints for each level the bytes with eight members after a minute, and the times of a
-/// step, of a checkpoint and of restoring it.
+/// With `--nocapture`, prints for each level the size of a checkpoint with up to eight members after a
+/// minute, and the time for a step, for a checkpoint and for restoring it.
 #[test]
 fn checkpoints_of_levels_are_small() {
     let catalog = Arc::new(Catalog::builtin());
@@ -284,7 +284,7 @@ fn checkpoints_of_levels_are_small() {
     }
 }
 
-/// The intents of the script that wins a level, step by step.
+/// The intents of the script that wins a level, one per step.
 fn winning(level: &str, difficulty: Difficulty) -> Vec<Intents> {
     let root = env!("CARGO_MANIFEST_DIR");
     let path = format!("{root}/../../maps/scripts/{level}.{}.script", difficulty.name());

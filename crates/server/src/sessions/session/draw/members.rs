@@ -1,4 +1,4 @@
-//! Panels about the members: who is here, and how a round ended.
+//! Panels about members: the list of members, and the standings of a round.
 
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -12,7 +12,7 @@ use cellcaster::app::parts::{message, of_steps, whole_seconds};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::tui::canvas::Canvas;
 
-/// Draws who is in the room, and their points.
+/// Draws the list of members with their points.
 pub(crate) fn draw_members(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -34,7 +34,7 @@ pub(crate) fn draw_members(
     panel(canvas, picture, &title, lines);
 }
 
-/// Draws the standings of a round that is over.
+/// Draws the standings of a finished round.
 pub(crate) fn draw_standings(
     canvas: &mut impl Canvas,
     picture: Rect,
@@ -61,7 +61,7 @@ pub(crate) fn draw_standings(
     panel(canvas, picture, "the round is over", lines);
 }
 
-/// Draws a panel with the first lines for which there is room.
+/// Draws a panel with as many lines as fit.
 fn panel(canvas: &mut impl Canvas, picture: Rect, title: &str, mut lines: Vec<Line>) {
     lines.truncate(usize::from(picture.height.saturating_sub(2)).max(1));
     message(canvas, picture, title, Text::from(lines));
@@ -76,7 +76,7 @@ const fn counted(mode: Mode) -> &'static str {
     }
 }
 
-/// The name in the member's colour, in as many columns as the widest name.
+/// The name in the member's colour, padded to the width of the widest possible name.
 fn name(member: &MemberView, depth: ColorDepth) -> Span<'static> {
     let blanks = NAME_COLUMNS.saturating_sub(member.name.as_str().width());
     let style = match depth {

@@ -1,4 +1,4 @@
-//! Names over the heads of nearby players and ghosts.
+//! Labels above the heads of nearby players and ghosts.
 
 use glam::DVec2;
 use ratatui::layout::Rect;
@@ -17,22 +17,22 @@ use cellcaster::tui::canvas::Canvas;
 use cellcaster::tui::color_at;
 use cellcaster::world::Figure;
 
-/// The distance in which names are shown, in cells.
+/// The distance up to which labels are shown, in cells.
 const NEAR: f64 = 8.0;
-/// The height of a head above the feet, in cells: standing, and lying.
+/// The height of a head above the feet, in cells: of a standing player, and of a player lying down.
 const HEAD: f64 = 0.7;
 const HEAD_DOWN: f64 = 0.3;
 
-/// A text over a head.
+/// A label above a head.
 struct Overhead {
     position: DVec2,
-    /// The height of the head.
+    /// The height of the head, in cells.
     head: f64,
     text: String,
     color: PlayerColor,
 }
 
-/// Draws the names of the others and of the ghosts that `player` sees near.
+/// Draws the labels of the other players and of the ghosts that `player` sees nearby.
 pub(crate) fn draw(
     canvas: &mut impl Canvas,
     area: Rect,
@@ -55,7 +55,7 @@ pub(crate) fn draw(
     };
     let ghosts = ghosts.iter().filter(|ghost| is_seen(&ghost.figure)).map(Overhead::of_ghost);
     let mut all: Vec<Overhead> = others.chain(ghosts).collect();
-    // The nearest one is drawn last.
+    // Sorted from far to near, so that the nearest is drawn last.
     all.sort_by(|one, other| distance(other.position).total_cmp(&distance(one.position)));
     for Overhead { position, head, text, color } in all {
         let place = projection.place(position);
@@ -86,7 +86,7 @@ impl Overhead {
     }
 }
 
-/// The name, what the member is, and what they show.
+/// The label of a member: their role, name and emote.
 fn label(member: &MemberView, mode: Mode) -> String {
     let role = match (member.role, mode) {
         (Role::Seeker, Mode::Tag) => "IT ",
@@ -97,7 +97,7 @@ fn label(member: &MemberView, mode: Mode) -> String {
     format!("{role}{}{emote}", member.name)
 }
 
-/// The colour of a member, on black.
+/// The style of a member's colour on black.
 pub(crate) fn style(color: PlayerColor, depth: ColorDepth) -> Style {
     match depth {
         ColorDepth::Mono => Style::new().add_modifier(Modifier::REVERSED),
@@ -108,7 +108,7 @@ pub(crate) fn style(color: PlayerColor, depth: ColorDepth) -> Style {
     }
 }
 
-/// Draws the part of `text` that is inside `area`, from a place that may be outside of it.
+/// Draws the part of `text` that lies inside `area`. The start may lie outside.
 fn draw_clipped(
     canvas: &mut impl Canvas,
     area: Rect,

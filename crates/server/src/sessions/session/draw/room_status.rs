@@ -12,7 +12,7 @@ use cellcaster::game::{Outcome, PlayerView};
 use cellcaster::tui::canvas::Canvas;
 
 impl Ui {
-    /// Draws the mode, the time, what the player is and has, and who is watched.
+    /// Draws the mode, the time, the state of the player shown, and the name of a watched member.
     pub(crate) fn draw_room_status(
         &mut self,
         canvas: &mut impl Canvas,
@@ -26,7 +26,7 @@ impl Ui {
         let seen = stay.seen_through(room);
         status.rewrite(|line| {
             let mission = seen.filter(|_| room.game.is_mission());
-            // Without guards, tools are for nothing, and health counts once it is lost.
+            // Without guards, tools have no use, and health matters only once it is reduced.
             let is_safe = |player: &PlayerView| {
                 let health = player.health();
                 !room.header.mode.has_guards() && health.points == health.most
@@ -58,7 +58,7 @@ impl Ui {
     }
 }
 
-/// Writes the mode and the time of the round.
+/// Writes the mode and the remaining time.
 fn write_round(line: &mut StatusLine, room: &RoomView) -> fmt::Result {
     let mode = room.header.mode.title();
     match seconds_left(room) {
@@ -70,7 +70,7 @@ fn write_round(line: &mut StatusLine, room: &RoomView) -> fmt::Result {
     }
 }
 
-/// Writes the most important of what the player should know.
+/// Writes the most important notice for the player.
 fn write_notice(
     line: &mut StatusLine,
     stay: &Stay,
@@ -102,7 +102,7 @@ fn write_notice(
     }
 }
 
-/// The finish of a member as they read it.
+/// The text of a member's finish.
 fn finish(member: &MemberView, mode: Mode) -> Option<String> {
     let finish = member.finish?;
     Some(match mode {
@@ -111,7 +111,7 @@ fn finish(member: &MemberView, mode: Mode) -> Option<String> {
     })
 }
 
-/// A member's task.
+/// The text of a member's current task.
 fn task(room: &RoomView, member: &MemberView) -> String {
     let it = || room.members.iter().find(|member| member.role == Role::Seeker);
     match (room.header.mode, room.phase, member.role) {

@@ -1,4 +1,4 @@
-//! The bytes of frames, exact and not, before and after compression.
+//! The number of bytes per frame, for exact and approximate pictures, with and without compression.
 
 use std::io::Write;
 

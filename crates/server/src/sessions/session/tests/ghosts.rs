@@ -9,7 +9,7 @@ use cellcaster::world::{Difficulty, World};
 
 const RUN: &str = "3 s forward\n2 s stand\n";
 
-/// A race with `ghosts`, and Mara in it.
+/// A race with `ghosts` that Mara has entered.
 fn race(ghosts: impl IntoIterator<Item = Ghost>) -> (Rig, usize) {
     let mut rig = Rig::new(Mode::Race);
     let mara = rig.member("Mara", (80, 24), Speaks::Plain);
@@ -17,7 +17,7 @@ fn race(ghosts: impl IntoIterator<Item = Ghost>) -> (Rig, usize) {
     (rig, mara)
 }
 
-/// Brings a session ghosts, as its driver does.
+/// Passes ghosts to a session, as its driver would.
 fn notify(rig: &Rig, index: usize, level: &str, ghosts: impl IntoIterator<Item = Ghost>) {
     let (level, ghosts) = (level.to_owned(), ghosts.into_iter().collect());
     let event = SessionEvent::Ghosts { level, difficulty: Difficulty::Normal, ghosts };
@@ -32,7 +32,7 @@ fn ghost(name: Option<&str>) -> Ghost {
     Ghost::of_script(&hall(), RUN, name)
 }
 
-/// The steps since the race began.
+/// The number of steps since the race began.
 fn steps(rig: &Rig) -> Option<u64> {
     let view = rig.view();
     view.begun.map(|begun| view.step - begun)

@@ -1,4 +1,4 @@
-//! What a session has as a game at home does: the mouse, the bell, presets of keys.
+//! Features that a session shares with a game at home: the mouse, the bell and key presets.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,12 +15,12 @@ use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Outcome;
 use cellcaster::terminal::Fidelity;
 
-/// A key, which makes its owner an account.
+/// The public key of an account.
 fn key() -> AccountKey {
     AccountKey::new([7; 32])
 }
 
-/// From the name to the first level alone.
+/// The keys that lead from the name page to the first level in single-player mode.
 const ALONE: [&str; 4] = [ENTER, "4", ENTER, ENTER];
 
 fn heading(rig: &Rig) -> f64 {
@@ -29,17 +29,17 @@ fn heading(rig: &Rig) -> f64 {
     view.game.seen_by(player).unwrap().camera(FieldOfView::default()).heading.degrees()
 }
 
-/// What the terminal reports of the mouse.
+/// The mouse mode of the visitor's terminal.
 fn mouse(rig: &Rig, index: usize) -> vt100::MouseProtocolMode {
     rig.clients[index].look(|emulator| emulator.modes().mouse.0)
 }
 
-/// How often the bell has rung.
+/// The number of times that the bell has rung.
 fn bells(rig: &Rig, index: usize) -> usize {
     rig.clients[index].look(|emulator| emulator.bytes().split(|&it| it == 0x07).count() - 1)
 }
 
-/// Moves the pointer to a column of the tenth row.
+/// Moves the pointer to a column in the tenth row.
 fn point(rig: &mut Rig, index: usize, column: u16) {
     rig.send(index, format!("\x1b[<35;{column};10M"));
     rig.pump(100);

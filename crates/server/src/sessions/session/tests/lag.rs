@@ -1,4 +1,4 @@
-//! What is sent, and when: idle visitors, slow terminals, and windows of any size.
+//! The amount and the timing of output: idle visitors, slow terminals, and windows of any size.
 
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ fn a_terminal_that_does_not_answer_gets_no_second_frame() {
         rig.press(other, "\x1b[119;1:1u");
         rig.press(other, "\x1b[119;1:3u\x1b[98;1:1u\x1b[98;1:3u");
     }
-    // At most the frame and the request of whether it is still there.
+    // At most one frame and the query whether the terminal is still there.
     let more = rig.clients[one].bytes() - before;
     assert!(more < 6_000, "{more}");
     let again = rig.clients[one].bytes();
@@ -71,12 +71,12 @@ fn acts_tell_the_step_that_was_seen() {
         let lags: Vec<u64> = log[before..].lines().filter_map(lag).collect();
         let expected = milliseconds * 60 / 1_000;
         let late = lags.last().unwrap();
-        // Frames come every two or three steps, one after the other's answer at most.
+        // Frames come every two or three steps, and the next one at the latest when the previous one is acknowledged.
         assert!((expected..=2 * expected + 5).contains(late), "{milliseconds} ms: {lags:?}");
     }
 }
 
-/// The steps between the picture that the first member saw and what they then wanted.
+/// The number of steps between the frame that the first member saw and the intents that followed it.
 fn lag(entry: &str) -> Option<u64> {
     let mut words = entry.split(' ');
     let step: u64 = words.next()?.parse().ok()?;
@@ -104,7 +104,7 @@ fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Kitty);
     let other = rig.member("Jon", (80, 24), Speaks::Kitty);
-    // A key without a meaning, and steps back into the wall behind her, while he walks now and then.
+    // An unbound key, and a key that steps back into the wall behind Mara, while Jon takes a step now and then.
     let [unbound, back] = [120, 115].map(|key| format!("\x1b[{key};1:1u\x1b[{key};1:3u"));
     rig.send(one, "\x1b[115;1:1u");
     rig.pump(2_000);
@@ -117,7 +117,7 @@ fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
         }
         rig.press(other, "\x1b[119;1:1u\x1b[119;1:3u");
     }
-    // Keys that a frame answers: what the screen shows, and what the room does.
+    // Keys that a frame answers: a change of the screen, and an effect in the room.
     let before = rig.metrics().key_time.0.count();
     for key in ["\x1b[109;1:1u\x1b[109;1:3u", "\x1b[1;1:1C", "\x1b[1;1:3C"] {
         rig.press(one, key);
@@ -128,7 +128,7 @@ fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
     assert!(mean < 0.05, "{mean} s");
 }
 
-/// What a hostile or unlucky client may do.
+/// An action of a hostile or unlucky client.
 #[derive(Clone, Debug)]
 enum Event {
     Bytes(Vec<u8>),

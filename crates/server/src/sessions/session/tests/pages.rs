@@ -1,4 +1,4 @@
-//! The way from the name into a room, and back.
+//! The path from the name into a room, and back.
 
 use super::*;
 use crate::rooms::summary::RoomId;
@@ -77,7 +77,7 @@ fn arrow_keys_put_nobody_out() {
             for arrow in ["\x1b[A", "\x1b[B", "\x1b[C", "\x1b[D", "\x1bOA", "\x1bOB"] {
                 rig.press(one, arrow);
             }
-            // Half an arrow, and the rest of it after a while.
+            // Half of an arrow key's sequence, and the rest after a pause.
             rig.send(one, "\x1b");
             rig.pump(20);
             rig.press(one, "[A");
@@ -121,7 +121,7 @@ fn a_room_is_opened_and_watched() {
     assert!(rig.text(one).contains("waiting for another one"), "{}", rig.text(one));
     let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
     rig.press(other, ENTER);
-    // After the two rooms, and a new one.
+    // The menu entry after the two rooms and "Open a room".
     rig.press(other, "4");
     rig.press(other, ENTER);
     rig.press(other, "2");
@@ -213,7 +213,7 @@ fn rooms_in_maps_that_this_host_lacks_are_not_listed() {
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.press(one, ENTER);
     assert_eq!(rig.text(one).matches("Tag in The Hall").count(), 2, "{}", rig.text(one));
-    // The room moves on to a map of other hosts while she looks at it.
+    // The room moves on to a map that only other hosts have, while Mara looks at its card.
     rig.press(one, ENTER);
     rig.rooms().show_shared(elsewhere("moss-0123456789abcdef"));
     rig.pump(500);

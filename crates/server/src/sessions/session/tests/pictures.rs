@@ -1,4 +1,4 @@
-//! Every page in windows of 80 by 24 and 40 by 12, without colours.
+//! Every page in windows of 80×24 and 40×12 cells, without colours.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn assert_pages(name: &str, show: impl Fn(&mut Rig, (u16, u16)) -> usize, mode: 
     }
 }
 
-/// Jon, before whom Mara stands and looks at him.
+/// Jon, with Mara in front of him, looking at him.
 fn face_to_face(rig: &mut Rig, size: (u16, u16)) -> usize {
     let mara = rig.member("Mara", (80, 24), Speaks::Plain);
     for _ in 0..14 {

@@ -1,9 +1,9 @@
-//! Members of one room: they see each other, talk, and play rounds.
+//! Members of one room see each other, talk, and play rounds.
 
 use super::*;
 use crate::sessions::session::pages::Page;
 
-/// Two members; the second one looks back at the first.
+/// A room with two members, Mara and then Jon.
 fn two(mode: Mode) -> (Rig, usize, usize) {
     let mut rig = Rig::new(mode);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
@@ -98,7 +98,7 @@ fn seekers_see_nothing_while_the_others_hide() {
 
 #[test]
 fn a_tap_and_a_held_key_walk_as_far_as_at_home() {
-    // A tap is a quarter of a cell; a key that repeats walks on until it stops.
+    // A tap walks a quarter of a cell. A key that repeats walks on until it stops.
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let start = rig.position(one).x;
@@ -163,7 +163,7 @@ fn a_member_who_is_put_out_is_told_why() {
     assert!(rig.is_over(one));
 }
 
-/// Whether they are in the lobby or a room.
+/// This holds in the lobby as well as in a room.
 #[test]
 fn the_seconds_to_the_end_of_the_server_are_counted_down() {
     let mut rig = Rig::new(Mode::Roam);
@@ -197,7 +197,7 @@ fn the_dead_go_on_or_begin_again() {
         let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
         let way: &[&str] = match mode {
-            // Alone, in the first level.
+            // Single-player mode, in the first level.
             Mode::Alone => &[ENTER, "4", ENTER, ENTER],
             _ => &[ENTER, ENTER, ENTER],
         };
@@ -211,7 +211,7 @@ fn the_dead_go_on_or_begin_again() {
             }
         }
         assert!(rig.text(one).contains(effect), "{}", rig.text(one));
-        // The key to walk may still be held.
+        // The key for walking may still count as held.
         rig.press(one, ENTER);
         assert!(rig.text(one).contains(effect), "{}", rig.text(one));
         rig.pump(1000);
@@ -271,7 +271,7 @@ fn a_finisher_reads_place_and_time_and_watches_the_others() {
     assert!(rig.text(watcher).contains("Race 0:5"), "{}", rig.text(watcher));
     rig.press(one, "\x1b[9u");
     assert!(rig.text(one).contains("watching Kim"), "{}", rig.text(one));
-    // Whoever has finished is not watched.
+    // A member who has finished cannot be watched.
     rig.press(one, "\x1b[9u");
     assert!(rig.text(one).contains("watching Jon"), "{}", rig.text(one));
     rig.send(other, "\x1b[119;1:1u");
@@ -290,6 +290,6 @@ fn a_finisher_reads_place_and_time_and_watches_the_others() {
 fn members_see_each_other_when_they_come_in() {
     let (rig, one, other) = two(Mode::Roam);
     assert!(rig.position(one).distance(rig.position(other)) >= 1.0);
-    // In the line that says that he comes in, and over his head.
+    // Once in the chat line that announces him, and once above his head.
     assert_eq!(rig.text(one).matches("Jon").count(), 2, "{}", rig.text(one));
 }

@@ -13,7 +13,7 @@ use crate::transport::folder;
 fn a_host_that_is_cut_off_is_replaced_and_takes_what_the_others_have_played() {
     let network = Network::new();
     let hosts = Hosts::start_behind(&network);
-    // The host of whoever comes first writes the room.
+    // The host of the first player writes the room.
     let mara = hosts.running[0].0.player(Some(&user_key(&folder())));
     enter_room(&mara, "Mara");
     let jon = hosts.player(1, "Jon");
@@ -45,7 +45,7 @@ fn a_short_cut_is_a_pause() {
     network.cut();
     thread::sleep(Duration::from_secs(1));
     network.mend();
-    // She has no account, and would be gone if she had been away.
+    // Mara has no account. If she had become away, she would be gone.
     let time = says(&mara, &jon, "still here");
     println!("it is read after {time:?}");
     says(&jon, &mara, "as am I");

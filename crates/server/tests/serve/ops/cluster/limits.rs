@@ -1,4 +1,4 @@
-//! Limits of connections that hold on all hosts together.
+//! Connection limits that hold across all hosts.
 
 use std::time::{Duration, Instant};
 
@@ -25,7 +25,7 @@ fn a_key_is_limited_over_all_hosts() {
     wait_until("the refusal to be counted", || {
         hosts.figure(1, "connections_refused_total{reason=\"key\"}") == 1.0
     });
-    // She leaves, and may come to any host.
+    // Mara leaves, and may then come to any host.
     mara.send("\x03\x03");
     mara.wait_for_end();
     player(1).wait_for("> Mara");

@@ -24,13 +24,13 @@ fn rooms_are_listed_by_hosts_that_have_their_maps_and_operators_see_the_differen
     let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
     other.wait_for_log("it has another text of moss; its rooms in them are not listed here");
 
-    // A room in the map is there for visitors of its host alone.
+    // Only visitors of this host see a room in its map.
     let mara = one.visitor();
     choose(&mara, "Mara", "3");
     mara.wait_for("Campaign together");
     mara.send("4");
     mara.wait_for("The moss hall");
-    // The last level of the list.
+    // The last level in the list.
     mara.send("\x1b[F\r");
     mara.wait_for("Go in");
     mara.send("\r");

@@ -1,18 +1,18 @@
-//! A network of one host: a namespace of the kernel (`ip-netns(8)`) with a link to what the hosts share.
+//! A network for one host: a kernel namespace (`ip-netns(8)`) with a link to the shared servers.
 //!
-//! While the link is down, packets vanish without an answer, as behind a cable that was pulled. It needs root and
-//! the program `ip` of Debian's package `iproute2`.
+//! While the link is down, packets vanish without a reply, as with an unplugged cable. Needs root and the
+//! program `ip` from Debian's package `iproute2`.
 
 use std::net::Ipv4Addr;
 use std::process::Command;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// A namespace, which is deleted when this is dropped.
+/// A network namespace, deleted on drop.
 pub(crate) struct Network {
     namespace: String,
-    /// The end of the link outside of the namespace.
+    /// The name of the link's end outside of the namespace.
     link: String,
-    /// The first three bytes of its addresses, which no other network of this process has.
+    /// The first three bytes of its addresses, unique among the networks of this process.
     addresses: [u8; 3],
 }
 
@@ -28,7 +28,7 @@ impl Network {
         let (namespace, link) = (&network.namespace, &network.link);
         ip(&format!("netns add {namespace}"));
         ip(&format!("link add {link} type veth peer name bus netns {namespace}"));
-        // On the loopback interface, so that it is there while the link is not.
+        // On the loopback interface, so that the address exists even while the link is down.
         ip(&format!("address add {}/32 dev lo", network.shared()));
         ip(&format!("-n {namespace} link set lo up"));
         ip(&format!("-n {namespace} link set bus up"));
@@ -43,7 +43,7 @@ impl Network {
         &self.namespace
     }
 
-    /// The address of what the hosts share.
+    /// The address of the servers that the hosts share.
     pub(crate) fn shared(&self) -> Ipv4Addr {
         self.address(1)
     }
@@ -58,12 +58,12 @@ impl Network {
         Ipv4Addr::new(first, second, third, last)
     }
 
-    /// Cuts the link.
+    /// Takes the link down.
     pub(crate) fn cut(&self) {
         ip(&format!("link set {} down", self.link));
     }
 
-    /// Mends the link.
+    /// Brings the link up.
     pub(crate) fn mend(&self) {
         ip(&format!("link set {} up", self.link));
         ip(&format!("route add {}/32 dev {}", self.host(), self.link));
@@ -86,7 +86,7 @@ fn ip(words: &str) {
 fn command(words: &str) -> Command {
     let mut command = Command::new("ip");
     command.args(words.split_whitespace());
-    // The package puts it where the superuser looks.
+    // The package installs the program in a directory that only root's path contains.
     command.env("PATH", format!("{}:/usr/sbin:/sbin", std::env::var("PATH").unwrap_or_default()));
     command
 }

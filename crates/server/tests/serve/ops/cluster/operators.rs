@@ -1,4 +1,4 @@
-//! `cellcaster admin` and metrics, where there are several hosts.
+//! `cellcaster-server admin` and metrics in a cluster of several hosts.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -28,7 +28,7 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
     mara.wait_for("closing soon");
     jon.wait_for("closing soon");
 
-    // A ban on one host ends the session on another one at once.
+    // A ban on one host ends the session on another host at once.
     let start = Instant::now();
     let said = other.admin_says(&["ban", "mara", "--reason", "insults", "--store", &hosts.store]);
     assert!(said.ends_with("ended 1 session\n"), "{said}");
@@ -36,7 +36,7 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
     println!("the session ends after {:?}", start.elapsed());
     mara.wait_for_end();
     one.player(Some(&key)).wait_for("banned from this server: insults");
-    // The session is one of the other host.
+    // The session runs on the other host.
     let who = one.admin_says(&["who"]);
     let session = who.lines().find(|line| line.contains("Jon")).unwrap().split(' ').next().unwrap();
     assert_eq!(one.admin_says(&["kick", "--session", session]), "ended 1 session\n");
@@ -54,7 +54,7 @@ fn hosts_are_listed_with_the_rooms_that_they_write_and_those_that_do_not_answer(
     let writing = rows[1..].iter().filter(|row| !row.ends_with("none")).count();
     assert!(writing == 1 && list.contains("127.0.0.1:"), "{list}");
 
-    // Each room that a host runs has figures.
+    // Each room that a host runs has its own metrics.
     let figures = hosts.figures(0);
     let of_rooms = figures.iter().filter(|(line, _)| line.contains("{room=\""));
     let of_rooms: Vec<_> = of_rooms.collect();

@@ -1,4 +1,4 @@
-//! Players whose host ends, and who connect to another one.
+//! Players whose host shuts down and who connect to another host.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -14,12 +14,12 @@ use crate::player::Player;
 use crate::transport::folder;
 
 const WELCOME: &str = "Welcome back: you are where you were.";
-/// Walks ahead.
+/// Starts walking forward.
 const WALK: &str = "\x1b[119;1:1u";
-/// Stops, and turns back to where nothing moves.
+/// Stops, and turns back to a view in which nothing moves.
 const TURN: &str = "\x1b[119;1:3u\x1b[98;1:1u\x1b[98;1:3u";
 
-/// A player with a key on a host, who is in the first room, has walked ahead, and looks back.
+/// A player with a key on a host who has entered the first room, walked ahead, and turned back.
 fn walker(hosts: &Hosts, host: usize) -> (Player, PathBuf) {
     let key = user_key(&folder());
     let mara = hosts.running[host].0.player(Some(&key));
@@ -45,7 +45,7 @@ fn picture(player: &Player) -> Vec<Look> {
     rows.flat_map(|row| row[..50].to_vec()).collect()
 }
 
-/// Mara connects to a host, and returns; the time that it takes.
+/// Mara connects to a host and gets her place back; returns the time that this took.
 fn returned(hosts: &Hosts, host: usize, key: &Path) -> (Player, Duration) {
     let start = Instant::now();
     let mara = hosts.running[host].0.player(Some(key));
@@ -63,7 +63,7 @@ fn a_player_of_a_host_that_drains_is_where_they_were() {
 
     hosts.running[0].0.signal(Signal::TERM);
     mara.wait_for("Connect again, and you are where you were.");
-    // She does at once, before the host ends.
+    // She leaves at once, before the host exits.
     mara.send("\x03\x03");
     jon.wait_for("Mara is away.");
     let (mara, time) = returned(&hosts, 1, &key);
@@ -72,12 +72,12 @@ fn a_player_of_a_host_that_drains_is_where_they_were() {
     assert!(picture(&mara) == before, "{}", mara.text());
     assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
 
-    // She is a member as she was.
+    // She is a full member again.
     mara.send("/here I am\r");
     jon.wait_for("here I am");
     mara.send("\t");
     mara.wait_for("2/16");
-    // Nobody takes the place of one who plays.
+    // A second connection cannot take the place of a player who is connected.
     let other = hosts.running[1].0.player(Some(&key));
     other.wait_for("You are in a room by another connection, and stay there.");
 }
@@ -97,7 +97,7 @@ fn players_of_a_host_that_has_ended_return_and_guests_are_gone() {
     println!("the room goes on after {time:?}");
     jon.wait_for("Mara is away.");
     jon.wait_for("Kim leaves.");
-    // Some seconds later.
+    // A few seconds later.
     std::thread::sleep(Duration::from_secs(2));
     let (_mara, time) = returned(&hosts, 1, &key);
     println!("she is back after {time:?}");
