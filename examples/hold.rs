@@ -1,13 +1,14 @@
-//! What the process of a game costs, at 20 frames a second.
+//! The cost of a game's process, at 20 frames a second.
 //!
 //! ```text
 //! cargo build --release
 //! cargo run --release --example hold -- right 80x24 citadel
 //! ```
 //!
-//! Plays a level in a pseudo-terminal that answers as one with the kitty keyboard protocol. The first
-//! argument is the key that is held: `right`, `left`, `up`, `down`, or `none`. Prints frames and bytes,
-//! processor time, and how often the process has waited, from `/proc`.
+//! Plays a level in a pseudo-terminal that answers like a terminal with the kitty keyboard
+//! protocol. The first argument is the held key: `right`, `left`, `up`, `down`, or `none`. Prints
+//! frames and bytes, processor time, and the number of times that the process has waited, from
+//! `/proc`.
 
 #[cfg(unix)]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,24 +36,25 @@ mod unix {
 
     const PROGRAM: &str = "target/release/cellcaster";
     const FRAMES_PER_SECOND: &str = "20";
-    /// The time before a key is pressed, from then until the measurement begins, and of that.
+    /// The time before a key is pressed, the time from then until the measurement begins, and the
+    /// duration of the measurement.
     const START: Duration = Duration::from_secs(1);
     const WARM_UP: Duration = Duration::from_secs(1);
     const MEASURED: Duration = Duration::from_secs(20);
 
-    /// Queries, and what the terminal answers.
+    /// Queries, and the terminal's answers.
     const ANSWERS: [(&[u8], &[u8]); 3] =
         [(b"\x1b[5n", b"\x1b[0n"), (b"\x1b[c", b"\x1b[?62c"), (b"\x1b[?u", b"\x1b[?0u")];
     const END_OF_FRAME: &[u8] = b"\x1b[?2026l";
 
-    /// What has come from the program.
+    /// Counts of the frames and bytes that the program has sent.
     #[derive(Debug, Default)]
     struct Received {
         frames: AtomicU64,
         bytes: AtomicU64,
     }
 
-    /// What a process has used so far.
+    /// The resources that a process has used.
     struct Usage {
         processor: Duration,
         waits: u64,
@@ -109,7 +111,8 @@ mod unix {
         Ok(())
     }
 
-    /// Counts frames, and answers queries. One that two reads cut is missed, which the program bears.
+    /// Counts frames, and answers queries. Misses a query that is split between two reads, which
+    /// the program tolerates.
     fn receive(pty: &Pty, received: &Received) {
         let mut buffer = vec![0; 1 << 16];
         while let Ok(count @ 1..) = (&*pty).read(&mut buffer) {
@@ -129,7 +132,7 @@ mod unix {
     }
 
     impl Usage {
-        /// That of all threads of a process.
+        /// The usage of all threads of a process.
         fn of(process: u32) -> Result<Self, Box<dyn Error>> {
             let (mut nanoseconds, mut waits) = (0, 0);
             for task in fs::read_dir(format!("/proc/{process}/task"))? {

@@ -4,7 +4,7 @@
 //!
 //! - A hit is the first solid cell that the ray *enters* at `t ≥ 0`. A ray that starts inside a
 //!   wall has already entered it, and hits the next one.
-//! - A ray crosses grid lines in the order of their `t`. Where it meets an x line and a y line at
+//! - A ray crosses grid lines in the order of their `t`. If it meets an x line and a y line at
 //!   once, it crosses the y line first.
 //! - A ray that starts on a line crosses that line at `t = 0`. If it runs along the line, it is in
 //!   the cell to the east or to the south.
@@ -12,23 +12,23 @@
 //!   leaves the map escapes.
 //! - Every ray ends, and no hit contains a NaN.
 //!
-//! [`Caster::cast_through`] also knows doors, whose leaf is in the middle of the cell, transparent
-//! cubes, and shapes that do not fill their cell:
+//! [`Caster::cast_through`] also handles doors, whose leaf is in the middle of the cell,
+//! transparent cubes, and shapes that do not fill their cell:
 //!
-//! - A ray that enters or starts in a door's cell hits the leaf where it meets it, and otherwise
+//! - A ray that enters a door's cell or starts in it hits the leaf if it meets it, and otherwise
 //!   goes on.
 //! - A ray that enters a cube of glass, or a cube with holes, passes through it and reports the
 //!   face. Adjacent cells with the same tile are one cube, without a face between them.
-//! - A ray that enters or starts in the cell of a shape, a pillar or a line, hits the shape where
+//! - A ray that enters the cell of a shape (a pillar or a line) or starts in it hits the shape if
 //!   it meets it, and otherwise goes on. A line has no thickness, and both its ends belong to it: a
 //!   ray along the line misses it, and a ray through an end hits it. A ray that starts inside a
 //!   pillar leaves it without a hit.
 //!
-//! [`Exact`] keeps these rules for every ray: it crosses the lines in their true order, which it
-//! finds with integers, and with longer integers where those cannot decide. A caster without its
-//! own [`Caster::cast_through`] treats all of these cells as walls.
+//! [`Exact`] keeps these rules for every ray. It crosses the lines in their true order, which it
+//! finds with integers, or with longer integers if the first ones cannot decide. A caster without
+//! its own [`Caster::cast_through`] treats all of these cells as walls.
 //!
-//! Callers for which speed counts are generic over the [`Caster`], and compiled for few of them.
+//! Callers whose speed matters are generic over the [`Caster`], and compiled for few casters.
 
 mod dyn_caster;
 mod exact;
@@ -59,19 +59,21 @@ pub use walk::{Crossing, Walk};
 
 use crate::world::{Grid, World};
 
-/// A method of finding what a ray hits.
+/// A method of finding the cell that a ray hits.
 pub trait Caster {
     /// The first hit of `ray` in `grid`, or `None` if the ray escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
-    /// Whether the cell and the side of each hit of [`Caster::cast`] are those that rational arithmetic
-    /// gives, so that hits of rays between others follow from those. If not, each ray has to be cast.
+    /// Returns whether the cell and the side of each hit of [`Caster::cast`] are correct in
+    /// rational arithmetic. The hits of rays between two others then follow from the hits of these
+    /// two. If not, each ray has to be cast.
     fn is_exact(&self) -> bool {
         false
     }
 
     /// The first hit of `ray` in `world` that is not transparent, or `None` if the ray escapes.
-    /// Transparent faces that it enters before that hit are passed to `passed`, from near to far.
+    /// Calls `passed` with the transparent faces that the ray enters before that hit, from near to
+    /// far.
     ///
     /// The default treats everything solid as a wall.
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {

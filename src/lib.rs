@@ -14,11 +14,11 @@
 //! | read a map | [`map::load`], [`map::parse`], or [`map::builtin::LEVELS`] |
 //! | draw a frame | [`render::Renderer::render`], into a [`render::Frame`] |
 //! | show a frame in a ratatui program | `tui::FirstPerson`, beside `tui::Minimap` |
-//! | let a player walk | [`game::Game::step`], with the [`game::Intents`] of each step |
-//! | tell which keys are held, with or without releases | `tui::HeldKeys` |
+//! | move a player | [`game::Game::step`], with the [`game::Intents`] of each step |
+//! | track held keys, with or without key releases | `tui::HeldKeys` |
 //! | send cells to a terminal in few bytes | `terminal::CellWriter` |
 //! | cast single rays | [`cast::Exact`] and the [`cast::Caster`] trait |
-//! | make levels | [`generate::Generator`] and [`generate::Window`] |
+//! | generate levels | [`generate::Generator`] and [`generate::Window`] |
 //!
 //! ```
 //! use cellcaster::map::builtin;
@@ -33,12 +33,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! ARCHITECTURE.md in the repository lists the modules from the bottom up, and what code may rely on.
+//! ARCHITECTURE.md in the repository lists the modules from the bottom up and the invariants that
+//! code may rely on.
 //!
 //! # Features
 //!
-//! Each feature needs the one before it: `tui` (the ratatui widgets), `terminal` (the terminal, and the game in it) and
-//! `cli` (the command line), which is the default. Without features there is the engine, which uses no terminal crate.
+//! Each feature needs the one before it: `tui` (the ratatui widgets), `terminal` (the terminal, and
+//! the game in it) and `cli` (the command line), which is the default. Without features, the crate
+//! is the engine alone, which uses no terminal crate.
 
 #[cfg(test)]
 extern crate self as cellcaster;

@@ -18,11 +18,11 @@
 //! assert_eq!((world.grid().width(), world.grid().height()), (4, 3));
 //! ```
 //!
-//! Reading has stages: the TOML, the definitions of the characters, the grid, and the textures that
-//! the grid uses. Each stage adds its faults to one list. A stage uses what the earlier ones could
-//! read, and reports nothing that follows from an earlier fault.
+//! A map is read in stages: the TOML, the definitions of the characters, the grid, and the textures
+//! that the grid uses. Each stage adds its faults to one list. A stage uses the results of earlier
+//! stages, and reports nothing that follows from an earlier fault.
 //!
-//! Rows of unequal length are a fault. Rejected: padding short rows, since a lost character would
+//! Rows of unequal length are a fault. Rejected: padding short rows. A lost character would
 //! silently move half a wall.
 
 pub mod builtin;
@@ -77,7 +77,7 @@ pub enum Level {
     Space(Scene),
 }
 
-/// Parses the map `text` with a grid into a world.
+/// Parses `text`, a map with a grid, into a world.
 ///
 /// Faults call the map `name`. Textures that are not built in come from `files`.
 ///
@@ -104,7 +104,7 @@ pub enum Level {
 /// ```
 ///
 /// # Errors
-/// All faults of the map. A map of bodies, which has no grid, is a fault.
+/// All faults of the map. A map of bodies is a fault too, because it has no grid.
 pub fn parse(text: &str, name: &str, files: &dyn TextureFiles) -> Result<World, Faults> {
     parse_level(text, name, files)?.into_world(name)
 }
@@ -127,13 +127,13 @@ pub fn parse_level(text: &str, name: &str, files: &dyn TextureFiles) -> Result<L
 /// Parses a map that uses built-in textures only, as [`parse`] does.
 ///
 /// # Errors
-/// All faults of the map, which they call `map`.
+/// All faults of the map, in which it is called `map`.
 pub fn parse_str(text: &str) -> Result<World, Faults> {
     parse(text, "map", &NoFiles)
 }
 
-/// Reads the map file at `path`, which has a grid. Textures that are not built in are files in its
-/// folder or below it.
+/// Reads the map file at `path`, which must have a grid. Textures that are not built in are files
+/// in its folder or below it.
 ///
 /// # Errors
 /// All faults of the map, or the reason why the file cannot be read.
@@ -152,13 +152,13 @@ pub fn load_level(path: &Path) -> Result<Level, Faults> {
 /// Reads a map file as [`load_level`] does, with textures from `files`.
 ///
 /// # Errors
-/// As [`load_level`].
+/// The same as for [`load_level`].
 pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
     let name = path.display().to_string();
     read_level(open(path, &name)?, &name, files)
 }
 
-/// Reads a map of either kind from `input`, at most [`MAX_BYTES`] of it.
+/// Reads a map of either kind from `input`, which may have up to [`MAX_BYTES`].
 ///
 /// Faults call the map `name`. Textures that are not built in come from `files`.
 ///
@@ -192,7 +192,7 @@ impl Level {
     }
 }
 
-/// The level that `text` describes. Where it is not a map, adds that to `faults`.
+/// Reads the level that `text` describes. If `text` is not a map, adds the reasons to `faults`.
 fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Level> {
     let document = document::parse(text, faults);
     let not_toml = faults.take();
@@ -225,7 +225,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         return None;
     };
     let drawing = Drawing::read(grid, text)?;
-    // After a fault in one of the two, tiles would only cause further faults.
+    // If one of the two has a fault, the tiles would only cause further faults.
     let black = Covering::from(Paint::Color(Rgb::BLACK));
     let (floor, ceiling) = (floor.unwrap_or(black), ceiling.unwrap_or(Ceiling::Covered(black)));
     let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?);
@@ -323,7 +323,7 @@ fn draw(plan: Plan<'_>, tiles: &TileList) -> Option<Grid> {
     Grid::new(width, height, tiles.first_solid, cells)
 }
 
-/// The rows of the grid that the map `text` draws, from the north; none if it has no grid.
+/// The rows of the grid in the map `text`, from north to south. Empty if the map has no grid.
 pub(crate) fn rows_of_grid(text: &str) -> Vec<String> {
     let faults = FaultList::default();
     let document = document::parse(text, &faults);

@@ -2,14 +2,14 @@
 //!
 //! A [`World`] is valid by construction: every index in it points at something, and its start is on
 //! open floor. No later stage checks it again. [`map::parse`](crate::map::parse) and its siblings
-//! make worlds, and report every fault of a map with its place. Rejected: building a world by hand, since
-//! its faults would have no place to report.
+//! make worlds, and report every fault of a map with its place. Rejected: building a world by hand.
+//! Its faults would have no place to report.
 //!
 //! In the world of a map, all doors are closed and all keys are in their places. A game opens doors
-//! and takes keys in its own copy of the world, so that a renderer needs nothing else.
+//! and takes keys in its own copy of the world, so a renderer needs nothing else.
 //!
-//! Rendering and collision leave out what a world does not have, such as mirrors. These properties depend
-//! on the kinds of tile and sprite, of which there are few, and not on the cells.
+//! Rendering and collision skip features that a world lacks, such as mirrors. These properties
+//! depend on the kinds of tile and sprite, of which there are few, and not on the cells.
 
 pub(crate) mod art;
 mod beam_table;
@@ -87,7 +87,7 @@ pub struct World {
     things: Things,
     figures: Vec<Figure>,
     lamplight: Lamplight,
-    /// Whether cells may differ in light.
+    /// `true` if cells may differ in light.
     light_varies: bool,
     keys: Vec<String>,
     mission: Mission,
@@ -121,12 +121,12 @@ pub(crate) struct Parts {
     pub(crate) mission: Mission,
 }
 
-/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
-/// lamps.
+/// The changes that a game has made to its world, except changes that follow from its doors, its
+/// mechanisms and its lamps.
 pub(crate) struct Changes<'a> {
     pub(crate) things: &'a [Thing],
     pub(crate) figures: &'a [Figure],
-    /// Whether lamps have ever added light.
+    /// `true` if lamps have ever added light.
     pub(crate) is_lamplit: bool,
 }
 
@@ -136,7 +136,7 @@ impl World {
         &self.title
     }
 
-    /// The goal that the map names, if it does.
+    /// The goal, if the map names one.
     pub fn goal(&self) -> Option<&str> {
         self.goal.as_deref()
     }
@@ -146,8 +146,8 @@ impl World {
         &self.grid
     }
 
-    /// The grid as seen by rays that stop at uneven cells, which are solid in it. `None` if all tiles are
-    /// level.
+    /// The grid as seen by rays that stop at uneven cells: uneven cells are solid in it. `None` if
+    /// all tiles are level.
     pub(crate) fn level_grid(&self) -> Option<&Grid> {
         self.level_grid.as_ref()
     }
@@ -165,7 +165,8 @@ impl World {
         self.tiles[usize::from(id.0)]
     }
 
-    /// The heights of floor and ceiling in `cell`; outside the map, those of the map's own floor.
+    /// The heights of floor and ceiling in `cell`. Outside the map, returns the heights of the
+    /// map's own floor.
     pub fn room_in(&self, cell: Cell) -> Heights {
         self.tile_in(cell).unwrap_or(&self.tiles[0]).heights
     }
@@ -175,8 +176,8 @@ impl World {
         self.tile_in(cell).map_or(0.0, |tile| tile.heights.floor())
     }
 
-    /// The light in `cell`: that of its tile, and what lamps add. For a wall with a light of its
-    /// own, that light.
+    /// The light in `cell`: the light of its tile, plus the light that lamps add. A wall with a
+    /// light of its own has that light only.
     pub fn light_in(&self, cell: Cell) -> Light {
         let own = self.tile_in(cell).unwrap_or(&self.tiles[0]).light;
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
@@ -196,8 +197,8 @@ impl World {
         &self.textures[usize::from(id.0)]
     }
 
-    /// The number of mip levels of textures and sprites made so far. Those of built-in ones are made when they are
-    /// first read.
+    /// The number of mip levels of textures and sprites that have been made. Mip levels of built-in
+    /// textures and sprites are made when they are first read.
     pub fn mip_levels_made(&self) -> usize {
         let pictures = self.sprites.iter().flat_map(Sprite::pictures);
         self.textures.iter().chain(pictures).map(Texture::levels_made).sum()
@@ -211,12 +212,12 @@ impl World {
         }
     }
 
-    /// The floor of tiles without their own, and outside the map.
+    /// The floor of tiles without their own floor, and of the area outside the map.
     pub fn floor(&self) -> Covering {
         self.floor
     }
 
-    /// The ceiling of tiles without their own. Outside the map there is sky.
+    /// The ceiling of tiles without their own ceiling. Outside the map there is sky.
     pub fn ceiling(&self) -> Ceiling {
         self.ceiling
     }
@@ -266,29 +267,30 @@ impl World {
         self.grid.tile_in(cell).map(|id| &self.tiles[usize::from(id.0)])
     }
 
-    /// Whether all floors are at 0, and all ceilings, walls and shapes reach 1, so that every ray
-    /// ends at the first of them.
+    /// Returns whether all floors are at 0, and all ceilings, walls and shapes reach 1. Every ray
+    /// then ends at the first wall or shape.
     pub fn is_level(&self) -> bool {
         self.tiles.iter().all(Tile::has_level_heights)
     }
 
-    /// Whether any tile is a mirror that shows an image.
+    /// Returns whether any tile is a mirror that shows an image.
     pub fn has_mirrors(&self) -> bool {
         self.tiles.iter().any(Tile::reflects)
     }
 
-    /// Whether any tile is a shape.
+    /// Returns whether any tile is a shape.
     pub(crate) fn has_shapes(&self) -> bool {
         self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
     }
 
-    /// Whether everything solid is a wall, which shows one side and hides what is behind it.
+    /// Returns whether every solid tile is a wall, which shows one side and hides everything behind
+    /// it.
     pub(crate) fn is_of_walls(&self) -> bool {
         let is_plain = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Wall(_));
         self.tiles.iter().all(is_plain)
     }
 
-    /// Whether lamps add light anywhere.
+    /// Returns whether lamps add light anywhere.
     pub(crate) fn has_lamplight(&self) -> bool {
         !self.lamplight.is_dark()
     }
@@ -298,7 +300,7 @@ impl World {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
-    /// Whether the sky is above any cell but walls.
+    /// Returns whether the sky is above any tile other than a wall.
     #[cfg(feature = "terminal")]
     pub(crate) fn has_open_sky(&self) -> bool {
         let is_open =
@@ -306,7 +308,8 @@ impl World {
         self.tiles.iter().any(is_open)
     }
 
-    /// A height that no thing reaches above, wherever it stands or hangs; −∞ if there are no sprites.
+    /// An upper bound on the height that any thing reaches, wherever it stands or hangs; −∞ if
+    /// there are no sprites.
     pub(crate) fn limit_of_things(&self) -> f64 {
         let tallest = |anchor: Anchor| {
             let sprites = self.sprites.iter().filter(|sprite| sprite.anchor == anchor);
@@ -322,18 +325,18 @@ impl World {
         self.tiles.iter().filter(holds_things).map(top_in).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// A world of `parts` that fit together:
+    /// Builds a world of `parts` that fit together:
     ///
     /// - Every tile of the grid and every texture is in its list.
     /// - Open tiles come before solid ones, and the map's own floor is the first.
     /// - The start and all things are on open floor, and the grid knows which things block.
     /// - Every door has a doorway with the same character, and stands between solid cells that are
     ///   not doors and do not move.
-    /// - The states of moving tiles are in the list, the first of each in no other one. The grid
-    ///   shows no other states.
+    /// - The states of moving tiles are in the list of tiles. The first state of each belongs to no
+    ///   other moving tile, and the grid shows no other states.
     /// - Switches and notes are in their lists. Guards and their waypoints are on open floor.
     ///
-    /// The map reader establishes all of that, and tests verify it.
+    /// The map reader guarantees all of this, and tests verify it.
     pub(crate) fn from_parts(mut parts: Parts) -> Self {
         let moving = &parts.mission.moving_tiles;
         clear(&mut parts.grid, &parts.tiles, moving);
@@ -365,8 +368,8 @@ impl World {
         world
     }
 
-    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start
-    /// and things, and without figures and moving lamps. They fit the other parts as in
+    /// Replaces the cells by `grid`, in which no door is partly open, together with the start and
+    /// the things. Removes figures and moving lamps. The new parts must fit the others as in
     /// [`World::from_parts`].
     pub(crate) fn redraw(&mut self, grid: Grid, start: Start, things: Vec<Thing>) {
         self.grid = grid;
@@ -380,7 +383,7 @@ impl World {
         self.ajar = Ajar::default();
     }
 
-    /// The changes of a game so far.
+    /// The changes that a game has made.
     pub(crate) fn changes(&self) -> Changes<'_> {
         let Self {
             title: _,
@@ -395,7 +398,7 @@ impl World {
             sky: _,
             fog: _,
             start: _,
-            // A game adds its own at its start.
+            // A game adds its own sprites when it starts.
             sprites: _,
             things,
             figures,
@@ -410,9 +413,10 @@ impl World {
         Changes { things: things.all(), figures, is_lamplit: !lamplight.is_dark() }
     }
 
-    /// Replaces the things by those of them that are `left`, which may show other frames, and computes all
-    /// lamplight again, without moving lamps. Returns `false`, and changes nothing, if the things are not
-    /// in their order, were not all there, or have sprites without such a frame.
+    /// Keeps only the things in `left`, which may show other frames, and computes all lamplight
+    /// again, without moving lamps. Returns `false`, and changes nothing, if `left` is not in
+    /// order, contains a thing that is not in the world, or shows a frame that its sprite does not
+    /// have.
     pub(crate) fn leave_things(&mut self, left: Vec<Thing>) -> bool {
         let place = |cell: Cell| (cell.row, cell.column);
         let mut is_used = vec![false; self.things().len()];
@@ -440,12 +444,13 @@ impl World {
     }
 }
 
-/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
+/// Computes the distance field of `grid`, in which doors may close and moving tiles may become
+/// solid.
 fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
     let first_solid = grid.first_solid();
     let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    // A level grid has a tile of its own for what is not level.
+    // A level grid has an extra tile for uneven cells, which is in no list.
     let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
     grid.clear(|id| is_doorway(id) || may_change(id));
 }

@@ -1,7 +1,7 @@
-//! What arrives on a connection of `admin.sock`.
+//! The bytes that arrive on a connection to `admin.sock`.
 //!
-//! There is one answer, a line that is a reply. A request is written as a text that reads as the same. The work is
-//! bounded by the bytes.
+//! There is exactly one answer, a line that parses as a reply. Writing a request and reading it
+//! again returns the same request. The work is bounded by the number of bytes.
 
 use allocation_counter::measure;
 use cellcaster_server::admin::{AdminReply, AdminRequest};

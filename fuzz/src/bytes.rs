@@ -1,6 +1,6 @@
 //! Choices from the bytes of an input.
 
-/// The bytes of an input that are left. When there are no more, every choice is the first one.
+/// The remaining bytes of an input. When there are none left, every choice is the first one.
 pub(crate) struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -12,7 +12,7 @@ impl<'a> Bytes<'a> {
         self.0.is_empty()
     }
 
-    /// The next `count` bytes, or all that are left.
+    /// The next `count` bytes, or all remaining ones.
     pub(crate) fn take(&mut self, count: usize) -> &'a [u8] {
         let (taken, rest) = self.0.split_at(count.min(self.0.len()));
         self.0 = rest;

@@ -1,19 +1,20 @@
-//! Checkpoints of rooms: such as a host has made, with changed bytes, or made of nothing else.
+//! Checkpoints of rooms: as a host has made them, with changed bytes, or made of arbitrary bytes.
 //!
-//! Whatever the bytes are, they are refused with a sentence, or a room is restored from them that has a
-//! checkpoint itself and is played on: for a second, and one in eight for ten.
+//! A checkpoint is either rejected with a sentence, or a room is restored from it. The restored
+//! room has a checkpoint itself, and continues to run: one second in most cases, and ten seconds in
+//! one case of eight.
 
 use cellcaster_server::fuzzing::{CHECKPOINTS, checkpoint, resume};
 
 use crate::bytes::Bytes;
 
-/// The steps of most restored rooms, and of the others.
+/// The number of steps of most restored rooms, and of the others.
 const STEPS: usize = 60;
 const MOST_STEPS: usize = 600;
 const MOST_CHANGES: usize = 24;
 
-/// Changes a checkpoint, whose number is the first byte, or takes the bytes after its first line as they
-/// are.
+/// Changes the checkpoint with the number in the first byte, or replaces everything after its first
+/// line by the bytes of the input.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let number = usize::from(choices.byte());

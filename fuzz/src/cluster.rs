@@ -1,22 +1,23 @@
-//! The messages of the hosts of a cluster about a room: messages of its log, broadcasts, records, and the head of a
-//! checkpoint.
+//! The messages of a cluster's hosts about a room: messages of its log, broadcasts, records, and
+//! the head of a checkpoint.
 //!
-//! The first byte says where the room comes from: a mode, a record, or a checkpoint. The record or the head follows, then
-//! parts, each with a byte for its kind and one for a number. All of them begin with a byte for their length, and have no
-//! versions. Bytes that read as a message are written as bytes that read as the same, and no message ends a host.
+//! The first byte chooses the origin of the room: a mode, a record, or a checkpoint. The record or
+//! the head follows, and then parts, each with a byte for its kind and a byte for a number. All of
+//! them begin with a length byte, and have no versions. Bytes that parse as a message are written
+//! as bytes that parse as the same message, and no message ends a host.
 
 use allocation_counter::measure;
 use cellcaster_server::fuzzing::SharedRoom;
 
 const MOST_PARTS: usize = 32;
-/// The most steps of a message, and of all of them.
+/// The largest number of steps in a message, and in all messages.
 const MOST_STEPS: u64 = 60;
-/// The most bytes that are allocated for a step, as long as nobody draws.
+/// The largest number of bytes allocated for a step, as long as nobody draws.
 const BYTES_OF_A_STEP: u64 = 64 << 10;
-/// The most bytes that are allocated for a byte of a message.
+/// The largest number of bytes allocated for a byte of a message.
 const BYTES_OF_A_BYTE: u64 = 256;
 
-/// Lets a host hear all parts.
+/// Delivers all parts to a host.
 pub fn run(data: &[u8]) {
     let Some((&from, rest)) = data.split_first() else { return };
     let mut parts = Parts(rest);
@@ -42,7 +43,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// Parts of bytes that begin with their length. The last one may be shorter.
+/// Parts of the input, each preceded by its length. The last part may be shorter.
 struct Parts<'a>(&'a [u8]);
 
 impl<'a> Iterator for Parts<'a> {

@@ -1,12 +1,13 @@
 //! The decoder: bytes that a terminal sends, and the protocol that answers them.
 //!
-//! The first two bytes choose the terminal and where the stream is cut, the others are the stream.
+//! The first two bytes choose the terminal and the place where the stream is cut. The others are
+//! the stream.
 //!
-//! - Events and answers do not depend on where the stream is cut. Their number, the memory that is held and all that is
-//!   allocated are bounded by its length.
+//! - Events and answers do not depend on where the stream is cut. Its length bounds their number,
+//!   the memory held, and all allocated memory.
 //! - After any stream and a pause, a key is a key.
-//! - Among frames, changes of the window and an emulator's own answers, the protocol gives the terminal
-//!   back as it was.
+//! - Among frames, changes of the window and an emulator's own answers, the protocol returns the
+//!   terminal to its original state.
 
 use std::time::Duration;
 
@@ -23,14 +24,14 @@ const TERMS: [&str; 8] =
     ["xterm-256color", "xterm-kitty", "linux", "tmux-256color", "dumb", "alacritty", "vt220", ""];
 /// Longer than the wait for the rest of any key or answer.
 const PAUSE: Duration = Duration::from_secs(20);
-/// The most parts that a stream is cut into.
+/// The largest number of parts into which a stream is cut.
 const MOST_PARTS: usize = 64;
-/// The bytes that are allocated for a byte that arrives alone, with what answers it.
+/// The number of bytes allocated for a byte that arrives alone, including the answer to it.
 const BYTES_OF_A_BYTE: u64 = 4 << 10;
-/// The events that no byte causes, such as the first size of the window.
+/// The number of events that no byte causes, such as the first size of the window.
 const FIRST_EVENTS: usize = 4;
 
-/// Receives the stream whole, in parts, and among frames.
+/// Receives the stream as a whole, in parts, and among frames.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let (kind, seed) = (choices.byte(), choices.byte());
@@ -59,7 +60,7 @@ fn protocol(kind: u8) -> Protocol {
     protocol
 }
 
-/// What comes of a stream: events and bytes to send.
+/// The result of a stream: events, and bytes to send.
 fn received<'a>(kind: u8, parts: impl IntoIterator<Item = &'a [u8]>) -> (Vec<Event>, Vec<u8>) {
     let mut protocol = protocol(kind);
     let mut length = 0;
@@ -91,14 +92,14 @@ fn received<'a>(kind: u8, parts: impl IntoIterator<Item = &'a [u8]>) -> (Vec<Eve
     (events, output)
 }
 
-/// The bytes to send, which are sent.
+/// Takes the bytes to send, and marks them as sent.
 fn take_output(protocol: &mut Protocol, now: Duration) -> Vec<u8> {
     let output = std::mem::take(protocol.output(now));
     protocol.written(now);
     output
 }
 
-/// A terminal, and what is on the way.
+/// A terminal, and the bytes that are on the way.
 struct Conversation {
     protocol: Protocol,
     terminal: Alacritty,
@@ -147,7 +148,7 @@ impl Conversation {
         self.send();
     }
 
-    /// Lets the terminal read all that was sent.
+    /// Lets the terminal read everything that was sent.
     fn send(&mut self) {
         let bytes = take_output(&mut self.protocol, self.now);
         self.answers.extend(self.terminal.process(&bytes));
@@ -166,7 +167,7 @@ impl Conversation {
         }
     }
 
-    /// Gives the terminal back.
+    /// Ends the protocol, and checks the state of the terminal.
     fn end(mut self) {
         self.protocol.end(self.now);
         self.send();

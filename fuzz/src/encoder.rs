@@ -1,8 +1,8 @@
 //! The encoder: pictures, erased regions, changed sizes and settings, from bytes.
 //!
-//! Two emulators read what the writer writes. After every picture, at the fidelity exact, both show what
-//! a model says; at another fidelity they do once the picture rests. Repeat counts and a defined palette
-//! are read by Alacritty alone.
+//! Two emulators read the bytes that the writer writes. After every picture at exact fidelity, both
+//! must match a model. At another fidelity, they must match it once the picture rests. Only
+//! Alacritty reads repeat counts and a defined palette.
 
 mod model;
 mod screens;
@@ -18,9 +18,9 @@ use crate::bytes::Bytes;
 use model::{Model, Picture};
 use screens::Screens;
 
-/// The most operations of an input.
+/// The largest number of operations in an input.
 const MOST_OPERATIONS: usize = 40;
-/// The frames after which a picture that rests is exact.
+/// The number of frames after which a picture at rest is exact.
 const FRAMES_OF_REST: usize = 10;
 const REGIONS: [ClearType; 5] = [
     ClearType::All,
@@ -30,7 +30,7 @@ const REGIONS: [ClearType; 5] = [
     ClearType::UntilNewLine,
 ];
 
-/// Draws pictures, and checks that the emulators show them.
+/// Draws pictures, and checks the screens of the emulators.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let flags = choices.byte();
@@ -51,7 +51,7 @@ fn size(choices: &mut Bytes) -> Size {
     Size::new(1 + choices.below(20) as u16, 1 + choices.below(6) as u16)
 }
 
-/// A writer, what its terminal should show, and what two terminals show.
+/// A writer, the expected screen of its terminal, and the screens of two terminals.
 struct Drawing {
     writer: CellWriter<Vec<u8>>,
     model: Model,
@@ -97,7 +97,7 @@ impl Drawing {
         self.check();
     }
 
-    /// Sends the cells that differ from the picture before, as ratatui does.
+    /// Sends the cells that differ from the previous picture, as ratatui does.
     fn draw_changes(&mut self, choices: &mut Bytes) {
         let picture = Picture::new(self.model.size(), choices);
         let before = self.model.clone();
@@ -110,7 +110,7 @@ impl Drawing {
         self.check();
     }
 
-    /// Draws rows of pixels, and characters by themselves.
+    /// Draws rows of pixels, and single characters.
     fn draw_on_canvas(&mut self, choices: &mut Bytes) {
         let Size { width, height } = self.model.size();
         let Self { writer, model, .. } = self;
@@ -159,7 +159,7 @@ impl Drawing {
         let at = Position::new(choices.byte() as u16 % width, choices.byte() as u16 % height);
         let region = choices.pick(&REGIONS);
         if region == ClearType::BeforeCursor && at.y == 1 {
-            // Alacritty 0.26 leaves the row above as it is.
+            // Alacritty 0.26 leaves the row above unchanged.
             return;
         }
         self.writer.set_cursor_position(at).expect("it is in memory");
@@ -169,7 +169,7 @@ impl Drawing {
         self.settle();
     }
 
-    /// Another program writes to the terminal.
+    /// Writes to the terminal as another program would.
     fn scribble(&mut self, choices: &mut Bytes) {
         self.send();
         let text: String = (0..choices.below(30)).map(|_| model::character(choices)).collect();

@@ -1,8 +1,8 @@
-//! What all reports of faults have in common.
+//! Checks that apply to all reports of faults.
 
 use cellcaster::fault::Faults;
 
-/// The most bytes of a report for each fault in it.
+/// The largest number of bytes of a report, for each fault in it.
 const MOST_BYTES: usize = 16 << 10;
 
 /// Checks that there is a fault, and that its report is bounded.

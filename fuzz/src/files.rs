@@ -1,8 +1,8 @@
-//! Files of textures in memory.
+//! Texture files in memory.
 
 use cellcaster::map::{TextureFileError, TextureFiles};
 
-/// The same bytes under every name but `missing.png`.
+/// The same bytes under every name except `missing.png`.
 pub(crate) struct OneFile<'a>(pub(crate) &'a [u8]);
 
 impl TextureFiles for OneFile<'_> {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder in memory if there is one, which is removed.
+/// A folder, in memory if possible, which is removed when this value is dropped.
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {

@@ -1,7 +1,8 @@
 //! The fuzz targets of Cellcaster.
 //!
-//! Each target is a function `run` of bytes that returns for every input, or panics where something is
-//! wrong. libFuzzer calls it from `libfuzzer.rs`, and the test `corpus` with the inputs of `corpus`.
+//! Each target is a function `run` that takes bytes. It returns for every input, or panics if
+//! something is wrong. libFuzzer calls it from `libfuzzer.rs`, and the test `corpus` calls it with
+//! the inputs in `corpus`.
 
 mod admin;
 mod channel;
@@ -30,10 +31,10 @@ mod folder;
 mod open;
 mod ssh;
 
-/// A target, of which the corpus is in the folder of its name.
+/// A target. Its corpus is in the folder with its name.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// The name, in `fuzz/run`, too.
+    /// The name, which is also the target's name in `fuzz/run`.
     pub name: &'static str,
     /// Tries an input.
     pub run: fn(&[u8]),

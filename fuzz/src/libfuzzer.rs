@@ -1,4 +1,4 @@
-//! All targets as one program of libFuzzer: it runs the target by whose name it was started.
+//! All targets in one libFuzzer program, which runs the target after which it is named.
 
 #![no_main]
 

@@ -1,6 +1,7 @@
-//! What a client sends before it has logged in: a version and packets, of which the input names the kinds and fields.
+//! The data that a client sends before it has logged in: a version and packets. The input chooses
+//! the kinds and fields of the packets.
 //!
-//! The connection ends, and work, memory and answers are bounded by what arrives.
+//! The connection ends. Work, memory and answers are bounded by the number of bytes that arrive.
 
 use crate::bytes::Bytes;
 use crate::ssh::Stream;

@@ -1,13 +1,13 @@
 //! Maps: the text of a map file and, behind the first byte 0, choices: rules, intents and cameras.
 //!
-//! A map is read or refused within the memory that the tests of hostile maps allow. For one that is
+//! A map is read or rejected within the memory that the tests of hostile maps allow. If a map is
 //! read:
 //!
-//! - the player is never inside anything, whatever they want;
-//! - no step of the game takes more work than a millisecond allows;
+//! - the player is never inside anything, whatever their intents;
+//! - no step of the game takes more work than fits in a millisecond;
 //! - steps of a game at rest equal one wait;
-//! - a renderer that drew another picture draws the same one as a new renderer, one thread the same one
-//!   as several, and `explain` the same one as `render`.
+//! - a renderer that has drawn another picture draws the same picture as a new renderer, one thread
+//!   draws the same as several, and `explain` draws the same as `render`.
 
 mod bodies;
 mod grid;

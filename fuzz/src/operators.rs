@@ -1,15 +1,15 @@
-//! What operators and visitors write: a configuration, a name, a range of addresses, a script. The first
-//! byte says which one, the others are the text.
+//! Texts that operators and visitors write: a configuration, a name, a range of addresses, a
+//! script. The first byte chooses the kind, and the others are the text.
 
 use cellcaster_server::accounts::{AccountKey, AddressPrefix, Name, printable, verify};
 use cellcaster_server::config::Config;
 
 use crate::faults::check_faults;
 
-/// The most bytes of a script that is verified: a longer one is played for minutes.
+/// The largest size in bytes of a script that is verified. Playing a longer script takes minutes.
 const MOST_SCRIPT: usize = 60;
 
-/// Reads a text in the way that the byte says.
+/// Reads a text in the way that the first byte chooses.
 pub fn run(data: &[u8]) {
     let Some((kind, content)) = data.split_first() else { return };
     let text = String::from_utf8_lossy(content);

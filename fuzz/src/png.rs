@@ -1,6 +1,6 @@
-//! PNG files: the first two bytes choose how a map uses the file, the others are the file.
+//! PNG files. The first two bytes choose how a map uses the file, and the others are the file.
 //!
-//! A picture is decoded or refused within bounded memory, and a map with it is drawn.
+//! A picture is decoded or rejected within bounded memory, and a map that uses it is drawn.
 
 use allocation_counter::measure;
 use cellcaster::map;
@@ -11,10 +11,11 @@ use crate::bytes::Bytes;
 use crate::faults::check_faults;
 use crate::files::OneFile;
 
-/// Twice the largest picture in 16-bit RGBA, for the decoder, the texels and their mip levels.
+/// Twice the size of the largest picture in 16-bit RGBA, for the decoder, the texels and their mip
+/// levels.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Uses the file in all ways that the choices name, and draws the map.
+/// Uses the file in all ways that the input chooses, and draws the map.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let text = text(&mut choices);

@@ -1,10 +1,11 @@
-//! A recorded room: it is played again or refused, twice the same. The bytes that are allocated for it are bounded: a
-//! round has a game of its own and at most 1,200 steps, and a header takes a hundred bytes.
+//! A recorded room. It is replayed or rejected, with the same result twice. The number of bytes
+//! allocated for it is bounded: a round has its own game and at most 1,200 steps, and a header
+//! takes a hundred bytes.
 
 use allocation_counter::measure;
 use cellcaster_server::fuzzing::Hall;
 
-/// For the first round, and for each byte.
+/// The number of bytes allocated for the first round, and for each byte of the recording.
 const BYTES_OF_A_ROUND: u64 = 16 << 20;
 const BYTES_OF_A_BYTE: u64 = 160 << 10;
 

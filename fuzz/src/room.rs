@@ -1,5 +1,5 @@
-//! A room and its visitors: their terminals send anything, and the log of the round gives the room, bit for bit. A
-//! session ends only after it has given its terminal back.
+//! A room and its visitors. Their terminals send arbitrary bytes, and the log of the round
+//! reproduces the room bit for bit. A session ends only after it has restored its terminal.
 
 use cellcaster::terminal::{Options, WindowSize};
 use cellcaster_server::fuzzing::Hall;
@@ -9,9 +9,9 @@ use crate::bytes::Bytes;
 
 const MOST_VISITORS: usize = 4;
 const MOST_OPERATIONS: usize = 200;
-/// The most steps of a round that is played again.
+/// The largest number of steps of a round that is replayed.
 const MOST_STEPS: u64 = 1200;
-/// Bytes that a visitor sends.
+/// Bytes that a visitor may send.
 const KEYS: [&str; 24] = [
     "\r",
     "\x1b",
@@ -39,14 +39,14 @@ const KEYS: [&str; 24] = [
     "m",
 ];
 
-/// A visitor's terminal; `None` for one that does not read.
+/// A visitor's terminal.
 struct Terminal {
     screen: Alacritty,
     answers: Vec<u8>,
     is_honest: bool,
 }
 
-/// Lets visitors come and do things.
+/// Lets visitors arrive and act.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let choices = &mut choices;
@@ -64,7 +64,7 @@ pub fn run(data: &[u8]) {
         let terminal = &mut terminals[visitor];
         show(&mut hall, visitor, terminal);
         if hall.is_over(visitor) {
-            // Nothing more arrives from there.
+            // Nothing more arrives from this visitor.
             continue;
         }
         match what {
@@ -118,7 +118,7 @@ fn size(choices: &mut Bytes) -> WindowSize {
     WindowSize::new(((columns % 90).into(), (rows % 30).into()), pixels)
 }
 
-/// Shows what a session sends, and checks its end.
+/// Shows the output of a session, and checks its end.
 fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
     let output = hall.output(visitor);
     terminal.answers.extend(terminal.screen.process(&output));
@@ -130,13 +130,13 @@ fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
     }
 }
 
-/// Checks that the log of the round gives the room.
+/// Checks that the log of the round reproduces the room.
 fn check_recording(hall: &Hall) {
     if hall.steps() >= MOST_STEPS {
         return;
     }
     let (text, checksum) = hall.recording();
-    // An entry of nobody, so that the round is played up to the present step.
+    // An entry for a member who does not exist makes the replay run up to the present step.
     let text = format!("{text}{} leave 0\n", hall.steps());
     assert_eq!(Hall::replayed(&text), Ok(Some(checksum)), "the log gives another room:\n{text}");
 }

@@ -1,7 +1,8 @@
-//! Rows of a host's store as another program, or a damaged disk, may have left them.
+//! Rows of a host's store, as another program or a damaged disk may have left them.
 //!
-//! The input is rows: a byte for the table, and for each column a byte for the kind of its value. Everything is read
-//! and changed with them. It succeeds or fails with a sentence.
+//! The input consists of rows: a byte for the table, and for each column a byte for the kind of its
+//! value. The store is read and changed with these rows in every way. Each operation succeeds, or
+//! fails with a sentence.
 
 use std::cell::RefCell;
 
@@ -15,7 +16,7 @@ use cellcaster_server::accounts::{
 use crate::bytes::Bytes;
 
 const MOST_ROWS: usize = 24;
-/// The most columns of a table.
+/// The largest number of columns in a table.
 const COLUMNS: usize = 14;
 const WORDS: [&str; 16] = [
     "",
@@ -54,7 +55,7 @@ thread_local! {
     static STORE: RefCell<HostStore> = RefCell::new(HostStore::in_memory());
 }
 
-/// Puts the rows into a store, and uses all of it.
+/// Puts the rows into a store, and uses all of its operations.
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     STORE.with_borrow_mut(|store| {
@@ -119,7 +120,7 @@ fn use_all(store: &mut HostStore) {
     check(store.unban(&BanTarget::Name(name)));
 }
 
-/// A failure is a sentence.
+/// Checks that a failure has a sentence.
 fn check<T>(answer: Result<T, impl std::fmt::Display>) {
     if let Err(failure) = answer {
         assert!(!failure.to_string().is_empty());

@@ -1,4 +1,5 @@
-//! SSH packets without encryption, made of choices, and a client that sends them to a server in memory.
+//! SSH packets without encryption, built from choices, and a client that sends them to a server in
+//! memory.
 
 use std::cell::RefCell;
 
@@ -10,13 +11,15 @@ use tokio::runtime::{Builder, Runtime};
 use crate::bytes::Bytes;
 
 const MOST_PACKETS: usize = 48;
-/// The most bytes that the server keeps for a connection: its buffers, and what it has not sent.
+/// The largest number of bytes that the server keeps for a connection: its buffers, and its unsent
+/// data.
 const MOST_BYTES: u64 = 2 << 20;
-/// The bytes that are allocated for a connection, for each packet of it, and for each byte.
+/// The number of bytes allocated for a connection, for each of its packets, and for each byte.
 const BYTES_OF_A_CONNECTION: u64 = 2 << 20;
 const BYTES_OF_A_PACKET: u64 = 64 << 10;
 const BYTES_OF_A_BYTE: u64 = 64;
-/// The most bytes that are sent back for a byte. An answer to an empty request is some 50 times as long.
+/// The largest number of bytes sent back for a byte. The answer to an empty request is about 50
+/// times as long as the request.
 const ANSWER_OF_A_BYTE: usize = 16;
 const ANSWER: usize = 16 << 10;
 
@@ -26,9 +29,9 @@ const SERVICE_REQUEST: u8 = 5;
 const USERAUTH_REQUEST: u8 = 50;
 const CHANNEL_OPEN: u8 = 90;
 const CHANNEL_REQUEST: u8 = 98;
-/// The number that the server gives the first channel.
+/// The number that the server assigns to the first channel.
 const CHANNEL: u32 = 2;
-/// The types of messages that a client sends, and two of a server.
+/// The types of messages that a client sends, and two types that a server sends.
 const TYPES: [u8; 24] =
     [1, 2, 3, 4, 5, 6, 7, 20, 21, 30, 31, 50, 60, 61, 80, 81, 90, 91, 93, 94, 95, 96, 97, 98];
 const STRINGS: [&str; 32] = [
@@ -68,13 +71,13 @@ const STRINGS: [&str; 32] = [
 const NUMBERS: [u32; 8] = [0, 1, 2, 80, 24, 32 << 10, u32::MAX / 2, u32::MAX];
 
 thread_local! {
-    // Time passes at once when all wait for it.
+    // If all tasks wait, time passes at once.
     static RUNTIME: RefCell<Runtime> = RefCell::new(
         Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime"),
     );
 }
 
-/// What a client sends.
+/// The data that a client sends.
 pub(crate) struct Stream {
     bytes: Vec<u8>,
     packets: u64,
@@ -91,7 +94,7 @@ impl Stream {
         let mut stream = Self::new();
         let mut lists = ["none"; 10];
         lists[1] = "ssh-ed25519";
-        // After an exchange without keys, the server expects no message that there are new ones.
+        // After an exchange without keys, the server expects no message about new keys.
         stream.packet(&exchange(lists));
         stream.packet(&message(SERVICE_REQUEST, &["ssh-userauth"], &[]));
         stream.packet(&message(USERAUTH_REQUEST, &["guest", "ssh-connection", "none"], &[]));
@@ -103,7 +106,7 @@ impl Stream {
         stream
     }
 
-    /// Adds packets as the choices name them.
+    /// Adds packets, as the choices select them.
     pub(crate) fn choose(mut self, choices: &mut Bytes) -> Self {
         for _ in 0..MOST_PACKETS {
             if choices.is_empty() {
@@ -144,8 +147,8 @@ impl Stream {
         self.packets += 1;
     }
 
-    /// Sends all of it to a server, and then the end; returns what the server has sent. Its work, its memory and what
-    /// it sends are bounded.
+    /// Sends all packets to a server, and then the end of the stream. Returns the server's output.
+    /// The server's work, its memory and its output are bounded.
     pub(crate) fn send(self) -> Vec<u8> {
         let mut answer = Vec::new();
         let count = self.bytes.len();
@@ -197,7 +200,7 @@ fn exchange(lists: [&str; 10]) -> Vec<u8> {
     payload
 }
 
-/// The begin of a request to the first channel that wants an answer.
+/// The beginning of a request to the first channel that asks for an answer.
 fn channel_request(kind: &str) -> Vec<u8> {
     let mut payload = message(CHANNEL_REQUEST, &[], &[CHANNEL]);
     string(&mut payload, kind.as_bytes());
@@ -205,7 +208,7 @@ fn channel_request(kind: &str) -> Vec<u8> {
     payload
 }
 
-/// Adds fields as the choices name them.
+/// Adds fields, as the choices select them.
 fn fields(payload: &mut Vec<u8>, choices: &mut Bytes) {
     for _ in 0..choices.below(12) {
         match choices.below(6) {

@@ -1,8 +1,9 @@
-//! Texts that players write or keep: the first byte says which one, the others are the text.
+//! Texts that players write or store. The first byte chooses the kind, and the others are the text.
 //!
-//! - A configuration and a script that are read are written as texts that read as the same, and a
-//!   script can be played.
-//! - A damaged file of progress is read as far as it can be, is kept, and does not hinder a record.
+//! - If a configuration or a script can be read, writing it and reading it again returns the same
+//!   value. A script can also be played.
+//! - A damaged progress file is read as far as possible, is kept, and does not prevent a new
+//!   record.
 
 use std::fs;
 
@@ -16,10 +17,10 @@ use cellcaster::world::Difficulty;
 use crate::faults::check_faults;
 use crate::folder::Folder;
 
-/// The most steps of a script that are played.
+/// The largest number of steps of a script that are played.
 const MOST_STEPS: usize = 300;
 
-/// Reads the text in the way that its first byte says.
+/// Reads the text in the way that its first byte chooses.
 pub fn run(data: &[u8]) {
     let Some((kind, content)) = data.split_first() else { return };
     match kind % 4 {
@@ -88,14 +89,14 @@ fn progress(content: &[u8]) {
         return;
     }
     assert_eq!(store.trouble().filter(|it| !it.contains("damaged")), None);
-    // Everything that was read is still there, and nothing is damaged any more.
+    // Everything that was read is still there, and nothing is damaged any longer.
     let (again, sentence) = Store::open(folder.path());
     assert_eq!(sentence, None, "damaged again:\n{}", fs::read_to_string(&file).unwrap_or_default());
     assert_eq!(again.preferences(), preferences);
     assert_eq!(look_at(&again), Seen { had_daily: true, ..seen });
 }
 
-/// What a store says.
+/// The visible contents of a store.
 #[derive(Debug, PartialEq)]
 struct Seen {
     won: Vec<String>,

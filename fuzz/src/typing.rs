@@ -1,8 +1,9 @@
-//! What a visitor types on the pages of a session, without a terminal that shows them.
+//! The keys that a visitor types on the pages of a session, without a terminal that shows the
+//! pages.
 //!
-//! The first two bytes choose the terminal and the size of its window, the others arrive as they are, cut at each
-//! byte 0 of them: there, steps pass and a frame is drawn. The bytes that are allocated for what arrives are bounded
-//! by its length, so that nobody makes a host work by typing.
+//! The first two bytes choose the terminal and the size of its window. The others arrive unchanged,
+//! cut at each byte 0, where steps pass and a frame is drawn. The number of bytes allocated for
+//! them is bounded by their length, so nobody can make a host work by typing.
 
 use allocation_counter::measure;
 use cellcaster::terminal::{Options, WindowSize};
@@ -10,10 +11,11 @@ use cellcaster_server::fuzzing::Hall;
 
 use crate::bytes::Bytes;
 
-/// Where a frame is drawn.
+/// The byte at which a frame is drawn.
 const CUT: u8 = 0;
 const MOST_PARTS: usize = 16;
-/// The bytes that are allocated for a byte that arrives, which may make a page anew, and for each arrival.
+/// The number of bytes allocated for a byte that arrives, which may rebuild a page, and for each
+/// arrival.
 const BYTES_OF_A_BYTE: u64 = 32 << 10;
 const BYTES_OF_A_PART: u64 = 256 << 10;
 

@@ -1,7 +1,7 @@
 //! The file `waiting_results` of a host.
 //!
-//! Every line is a result or is put aside, and what is left can be recorded, kept and read again. The bytes that are
-//! allocated for it are bounded by its length.
+//! Every line is a result or is put aside. The remaining results can be recorded, stored and read
+//! again. The number of bytes allocated for the file is bounded by its length.
 
 use allocation_counter::measure;
 use cellcaster::map::builtin;
@@ -9,13 +9,13 @@ use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, Waiting
 
 use crate::folder::Folder;
 
-/// The longest file of which the scripts are played, without a number of four digits: a longer one is played for
-/// seconds.
+/// The largest size of a file whose scripts are played, if they contain no number of four digits.
+/// Playing a longer file takes seconds.
 const MOST_PLAYED: usize = 400;
-/// The bytes that are allocated for a byte, which may be a line.
+/// The number of bytes allocated for a byte, which may be a line.
 const BYTES_OF_A_BYTE: u64 = 512;
 
-/// Opens the file, records what it holds, and opens it again.
+/// Opens the file, records its results, and opens it again.
 pub fn run(data: &[u8]) {
     let folder = Folder::new();
     folder.write("waiting_results", data);
@@ -38,7 +38,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// The number of results in the file, which is sound now.
+/// The number of results in the file, which must be undamaged by now.
 fn length_of_a_new(folder: &Folder) -> usize {
     let (waiting, sentence) = WaitingResults::open(folder.path()).expect("it can be read");
     assert_eq!(sentence, None);

@@ -1,4 +1,4 @@
-//! Every input of the corpus, in every target, without libFuzzer.
+//! Runs every input of the corpus in its target, without libFuzzer.
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ fn every_input_passes() {
         files.sort();
         assert!(!files.is_empty(), "the corpus of {} is empty", target.name);
         for file in files {
-            // A failed test shows it.
+            // If the test fails, its output shows the file.
             println!("{}", file.display());
             (target.run)(&fs::read(&file).unwrap());
         }

@@ -1,8 +1,9 @@
 //! A caster whose type is erased.
 //!
-//! The drawing code is compiled twice: for [`Exact`], and for a caster whose pointer is followed for
-//! each ray. Rejected: compiling it for each caster. Six more copies, for casters that measurements
-//! alone use, took a tenth of a megabyte, and a call takes some instructions of the hundreds of a ray.
+//! The drawing code is compiled twice: for [`Exact`], and for a caster whose pointer is followed
+//! for each ray. Rejected: compiling it for each caster. Six more copies, for casters that only
+//! measurements use, took a tenth of a megabyte. A call takes a few instructions of the hundreds
+//! that a ray takes.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ impl DynCaster {
         Self { caster: Some(Arc::new(caster)) }
     }
 
-    /// Whether this is [`Exact`].
+    /// Returns whether this is [`Exact`].
     pub(crate) fn is_default(&self) -> bool {
         self.caster.is_none()
     }
@@ -55,7 +56,7 @@ impl Caster for DynCaster {
     }
 }
 
-/// The functions of [`Caster`], which are called by a pointer.
+/// The functions of [`Caster`], to be called through a pointer.
 pub(crate) trait AnyCaster {
     /// [`Caster::cast`].
     fn cast_any(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;

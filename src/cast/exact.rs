@@ -1,11 +1,10 @@
-//! The exact caster: the order of lines that rational arithmetic gives, mostly at the price of
-//! doubles.
+//! The exact caster: the order of lines in rational arithmetic, mostly at the cost of doubles.
 //!
 //! [`MajorAxisTraversal`] finds the walls, without stopping in every cell. A ray that starts off
-//! the map, or on a very large map, uses the [`Walk`] instead. Where rounding leaves a doubt, both
-//! evaluate the same exact predicate at the same corners, so that their results are equal. In
-//! rooms, among pillars and in corridors (`crates/lab/benches/casters.rs`), a ray takes 0.6 to 0.9 times the
-//! time of `dda`, which is why this caster is the default.
+//! the map, or on a very large map, uses the [`Walk`] instead. If rounding leaves a doubt, both
+//! evaluate the same exact predicate at the same corners, so their results are equal. In rooms,
+//! among pillars and in corridors (`crates/lab/benches/casters.rs`), a ray takes 0.6 to 0.9 times
+//! the time of `dda`, which is why this caster is the default.
 
 use std::iter;
 
@@ -14,7 +13,7 @@ use crate::world::{Grid, World};
 
 /// The exact caster, and the default.
 ///
-/// It hits the cell and side that rational arithmetic gives, for every ray.
+/// For every ray, it hits the cell and the side that are correct in rational arithmetic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exact;
 
@@ -43,7 +42,7 @@ impl Caster for Exact {
     }
 }
 
-/// The first solid cell of a ray that does not start well inside a cell of the map.
+/// The first solid cell of a ray that the traversal does not support.
 #[cold]
 #[inline(never)]
 fn walk_to_first_solid(grid: &Grid, ray: &Ray) -> Option<Crossing> {

@@ -1,25 +1,25 @@
 //! Traversal along the major axis: the exact walk's cells, several grid lines at a time.
 //!
-//! The major axis is the one along which the ray moves faster; *lines* are the grid lines across
-//! it, and *bands* are the rows or columns between the lines of the other axis. Between two lines
-//! the ray crosses at most one line of the other axis, so that its bands at the lines determine its
-//! cells: a band that differs from the previous one was entered just before this line. No step
-//! depends on the result of the previous one, so that a processor computes several at once. The
-//! walk has to know which line it crossed to find the next.
+//! The major axis is the axis along which the ray moves faster. *Lines* are the grid lines across
+//! it, and *bands* are the rows or columns between the lines of the other axis. Between two lines,
+//! the ray crosses at most one line of the other axis, so its bands at the lines determine its
+//! cells: if the band changes, the ray entered the new one just before this line. No step depends
+//! on the result of the previous step, so a processor computes several at once. The walk, in
+//! contrast, has to know which line it crossed before it can find the next.
 //!
-//! The traversal need not stop at every line. A ray that crosses n lines changes its band by at most n,
-//! so it may leap as far as the [distance field](crate::world::DistanceField) says. On a large map,
-//! [beams](crate::world::BeamTable) take the ray across a strip of the map, or to the line at which
-//! something solid begins in the beam. There the ray reads the distance field, and leaps by it until the
-//! beam is clear again.
+//! The traversal need not stop at every line. A ray that crosses n lines changes its band by at
+//! most n, so it may leap as far as the [distance field](crate::world::DistanceField) says. On a
+//! large map, [beams](crate::world::BeamTable) take the ray across a strip of the map, or to the
+//! line at which something solid begins in the beam. There the ray reads the distance field, and
+//! leaps by it until the beam is clear again.
 //!
-//! Positions are integers in units of 2⁻³² of a cell: that of the start, and a slope added for each line.
-//! Rounding moves them by less than a unit a line. Where a position is so close to the edge of a band that
-//! the rounding matters, the exact predicate decides.
+//! Positions are integers in units of 2⁻³² of a cell: the position of the start, plus a slope for
+//! each line. Rounding moves them by less than a unit a line. If a position is so close to the edge
+//! of a band that the rounding matters, the exact predicate decides.
 //!
-//! Major-axis stepping is Bresenham's ("Algorithm for computer control of a digital plotter", IBM Systems
-//! Journal 4, 1965); leaps by a distance field are Zuiderveld, Koning and Viergever's ("Acceleration of
-//! ray-casting using 3D distance transforms", 1992).
+//! Major-axis stepping is Bresenham's ("Algorithm for computer control of a digital plotter", IBM
+//! Systems Journal 4, 1965); leaps by a distance field are Zuiderveld, Koning and Viergever's
+//! ("Acceleration of ray-casting using 3D distance transforms", 1992).
 
 use glam::DVec2;
 
@@ -35,7 +35,7 @@ pub(crate) struct MajorAxisTraversal<'grid> {
     at: Progress,
 }
 
-/// How far a ray has advanced.
+/// The progress of a ray.
 #[derive(Clone, Copy)]
 struct Progress {
     /// The number of lines crossed.
@@ -51,9 +51,9 @@ struct Progress {
 struct Path {
     origin: DVec2,
     direction: DVec2,
-    /// The side of a cell that the ray enters at a line.
+    /// The kind of line by which the ray enters a cell at a line.
     side: Side,
-    /// The column or row before the first line, and the step to the next: 1 or −1.
+    /// The column or row before the first line, and the step to the next one: 1 or −1.
     start: i64,
     step: i64,
     /// The position across the bands, in units, one line before the first, plus [`UNCERTAINTY`].
@@ -69,13 +69,13 @@ struct Path {
     block_strides: [i64; 2],
 }
 
-/// The most lines for which units are fine enough.
+/// The largest number of lines for which units are fine enough.
 const MAX_LINES: u32 = 1 << 16;
-/// The units of a cell.
+/// The number of units in a cell.
 const UNITS: i64 = 1 << FRACTION_BITS;
 /// A bound on the rounding of a position, in units: one for each line, and eight for the start.
 const UNCERTAINTY: i64 = MAX_LINES as i64 + 8;
-/// Where a block is this far from anything solid, the cell's own distance is not looked up.
+/// If a block is at least this far from anything solid, the cell's own distance is not read.
 const FAR: i64 = 6;
 
 impl<'grid> MajorAxisTraversal<'grid> {
@@ -122,7 +122,7 @@ impl<'grid> MajorAxisTraversal<'grid> {
         self.path.cell_in(self.grid, self.at.line, self.at.band)
     }
 
-    /// The number of positions computed so far.
+    /// The number of positions that have been computed.
     pub(crate) fn lookups(&self) -> u64 {
         self.at.lookups
     }
@@ -145,8 +145,8 @@ impl Iterator for MajorAxisTraversal<'_> {
 }
 
 impl MajorAxisTraversal<'_> {
-    /// The next solid cell. `to_something` advances to a cell that may be solid, or to its neighbour, and
-    /// returns the band at the line before, too.
+    /// The next solid cell. `to_something` advances to a cell that may be solid, or to its
+    /// neighbour. It also returns the band at the line before.
     #[expect(clippy::inline_always, reason = "out of line, it would be kept in memory")]
     #[inline(always)]
     fn advance(
@@ -172,7 +172,7 @@ impl MajorAxisTraversal<'_> {
         }
     }
 
-    /// As [`MajorAxisTraversal::next`], on a map with distances.
+    /// The same as [`MajorAxisTraversal::next`], on a map with distances.
     ///
     /// It is a separate function on a copy, so that the loop for other maps keeps its state in registers.
     #[inline(never)]
@@ -189,8 +189,8 @@ impl MajorAxisTraversal<'_> {
 }
 
 impl Path {
-    /// Advances by one line or more, one at a time, until the cell behind a line, or the cell before the
-    /// line in the new band, is not clear. Returns the band at the line before, too.
+    /// Advances by one line or more, one at a time, until the cell behind a line, or the cell
+    /// before the line in the new band, is not clear. Also returns the band at the line before.
     #[inline]
     fn step(self, distance_field: &DistanceField, from: Progress) -> (i64, Progress) {
         let Progress { mut line, mut band, mut lookups } = from;
@@ -213,7 +213,7 @@ impl Path {
         }
     }
 
-    /// As [`Path::step`], by as many lines at once as are clear.
+    /// The same as [`Path::step`], but crosses as many lines at once as are clear.
     #[inline]
     fn leap(self, distance_field: &DistanceField, from: Progress) -> (i64, Progress) {
         let Progress { mut line, mut band, mut lookups } = from;
@@ -237,7 +237,7 @@ impl Path {
         }
     }
 
-    /// As [`Path::leap`], and across everything that a beam says is clear.
+    /// The same as [`Path::leap`], but also leaps across everything that is clear in a beam.
     #[inline]
     fn leap_along_beams(
         self,
@@ -263,7 +263,7 @@ impl Path {
             let mut band_before = band;
             band = self.band_at(self.position + self.slope * line, line);
             if is_past_beam {
-                // The beam is wider than the cell, so that the neighbouring cell is clear, too.
+                // The beam is wider than the cell, so the neighbouring cell is clear, too.
                 band_before = band;
             } else {
                 let along = self.start + self.step * line;
@@ -304,7 +304,7 @@ impl Path {
         }
     }
 
-    /// The band at the crossing with `line`, at that position.
+    /// The band at the crossing with `line`, where the ray is at `position`.
     #[inline]
     fn band_at(self, position: i64, line: i64) -> i64 {
         let band = position >> FRACTION_BITS;
@@ -327,8 +327,8 @@ impl Path {
     }
 }
 
-/// The band in which a ray crosses `line`: the one that begins at the line `edge`, or the one that ends
-/// there.
+/// The band in which a ray crosses `line`: either the band that begins at the line `edge`, or the
+/// band that ends there.
 ///
 /// Not a method, because a reference would force the path into memory.
 #[cold]
@@ -351,7 +351,8 @@ fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64
 /// A ray and a map along one axis.
 #[derive(Clone, Copy)]
 struct Axis {
-    /// The column or row in which the ray starts; the one before, if it starts on a line that it crosses.
+    /// The column or row in which the ray starts; the previous one if it starts on a line that it
+    /// crosses.
     start: i64,
     /// The position of the start, in units.
     position: i64,
@@ -380,7 +381,7 @@ impl Axis {
     }
 }
 
-/// The column or row in which a ray starts, where that is on a line or close to one.
+/// The column or row in which a ray starts, if it starts on a line or close to a line.
 #[cold]
 #[inline(never)]
 fn start_near_line(origin: f64, direction: f64) -> i64 {
@@ -393,7 +394,7 @@ fn start_near_line(origin: f64, direction: f64) -> i64 {
 /// A position in units, rounded. A position far off every map is far off in units.
 #[inline]
 fn units(position: f64) -> i64 {
-    // Doubles of this size have a spacing of one unit, so that the addition rounds to units.
+    // Doubles of this size have a spacing of one unit, so the addition rounds to units.
     const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
     (position + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
 }

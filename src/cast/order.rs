@@ -1,18 +1,23 @@
-//! The order in which a ray meets the lines of a grid: that of rational arithmetic, mostly at the price of doubles.
+//! The order in which a ray meets the lines of a grid. It is the order in rational arithmetic,
+//! mostly at the cost of doubles.
 //!
-//! The distances of the next two lines are compared in double precision first. The ray meets the next x line at
-//! `(x - origin.x) / direction.x`, and the next y line at `(y - origin.y) / direction.y`. Only their order counts, so
-//! both are multiplied by `|direction.x · direction.y|`: two products are compared, without a division, and at a corner
-//! both are equal. Both are computed from the index of the line. Rejected: adding up lengths from line to line, whose error grows with the distance.
+//! The distances of the next two lines are compared in double precision first. The ray meets the
+//! next x line at `(x - origin.x) / direction.x`, and the next y line at
+//! `(y - origin.y) / direction.y`. Only their order counts, so both are multiplied by
+//! `|direction.x · direction.y|`. This leaves two products to compare, without a division, which
+//! are equal at a corner. Both are computed from the index of the line. Rejected: adding up lengths
+//! from line to line. The error grows with the distance.
 //!
 //! The result is accepted if the distances differ by more than a bound on their rounding. Otherwise
-//! the ray passes so close to the corner of the two lines that only the sign of a cross product, computed
-//! without rounding, can tell the side. Ordinary rays never need it, and pay one comparison for each line.
-//! This is a floating-point filter before an exact predicate, as in Shewchuk, "Adaptive Precision
-//! Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997).
+//! the ray passes so close to the corner of the two lines that only the sign of a cross product,
+//! computed without rounding, can tell the side. Ordinary rays never need it, and pay one
+//! comparison for each line. This is a floating-point filter before an exact predicate, as in
+//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"
+//! (1997).
 //!
-//! The bound on the rounding is computed once for each ray, from the size of the map. Rejected: a bound
-//! for each line, tighter near the start. It costs more than the exact cross products that it saves.
+//! The bound on the rounding is computed once for each ray, from the size of the map. Rejected: a
+//! bound for each line, tighter near the start. It costs more than the exact cross products that it
+//! saves.
 
 use glam::DVec2;
 
@@ -45,8 +50,8 @@ impl ExactOrder {
         Self::from_rounded(grid, ray, RoundedOrder::new(ray))
     }
 
-    /// The same order for a ray of a camera, which is not scaled: where a product overflows, the difference
-    /// is in doubt, or infinite and correct.
+    /// The same order for a camera's ray. The direction is not scaled: if a product overflows, the
+    /// difference is either in doubt, or infinite and correct.
     #[cfg(feature = "tui")]
     #[inline]
     pub(crate) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
@@ -89,14 +94,14 @@ pub(crate) struct CommonOrder {
 }
 
 impl CommonOrder {
-    /// The order for rays from `origin` in `grid`, with at most this number of reflections.
+    /// The order for rays from `origin` in `grid`, with at most `most_bounces` reflections.
     pub(crate) fn new(grid: &Grid, origin: DVec2, most_bounces: u32) -> Self {
         let furthest = grid.extent() * f64::from(most_bounces + 1) + origin.abs();
         Self { origin, furthest }
     }
 
-    /// The order for the ray in this `direction`. It is not scaled: where a product overflows, the difference is in
-    /// doubt, or infinite and correct.
+    /// The order for the ray in this `direction`. It is not scaled: if a product overflows, the
+    /// difference is either in doubt, or infinite and correct.
     #[inline]
     pub(crate) fn along(&self, direction: DVec2) -> ExactOrder {
         let rounded = RoundedOrder::of_direction(self.origin, direction, direction);
@@ -108,7 +113,8 @@ impl CommonOrder {
     }
 }
 
-/// Which of the lines at `x` and `y` the ray crosses first, without rounding.
+/// The kind of line that the ray crosses first, of the lines at `x` and `y`, found without
+/// rounding.
 ///
 /// The ray is passed in parts, because a reference would force the walk into memory.
 #[cold]

@@ -15,7 +15,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The ray from `origin`, in cells, along `direction`, which may have any length but zero.
+    /// The ray from `origin`, in cells, along `direction`, which may have any length except zero.
     ///
     /// # Errors
     /// Returns an error if either is not finite, or if the direction is zero.
@@ -55,14 +55,15 @@ impl Ray {
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
     }
 
-    /// The ray of a camera, which is at a finite place and whose directions are finite and not zero.
+    /// A camera's ray. The origin must be finite, and the direction finite and not zero.
     #[inline]
     pub(crate) fn of_camera(origin: DVec2, direction: DVec2) -> Self {
         debug_assert!(Self::new(origin, direction).is_ok(), "{origin} {direction}");
         Self { origin, direction }
     }
 
-    /// The ray of the same line with another origin and another unit of `t`.
+    /// A ray made of parts of a valid ray, such as the same line with another origin or another
+    /// unit of `t`. The parts are not checked.
     pub fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }
     }
@@ -144,7 +145,8 @@ impl Hit {
 #[cfg(feature = "tui")]
 #[inline]
 pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
-    // Both, because a division of two numbers takes less time than a branch on the side.
+    // Both distances are computed, because a division of two numbers takes less time than a branch
+    // on the side.
     let direction = ray.direction();
     let to_far_side = DVec2::select(direction.cmplt(DVec2::ZERO), DVec2::ONE, DVec2::ZERO);
     let corner = cell.corner() + to_far_side;
@@ -211,8 +213,8 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
     }
 }
 
-/// The column and the row of the cell that a ray along `direction` leaves where it enters `cell` by a line
-/// of kind `side`.
+/// The column and the row of the cell that a ray along `direction` leaves when it enters `cell` by
+/// a line of kind `side`.
 pub(crate) fn cell_before(direction: DVec2, cell: Cell, side: Side) -> [i64; 2] {
     let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
     let (column, row) = (i64::from(cell.column), i64::from(cell.row));
@@ -229,7 +231,8 @@ pub fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
     from_left(along, is_from_left(direction, side))
 }
 
-/// Whether a viewer who looks along `direction` sees the north or west end of a face on the left.
+/// Returns whether a viewer who looks along `direction` sees the north or west end of a face on the
+/// left.
 #[inline]
 pub(crate) fn is_from_left(direction: DVec2, side: Side) -> bool {
     match side {

@@ -1,16 +1,17 @@
-//! Casting through what does not fill its cell: doors that are ajar, shapes, glass, and masks.
+//! Casting through cells that do not stop every ray: doors that are ajar, shapes, glass, and masks.
 //!
 //! The traversal stops at every solid cell, and this module decides whether the ray goes on.
-//! Between solid cells the cost is that of casting at walls. Results are as exact as for walls:
+//! Between solid cells, the cost is the same as for casting at walls. Results are as exact as for
+//! walls:
 //!
-//! - The leaf of a door is a segment of a line in the middle of its cell. The distance is computed from
-//!   the position of the line by one division. Where rounding leaves in doubt whether the ray misses an
-//!   end of the leaf, the sign of a cross product decides. The ends belong to the leaf.
-//! - Shapes are solved in closed form from the ray's origin. For a line, the distance is the quotient
-//!   of two cross products, whose exact signs tell on which side of an end the ray passes. For a
-//!   pillar, it is the root of a quadratic equation in double-double arithmetic. The ends belong to
-//!   the line, and a ray that touches a pillar hits it. A ray along the line, or from inside the
-//!   pillar, hits nothing.
+//! - The leaf of a door is a segment of a line in the middle of its cell. The distance is computed
+//!   from the position of the line by one division. If rounding leaves a doubt whether the ray
+//!   misses an end of the leaf, the sign of a cross product decides. The ends belong to the leaf.
+//! - Shapes are solved in closed form from the ray's origin. For a line, the distance is the
+//!   quotient of two cross products, whose exact signs tell on which side of an end the ray passes.
+//!   For a pillar, it is the root of a quadratic equation in double-double arithmetic. The ends
+//!   belong to the line, and a ray that touches a pillar hits it. A ray along the line, or from
+//!   inside the pillar, hits nothing.
 
 use std::f64::consts::TAU;
 
@@ -21,8 +22,8 @@ use super::{Crossing, Hit, Ray, Side};
 use crate::numeric::{DoubleDouble, cross, sign_of_cross};
 use crate::world::{Cell, Grid, Line, Opening, Outline, PillarRadius, TileId, TileKind, World};
 
-/// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`; the
-/// transparent faces that it enters are passed to `passed`. A tile that `ends` the ray is a hit.
+/// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`. Calls
+/// `passed` with the transparent faces that it enters. A tile that `ends` the ray is a hit.
 pub(crate) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
@@ -120,7 +121,7 @@ impl Leaf {
         }
     }
 
-    /// Whether `ray` meets the line that contains the leaf.
+    /// Returns whether `ray` meets the line that contains the leaf.
     fn is_ahead(&self, ray: &Ray) -> bool {
         let way = self.start - ray.origin();
         let (way, direction) = match self.side {
@@ -130,8 +131,8 @@ impl Leaf {
         direction != 0.0 && (way == 0.0 || (way > 0.0) == (direction > 0.0))
     }
 
-    /// Whether `ray` meets the line between both ends. `along` is the rounded distance from the
-    /// start to that point, in cells.
+    /// Returns whether `ray` meets the line between both ends. `along` is the rounded distance from
+    /// the start to that point, in cells.
     fn holds(&self, ray: &Ray, along: f64) -> bool {
         let length = (self.end - self.start).max_element();
         let within = along.min(length - along);
@@ -164,8 +165,8 @@ pub(crate) struct Passage {
 impl Passage {
     pub(crate) const NONE: Self = Self { hit: None, end: None };
 
-    /// The intersection of `ray`, which passes through `cell`, with what stands there without filling the cell: the
-    /// leaf of a door, which has no interior, or a shape.
+    /// The intersection of `ray`, which passes through `cell`, with an object there that does not
+    /// fill the cell: the leaf of a door, which has no interior, or a shape.
     pub(crate) fn of_tile(ray: &Ray, world: &World, cell: Cell, kind: TileKind) -> Self {
         match kind {
             TileKind::Door(_) => {
@@ -217,12 +218,12 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
     Some(Hit { cell, side: facing(extent.perp()), t, u })
 }
 
-/// The speed of `ray` towards a line with this `extent`, from its left or its right, rounded at most once,
-/// and the exponent of a power of two by which it is divided.
+/// The speed of `ray` towards a line with this `extent`, from its left or its right, rounded at
+/// most once. It is divided by a power of two, whose exponent is also returned.
 fn speed_across(ray: &Ray, extent: DVec2) -> (f64, i32) {
     let across = |direction: DVec2| direction.x * extent.y - direction.y * extent.x;
     if extent.x == 0.0 || extent.y == 0.0 {
-        // This is one of the components, which underflows in no other unit.
+        // The result is one of the components, which scaling might make underflow.
         return (across(ray.direction()), 0);
     }
     let (direction, exponent) = ray.scaled_direction();
@@ -276,7 +277,7 @@ impl Chord {
         let outside = (x.square() + y.square() - radius_squared).rounded();
         let unscaled = |t: f64| libm::scalbn(t, -exponent);
         let is_ahead = outside >= 0.0 && to_middle > 0.0;
-        // Of the two forms of each solution, these add terms of the same sign.
+        // Each solution has two forms. These forms add terms of the same sign.
         let end = if to_middle > 0.0 {
             (to_middle + half_length) / length_squared.rounded()
         } else {
@@ -321,8 +322,8 @@ impl Chord {
     }
 }
 
-/// Whether a line along `direction` misses a circle at `way` by more than the rounding of doubles.
-/// This holds for most lines that miss, which then need no double-double arithmetic.
+/// Returns whether a line along `direction` misses a circle at `way` by more than the rounding of
+/// doubles. This holds for most lines that miss, which then need no double-double arithmetic.
 fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
     const ROUNDING: f64 = 1e-12;
     let miss = (way.x * direction.y - way.y * direction.x).abs();
@@ -330,8 +331,9 @@ fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
     miss > reach + (reach + way.x.abs() + way.y.abs()) * ROUNDING
 }
 
-/// The texture coordinate where a pillar faces `outward`. The texture is repeated around the pillar
-/// a whole number of times, so that each copy is as close as possible to one cell wide.
+/// The texture coordinate of a pillar's surface with the normal `outward`. The texture repeats
+/// around the pillar a whole number of times, so that each copy is as close as possible to one cell
+/// wide.
 fn around_pillar(outward: DVec2, radius: f64) -> f64 {
     let times = (TAU * radius).round().max(1.0);
     let turn = libm::atan2(-outward.y, outward.x) / TAU * times;

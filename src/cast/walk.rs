@@ -5,7 +5,7 @@
 //! method, its walk goes from a cell to a neighbour, never looks up a cell off the map, and ends
 //! after at most one step for each line of the map.
 //!
-//! Rejected: a loop for each method. Each would have to guarantee all of that again.
+//! Rejected: a loop for each method. Each would have to guarantee all of this again.
 
 #[cfg(feature = "tui")]
 mod from_inside;
@@ -32,7 +32,7 @@ pub struct Crossing {
 
 /// The cells of a map that a ray enters, from near to far, open ones included.
 ///
-/// The walk ends where the ray leaves the map. [`Hit::entering`](super::Hit::entering) gives the
+/// The walk ends where the ray leaves the map. [`Hit::entering`](super::Hit::entering) computes the
 /// distance of a cell.
 #[derive(Clone, Debug)]
 pub struct Walk<'grid, O = ExactOrder> {
@@ -61,12 +61,12 @@ impl<'grid, O: Order> Walk<'grid, O> {
         }
     }
 
-    /// The order, in its state after the last step.
+    /// The order, in the state after the last step.
     pub fn order(&self) -> &O {
         &self.order
     }
 
-    /// The cell that contains the ray at present; `None` off the map.
+    /// The cell that contains the ray; `None` off the map.
     pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
         self.grid.cell(self.x.index, self.y.index)
     }
@@ -110,7 +110,7 @@ struct Axis {
     line: f64,
     /// The step to the next line: 1, −1, or 0 if the ray does not move on this axis.
     step: i64,
-    /// The same as `step`.
+    /// The same as `step`, as a double.
     stride: f64,
     /// The number of columns or rows of the map.
     count: i64,
@@ -161,8 +161,8 @@ impl Axis {
         self.line += self.stride;
     }
 
-    /// Whether the ray is on the map along this axis. It is so after its first crossing here, which
-    /// is at the earliest the edge, until it leaves the map for good.
+    /// Returns whether the ray is on the map along this axis. It is on the map from its first
+    /// crossing of a line on this axis, at the edge or later, until it leaves the map for good.
     fn is_on_map(&self) -> bool {
         (0..self.count).contains(&self.index)
     }

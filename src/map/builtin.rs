@@ -9,7 +9,7 @@ use crate::world::World;
 pub struct Level {
     /// The name on the command line.
     pub name: &'static str,
-    /// The text of its map; all its textures are built in.
+    /// The text of its map file, which uses built-in textures only.
     pub text: &'static str,
 }
 

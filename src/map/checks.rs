@@ -1,4 +1,4 @@
-//! Checks that a level can be played as it is drawn: first of its characters, then of its cells.
+//! Checks that a level can be played as drawn: first its characters, then its cells.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -20,13 +20,13 @@ const MAX_GUARDS: usize = 256;
 const MAX_LEVERS: usize = 256;
 /// The largest number of cells that switches move. One press may move all of them in a step.
 const MAX_DRIVEN: usize = 512;
-/// The largest number of spikes. All of them may come out in one step, and each is heard.
+/// The largest number of spikes. All of them may come out in one step, and each makes a sound.
 const MAX_SPIKES: usize = 512;
 /// The least headroom where the player starts, and the least height of the map's ceiling.
 pub(crate) const LEAST_HEADROOM: f64 = 0.75;
 
-/// The faults of the characters in `plan`: those without a meaning, starts, what things stand on, patrols,
-/// switches.
+/// The faults of the characters in `plan`: undefined characters, and faults of starts, supports,
+/// patrols and switches.
 pub(crate) fn faults_of_characters(plan: Plan<'_>) -> Vec<Fault> {
     let mut faults: Vec<Fault> = undefined_characters(plan).collect();
     faults.extend(wrong_start(plan));
@@ -57,7 +57,7 @@ pub(crate) fn too_many(
     (count > max).then(|| Fault::new(place, message).help("draw fewer of them"))
 }
 
-/// The fault of more than [`MAX_SPIKES`].
+/// The fault of more than [`MAX_SPIKES`] spikes.
 pub(crate) fn too_many_spikes(plan: Plan<'_>) -> Option<Fault> {
     let is_spikes =
         |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Item(ThingKind::Spikes(_)));
@@ -102,7 +102,7 @@ fn undefined_characters(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     })
 }
 
-/// The fault that there is no start, or more than one.
+/// The fault of a plan without a start, or with more than one.
 fn wrong_start(plan: Plan<'_>) -> Option<Fault> {
     let Plan { drawing, legend } = plan;
     let is_start = |(_, symbol): &(&char, &Symbol<'_>)| matches!(symbol.meaning, Meaning::Start(_));
@@ -215,8 +215,8 @@ fn unconnected_switches(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     idle.chain(stuck)
 }
 
-/// A help for the fault `index` that names the most similar of some switches; `None` where there is
-/// none, or too many to compare in a moment.
+/// A help text for fault number `index`: the name in `known` that is most similar to `switch`.
+/// `None` if no name is similar, or if there are too many names or faults to compare quickly.
 fn nearest_switch(switch: &Name<'_>, known: &Names<'_>, index: usize) -> Option<String> {
     const MAX_COMPARED: usize = 32;
     const MAX_FAULTS: usize = 100;
@@ -263,7 +263,7 @@ impl<'l> Cells<'l> {
     }
 }
 
-/// The faults of the cells in `plan`, where the guards have their `posts`.
+/// The faults of the cells in `plan`, and of the guards' `posts`.
 pub(crate) fn faults_of_cells(
     plan: Plan<'_>,
     cells: Cells<'_>,
@@ -283,7 +283,7 @@ pub(crate) fn faults_of_cells(
     faults
 }
 
-/// The fault that the player has no room to stand at the start.
+/// The fault of a start where the player has no room to stand.
 fn low_start(drawing: &Drawing<'_>, cells: Cells<'_>, start: Start) -> Option<Fault> {
     let room = cells.at(start.cell)?.gaps().next()?.height();
     (room < LEAST_HEADROOM).then(|| {
@@ -294,7 +294,8 @@ fn low_start(drawing: &Drawing<'_>, cells: Cells<'_>, start: Start) -> Option<Fa
     })
 }
 
-/// The fault that a map asks for more treasure than lies in it; `place` is where it asks.
+/// The fault of a map that requires more treasure than lies in it. `place` is the place of the
+/// requirement.
 pub(crate) fn missing_treasure(
     needed: u32,
     place: &Range<usize>,
@@ -327,7 +328,7 @@ fn cramped_guards(drawing: &Drawing<'_>, cells: Cells<'_>, posts: &[GuardPost]) 
     cramped.collect()
 }
 
-/// The faults of secret walls with nothing behind them, one for each character.
+/// The faults of secret walls that lead nowhere, one for each character.
 fn blind_secrets(plan: Plan<'_>, cells: Cells<'_>) -> Vec<Fault> {
     let is_secret = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Wall(it) if it.is_secret);
     let blind = plan.drawing.first_of_each(
@@ -357,8 +358,8 @@ fn ways_into(cells: Cells<'_>, cell: Cell) -> usize {
     cells.beside(cell).into_iter().flatten().flatten().filter(is_way).count()
 }
 
-/// The faults of doors that cannot slide or lead nowhere, one for each character. A door slides into a
-/// wall, so it stands between two walls, with open floor before and behind it.
+/// The faults of doors that cannot slide or that lead nowhere, one for each character. A door
+/// slides into a wall, so it stands between two walls, with open floor before and behind it.
 fn misplaced_doors(plan: Plan<'_>, cells: Cells<'_>) -> Vec<Fault> {
     let is_door = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Door(_));
     let misplaced = plan.drawing.first_of_each(
@@ -377,7 +378,7 @@ fn misplaced_doors(plan: Plan<'_>, cells: Cells<'_>) -> Vec<Fault> {
     faults.collect()
 }
 
-/// Whether exactly one pair of opposite neighbours of `cell` can hold a door, and the other pair is
+/// Returns whether one pair of opposite neighbours of `cell` can hold a door, and the other pair is
 /// open floor.
 fn is_between_jambs(cells: Cells<'_>, cell: Cell) -> bool {
     use TileKind::{Glass, Mask, Mirror, Open, Wall};

@@ -1,4 +1,4 @@
-//! Definitions: all keys of a map except its grid, each read by itself.
+//! The definitions of a map: all of its keys except the grid, each read on its own.
 
 use std::ops::Range;
 
@@ -18,14 +18,14 @@ const MAX_GOAL: usize = 40;
 /// The longest par time, in seconds: a day.
 const MAX_PAR: u32 = 86_400;
 
-/// All that a map defines besides its grid.
+/// The definitions of a map, and the entry of its grid.
 #[derive(Default)]
 pub(crate) struct Definitions<'a, 't> {
     pub(crate) title: String,
     pub(crate) goal: Option<String>,
     /// The time in which a good player finishes, in seconds.
     pub(crate) par: Option<u32>,
-    /// The treasure without which exits do not let anybody out, with its place in the map.
+    /// The worth of the treasure that exits require, and its place in the map.
     pub(crate) treasure_needed: Option<(u32, Range<usize>)>,
     pub(crate) ceiling: Option<CeilingText<'a>>,
     /// The height of the ceiling and of walls.
@@ -33,7 +33,7 @@ pub(crate) struct Definitions<'a, 't> {
     pub(crate) floor: Option<CoveringText<'a>>,
     /// The sides of raised floors, for tiles without their own.
     pub(crate) riser: Option<Surface<'a>>,
-    /// The sides of what is above lowered ceilings, for tiles without their own.
+    /// The sides of lowered ceilings, for tiles without their own.
     pub(crate) lintel: Option<Surface<'a>>,
     pub(crate) sky: Option<SkyText<'a>>,
     pub(crate) fog: Option<Fog>,
@@ -44,7 +44,7 @@ pub(crate) struct Definitions<'a, 't> {
 }
 
 impl<'a, 't> Definitions<'a, 't> {
-    /// Reads the definitions in `document`. Those with a fault are reported and missing.
+    /// Reads the definitions in `document`. Reports faulty definitions and leaves them out.
     pub(crate) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
         let mut definitions = Self::default();
         for entry in entries(document, faults) {

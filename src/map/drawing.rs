@@ -34,8 +34,8 @@ struct Sightings {
 }
 
 impl<'a> Drawing<'a> {
-    /// Reads the drawing in `entry` of the map `text`; reports its faults. `None` where it has
-    /// no usable width and height.
+    /// Reads the drawing in `entry` of the map `text`; reports its faults. `None` if it has no
+    /// usable width and height.
     pub(crate) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
         let value = entry.string(EXAMPLE)?;
         let text = DrawnText::new(value, entry.value_place.clone(), text);
@@ -70,7 +70,7 @@ impl<'a> Drawing<'a> {
         self.sightings.get(character).count
     }
 
-    /// The places in the map where `character` is drawn first, at most two.
+    /// The places of the first occurrences of `character` in the map, at most two.
     pub(crate) fn first_places(&self, character: char) -> Vec<Range<usize>> {
         let Sightings { count, places } = self.sightings.get(character);
         places.into_iter().take(count).map(|at| self.place(character, at)).collect()
@@ -91,7 +91,7 @@ impl<'a> Drawing<'a> {
         drawn.unwrap_or_else(|| self.key_place.clone())
     }
 
-    /// The rows from the north.
+    /// The rows, from north to south.
     pub(crate) fn rows(&self) -> impl Iterator<Item = &'a str> {
         self.text.rows().map(|(_, row)| row)
     }
@@ -103,8 +103,8 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// The cells whose characters are `wanted`, row by row from the north. Where none is drawn, no cell
-    /// is looked at.
+    /// The cells whose character `is_wanted`, row by row from the north. If no such character is
+    /// drawn, no cell is looked at.
     pub(crate) fn cells_of(
         &self,
         is_wanted: impl Fn(char) -> bool,
@@ -116,8 +116,9 @@ impl<'a> Drawing<'a> {
         cells.filter(move |&(_, character)| wanted.get(character))
     }
 
-    /// For each character that `is_asked`, the first of its cells that `is_such`, and the number of
-    /// others; none for a character without any. All characters take one pass over the cells.
+    /// For each character that `is_asked`: the first of its cells that `is_such`, and the number of
+    /// its other such cells. Leaves out characters without such a cell. One pass over the cells
+    /// serves all characters.
     pub(crate) fn first_of_each(
         &self,
         is_asked: impl Fn(char) -> bool,
@@ -146,7 +147,7 @@ struct DrawnText<'a> {
     value: &'a str,
     /// The place of the whole TOML string, with its quotes.
     string_place: Range<usize>,
-    /// The place of the value's first byte in the map; `None` where the map writes the value with
+    /// The place of the value's first byte in the map; `None` if the map writes the value with
     /// escapes.
     start: Option<usize>,
 }
@@ -158,8 +159,8 @@ impl<'a> DrawnText<'a> {
         Self { value, string_place, start }
     }
 
-    /// The place of some bytes of the value in the map; the whole string where the map writes it
-    /// with escapes.
+    /// The place of some bytes of the value in the map; the whole string if the map writes it with
+    /// escapes.
     fn place(&self, bytes: Range<usize>) -> Range<usize> {
         match self.start {
             Some(start) => start + bytes.start..start + bytes.end,
@@ -217,7 +218,7 @@ impl<'a> DrawnText<'a> {
     }
 }
 
-/// The most common of `widths` except 0; the first of them where several are.
+/// The most common of `widths` except 0. If several are equally common, returns the first of them.
 fn usual_width(widths: &[u32]) -> Option<NonZeroU32> {
     let widths = widths.iter().copied().filter_map(NonZeroU32::new);
     let mut counts = BTreeMap::<NonZeroU32, usize>::new();
@@ -232,8 +233,7 @@ fn cells(count: u32) -> String {
     if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") }
 }
 
-/// The place where `value` starts in `literal`, its TOML string; `None` where the literal has
-/// escapes.
+/// The place where `value` starts in `literal`, its TOML string; `None` if the literal has escapes.
 fn value_start(literal: &str, value: &str) -> Option<usize> {
     ["'''", "\"\"\"", "'", "\""].into_iter().find_map(|quotes| {
         let inner = literal.strip_prefix(quotes)?.strip_suffix(quotes)?;
@@ -242,12 +242,13 @@ fn value_start(literal: &str, value: &str) -> Option<usize> {
     })
 }
 
-/// TOML drops a line break right after the opening quotes.
+/// Removes a line break right after the opening quotes, which TOML drops.
 fn without_first_line_break(inner: &str) -> &str {
     inner.strip_prefix("\r\n").or_else(|| inner.strip_prefix('\n')).unwrap_or(inner)
 }
 
-/// A value for each character, the default at first: an array for ASCII, a tree for other characters.
+/// A value for each character, initially the default: an array for ASCII, a tree for other
+/// characters.
 pub(crate) struct PerCharacter<T> {
     ascii: [T; 128],
     others: BTreeMap<char, T>,

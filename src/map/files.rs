@@ -1,4 +1,4 @@
-//! Files: where the text and the pictures of a map come from.
+//! The files from which a map's text and pictures come.
 
 use std::fs::File;
 use std::io::Read;
@@ -31,15 +31,15 @@ const MAX_FILE_BYTES: usize = 16 << 20;
 /// }
 /// ```
 pub trait TextureFiles {
-    /// The bytes of the PNG file `name`. The name ends in `.png`, may have folders (`a/b.png`), and
-    /// never leads out of them.
+    /// Reads the PNG file `name`. The name ends in `.png`, may contain folders (`a/b.png`), and
+    /// never leads out of the map's folder.
     ///
     /// # Errors
-    /// The reason why there are none.
+    /// The reason why the file cannot be read.
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError>;
 }
 
-/// Why the file of a texture has no bytes.
+/// The reason why a texture file cannot be read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum TextureFileError {
@@ -47,7 +47,7 @@ pub enum TextureFileError {
     Missing,
     /// The file is a link out of the map's folder.
     Outside,
-    /// It is a folder or a device.
+    /// The name belongs to a folder or a device.
     NotAFile,
     /// It is larger than any PNG of an allowed size.
     TooLarge,
@@ -70,7 +70,7 @@ impl fmt::Display for TextureFileError {
 
 impl std::error::Error for TextureFileError {}
 
-/// No files: all textures are built in.
+/// A source without files, for maps that use built-in textures only.
 #[derive(Clone, Copy, Debug)]
 pub struct NoFiles;
 
@@ -80,7 +80,7 @@ impl TextureFiles for NoFiles {
     }
 }
 
-/// The files of one folder and below it. Links that lead out of it are not followed.
+/// The files in one folder and its subfolders. Links that lead out of the folder are not followed.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -129,17 +129,17 @@ impl From<io::Error> for TextureFileError {
     }
 }
 
-/// Returns whether `name` ends as a PNG file does.
+/// Returns whether `name` has the extension of a PNG file.
 pub(crate) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-/// Returns whether `name` stays below its folder, and is the same file on every system.
+/// Returns whether `name` stays below its folder, and names the same file on every system.
 pub(crate) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
 }
 
-/// Reads the text of a map, at most [`MAX_BYTES`] of it.
+/// Reads the text of a map, which may have up to [`MAX_BYTES`].
 pub(crate) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
     let mut bytes = Vec::new();
     let read = input.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);

@@ -1,4 +1,5 @@
-//! The keys of a map with a grid: of the map itself, and of the tables that define characters.
+//! The keys of a map with a grid: the keys of the map itself, and of the tables that define
+//! characters.
 
 use crate::fault::Fault;
 use crate::fault::document::Entry;
@@ -22,8 +23,8 @@ pub(crate) const MAP: &[&str] = &[
     "things",
 ];
 
-/// The keys of a tile. Each goes with one of the keys in its list, or makes a tile alone where the list
-/// is empty.
+/// The keys of a tile. A key with an empty list makes a tile on its own. Any other key needs one of
+/// the keys in its list.
 const TILES: &[(&str, &[&str])] = &[
     ("wall", &[]),
     ("door", &[]),
@@ -147,18 +148,18 @@ impl Section {
         }
     }
 
-    /// The keys that make a tile or a thing alone.
+    /// The keys that make a tile or a thing on their own.
     fn makers(self) -> Vec<&'static str> {
         let alone = self.keys().iter().filter(|(_, owners)| owners.is_empty());
         alone.map(|&(key, _)| key).collect()
     }
 
-    /// The keys one of which `key` must go with; none for another key.
+    /// The keys of which `key` needs one; empty for any other key.
     pub(crate) fn owners(self, key: &str) -> &'static [&'static str] {
         self.keys().iter().find(|(known, _)| *known == key).map_or(&[], |&(_, owners)| owners)
     }
 
-    /// The fault of a key that a tile or a thing does not have.
+    /// The fault of an unknown key in a tile or a thing.
     pub(crate) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
         let key = entry.key;
         let fault = |message: String| Fault::new(entry.key_place.clone(), message);

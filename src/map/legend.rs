@@ -94,7 +94,7 @@ impl Default for Legend<'_> {
 }
 
 impl<'a> Legend<'a> {
-    /// Whether no definition has a fault.
+    /// Returns whether every definition is free of faults.
     pub(crate) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
         self.is_complete && !self.symbols.values().any(is_unclear)
@@ -131,7 +131,7 @@ impl<'a> Legend<'a> {
     }
 }
 
-/// Reads the tile that the table of a thing names, if it does.
+/// Reads the tile that a thing's table names as its support, if it names one.
 fn support(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<(char, Range<usize>)> {
     let entry = owner.beside(thing, "on")?;
     let text = entry.string(r#"on = ",""#)?;
@@ -203,7 +203,8 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     (Meaning::Unclear, surroundings)
 }
 
-/// The fault of a tile, defined in `entry` by `table`, whose `meaning` cannot have these surroundings.
+/// The fault of a tile whose `meaning` cannot have these surroundings. `entry` defines the tile by
+/// `table`.
 fn unsuitable(
     surroundings: &Surroundings<'_>,
     meaning: &Meaning<'_>,

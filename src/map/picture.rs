@@ -15,7 +15,7 @@ use crate::world::Texture;
 
 /// The largest number of texels in a row or a column of a texture.
 const MAX_SIDE: u32 = 1024;
-/// Twice the size of the largest picture in 16-bit RGBA.
+/// Enough for two pictures of the largest size in 16-bit RGBA.
 const DECODER_LIMITS: Limits = Limits { bytes: 2 * 8 * (MAX_SIDE * MAX_SIDE) as usize };
 
 /// The largest number of texels of all pictures of a map: 16 of the largest size.
@@ -32,7 +32,7 @@ pub(crate) struct Budget {
 }
 
 impl Default for Budget {
-    /// That of a whole map.
+    /// The budget of a whole map.
     fn default() -> Self {
         Self { texels: MOST_TEXELS, bytes: MOST_BYTES }
     }
@@ -47,7 +47,7 @@ impl Budget {
     }
 }
 
-/// Why there is no picture.
+/// The reason why a file yields no picture.
 #[derive(Debug)]
 pub(crate) enum PictureError {
     Unreadable(TextureFileError),
@@ -58,7 +58,7 @@ pub(crate) enum PictureError {
         width: u32,
         height: u32,
     },
-    /// It exceeds the [`Budget`] of the map.
+    /// The picture exceeds the [`Budget`] of the map.
     OneTooMany,
 }
 
@@ -85,7 +85,7 @@ impl fmt::Display for PictureError {
 }
 
 impl PictureError {
-    /// The remedy. The map uses the picture as a `use_of_file`.
+    /// The help text for the user. The map uses the picture as a `use_of_file`.
     pub(crate) fn help(&self, use_of_file: &str) -> String {
         let size = "64×64 texels are plenty in a terminal";
         match self {
@@ -109,7 +109,7 @@ pub(crate) struct Picture {
     height: NonZeroU32,
     color_type: ColorType,
     samples: Vec<u8>,
-    /// The number of samples of a row.
+    /// The number of samples in a row.
     row_size: usize,
 }
 
@@ -122,12 +122,13 @@ impl Picture {
         self.height.get()
     }
 
-    /// All of it as a texture.
+    /// The whole picture as a texture.
     pub(crate) fn texture(&self) -> Texture {
         self.part(0, 0, self.width, self.height)
     }
 
-    /// The part from `(left, top)` on as a texture. It is inside the picture.
+    /// The part with its top left corner at `(left, top)`, as a texture. It must be inside the
+    /// picture.
     pub(crate) fn part(
         &self,
         left: u32,
@@ -143,8 +144,8 @@ impl Picture {
     }
 }
 
-/// Decodes a PNG file of any colour type and depth; the first picture of an animation. The size is
-/// checked, and taken from `budget`, before memory is allocated.
+/// Decodes a PNG file of any colour type and depth. Of an animation, decodes the first picture. The
+/// size is checked, and taken from `budget`, before memory is allocated.
 pub(crate) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
     budget.take(0, bytes.len())?;
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
@@ -170,7 +171,7 @@ pub(crate) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, Pictu
     Ok(Picture { width, height, color_type, samples, row_size })
 }
 
-/// Whether the palette ends with a whole colour. The decoder panics at one that does not.
+/// Returns whether the palette ends with a whole colour. If it does not, the decoder would panic.
 fn has_whole_palette(info: &Info<'_>) -> bool {
     let palette = info.palette.as_deref().unwrap_or_default();
     info.color_type != ColorType::Indexed || palette.len().is_multiple_of(3)

@@ -26,14 +26,14 @@ impl<'l> Plan<'l> {
         self.symbol(character).is_some_and(|symbol| is_such(&symbol.meaning))
     }
 
-    /// The characters that are drawn, with their definitions, in their order.
+    /// The characters that are drawn and defined, in order, with their definitions.
     pub(crate) fn symbols(self) -> impl Iterator<Item = (char, &'l Symbol<'l>)> {
         let drawn = self.drawing.characters();
         drawn.filter_map(move |character| Some((character, self.symbol(character)?)))
     }
 
-    /// Counts the cells whose definition `is_such`: all of them, and those of the definition that is drawn
-    /// most. `None` if there is none.
+    /// The number of cells whose definition `is_such`, the definition among these that is drawn
+    /// most often, and the number of its cells. `None` if no such cell is drawn.
     pub(crate) fn count(
         self,
         is_such: impl Fn(&Symbol<'_>) -> bool,
@@ -45,7 +45,7 @@ impl<'l> Plan<'l> {
         Some((count, most, self.drawing.count(character)))
     }
 
-    /// The drawn locked doors' keys.
+    /// The keys of the locked doors that are drawn.
     pub(crate) fn locks(self) -> impl Iterator<Item = &'l Name<'l>> {
         self.symbols().filter_map(|(_, symbol)| match &symbol.meaning {
             Meaning::Door(DoorText { key, .. }) => key.as_ref(),
@@ -53,7 +53,7 @@ impl<'l> Plan<'l> {
         })
     }
 
-    /// The drawn keys.
+    /// The keys that are drawn.
     pub(crate) fn keys(self) -> impl Iterator<Item = &'l Name<'l>> {
         self.symbols().filter_map(|(_, symbol)| match &symbol.meaning {
             Meaning::Key(key) => Some(key),
@@ -72,7 +72,7 @@ impl<'l> Plan<'l> {
     }
 }
 
-/// The names of keys or of switches in their order. An id is an index into them.
+/// The names of keys or of switches, sorted. An id is an index into them.
 pub(crate) struct Names<'l>(pub(crate) Vec<&'l str>);
 
 impl<'l> Names<'l> {
@@ -81,7 +81,8 @@ impl<'l> Names<'l> {
         Self(names.into_iter().collect())
     }
 
-    /// The id of `name`. There are at most as many as kinds of tile, where more are a fault.
+    /// The id of `name`. It fits a byte, because every name belongs to a kind of tile and the
+    /// number of kinds is limited.
     pub(crate) fn id(&self, name: &str) -> Option<u8> {
         u8::try_from(self.0.binary_search(&name).ok()?).ok()
     }

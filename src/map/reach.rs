@@ -4,8 +4,8 @@
 //! It overestimates what the player can reach: walls that sink are open, all floors are at one
 //! height, and a plate that a guard may step on is pressed.
 //!
-//! The facts of a cell are in arrays with a value for each cell. Rejected: ordered sets of cells. A map
-//! with a pillar in each of a million cells took 1.3 s, most of it in the sets.
+//! Facts about cells are stored in arrays with a value for each cell. Rejected: ordered sets of
+//! cells. A map with a pillar in each of a million cells took 1.3 s, most of it in the sets.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroU32;
@@ -18,16 +18,16 @@ use crate::world::{Cell, Flood, Grid};
 /// A key or a switch that opens doors.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Opener<'a> {
-    /// The key of that name.
+    /// The key with this name.
     Key(&'a str),
-    /// The switch of that name.
+    /// The switch with this name.
     Switch(&'a str),
 }
 
-/// The number of an opener, from 1.
+/// The number of an opener, counted from 1.
 type OpenerId = NonZeroU32;
 
-/// A value for each cell of a grid, the default at first.
+/// A value for each cell of a grid, initially the default.
 struct PerCell<T> {
     width: usize,
     values: Vec<T>,
@@ -126,7 +126,7 @@ impl<'l> Reach<'l> {
         reach
     }
 
-    /// The number of `opener`, which is new if it has none yet. There are fewer openers than characters.
+    /// The number of `opener`, assigned at its first use. There are fewer openers than characters.
     fn id(&mut self, opener: Opener<'l>) -> OpenerId {
         let new = NonZeroU32::MIN.saturating_add(self.openers.len() as u32);
         *self.openers.entry(opener).or_insert(new)

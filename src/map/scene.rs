@@ -1,9 +1,10 @@
 //! Maps of bodies: spheres, planes and boxes instead of a grid.
 //!
-//! Among bodies whose boxes overlap, no order makes the nearest one cheaper to find: a ray that meets
-//! them is tested against each. The number of overlapping pairs is limited, and with it the number of
-//! tests: 141 bodies in one place overlap in 9,870 pairs. Rejected: a lower limit on the number of bodies,
-//! since a thousand bodies side by side take a few tests each.
+//! If the boxes of bodies overlap, no order makes the nearest body cheaper to find: a ray that
+//! meets the boxes is tested against each body. A limit on the number of overlapping pairs
+//! therefore limits the number of tests: 141 bodies in one place overlap in 9,870 pairs. Rejected:
+//! a lower limit on the number of bodies. A thousand bodies side by side take only a few tests
+//! each.
 
 use std::ops::Range;
 
@@ -110,12 +111,12 @@ struct Properties<'a> {
     scale: Option<Scale>,
 }
 
-/// Whether `document` has bodies, and so is not a map with a grid.
+/// Returns whether `document` has bodies, and is therefore not a map with a grid.
 pub(crate) fn has_bodies(document: &DeTable) -> bool {
     KINDS.iter().any(|kind| document.contains_key(kind.key))
 }
 
-/// Reads the scene in `document`; reports its faults. `None` where there is no scene.
+/// Reads the scene in `document`; reports its faults. `None` if there is no scene.
 pub(crate) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
     let mut scene = Scene::default();
     let mut start = None;
@@ -209,8 +210,8 @@ fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {
 }
 
 impl Kind {
-    /// Reads the bodies of `entry`, each of which the map writes as `[[key]]`, into `bodies`, of which so
-    /// many `pairs` overlap. Nothing is read after a body that is one too many.
+    /// Reads the bodies of `entry`, which the map writes as `[[key]]`, into `bodies`. Adds to
+    /// `pairs` the number of pairs that overlap. Stops at a body that is one too many.
     fn read_all(&self, entry: &Entry<'_, '_>, bodies: &mut Vec<Body>, pairs: &mut usize) {
         let Some(list) = entry.list() else {
             entry.faults.push(entry.wrong_type("a list of tables", self.example));
@@ -279,7 +280,8 @@ impl Kind {
     }
 }
 
-/// The fault of a body at `place` after `count` others, of which with it so many `pairs` overlap.
+/// The fault of a body at `place` that is one too many. There are `count` bodies before it, and
+/// `pairs` pairs overlap with it included.
 fn one_too_many(place: Range<usize>, count: usize, pairs: usize) -> Option<Fault> {
     if count == MAX_BODIES {
         let fault = Fault::new(place, format!("a map has {MAX_BODIES} bodies at most"));
@@ -319,7 +321,7 @@ fn position(entry: &Entry<'_, '_>) -> Option<DVec3> {
     })
 }
 
-/// Reads the direction in `entry`, of any length.
+/// Reads the direction in `entry`, which may have any length except 0.
 fn direction(entry: &Entry<'_, '_>, example: &str) -> Option<DVec3> {
     let direction = three(entry, example)?;
     (direction.abs().max_element() > 0.0).then_some(direction).or_else(|| {
@@ -328,7 +330,7 @@ fn direction(entry: &Entry<'_, '_>, example: &str) -> Option<DVec3> {
     })
 }
 
-/// Three finite numbers.
+/// Reads three finite numbers.
 fn three(entry: &Entry<'_, '_>, example: &str) -> Option<DVec3> {
     let Some(list) = entry.list() else {
         entry.faults.push(entry.wrong_type("a list of three numbers", example));

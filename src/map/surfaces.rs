@@ -15,12 +15,12 @@ const SKY_EXAMPLE: &str = r##"sky = { gradient = ["#5080c0", "#c0d8f0"] }"##;
 const FOG_EXAMPLE: &str = r##"fog = { color = "#101018", distance = 12.0 }"##;
 
 impl<'a> Surface<'a> {
-    /// A surface of one colour, for maps that do not name any.
+    /// A surface of one colour, for maps that name no surface.
     pub(crate) fn plain(color: Rgb) -> Self {
         Self { source: Source::Color(color), place: 0..0 }
     }
 
-    /// The built-in texture of that name.
+    /// The built-in texture with this name.
     pub(crate) fn built_in(name: &'static str) -> Self {
         Self { source: Source::Texture(name), place: 0..0 }
     }
@@ -44,7 +44,7 @@ impl<'a> Surface<'a> {
         Some(Self { source, place: entry.value_place.clone() })
     }
 
-    /// Reads the panorama in `entry`, as [`Surface::read`].
+    /// Reads the panorama in `entry` as [`Surface::read`] does.
     fn read_panorama(entry: &Entry<'a, '_>) -> Option<Self> {
         let example = r#"panorama = "hills""#;
         let text = entry.string(example)?;
@@ -60,7 +60,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// `name`, the name of a file in `entry`; reports a fault if it leads out of the map's folder.
+/// Returns `name`, a file name in `entry`. Reports a fault if it leads out of the map's folder.
 pub(crate) fn file_name<'a>(entry: &Entry<'_, '_>, name: &'a str) -> Option<&'a str> {
     stays_inside(name).then_some(name).or_else(|| {
         let message = format!("{} is not a file in the map's folder", quoted(name));
@@ -131,7 +131,7 @@ impl<'a> CoveringText<'a> {
         }
     }
 
-    /// The covering itself. Reports a fault where a texture is missing.
+    /// The covering itself. Reports a fault if a texture is missing.
     pub(crate) fn covering(&self, textures: &mut Textures<'_>) -> Option<Covering> {
         let mut both = |surfaces: &[Surface<'_>; 2]| {
             let [first, second] = surfaces.each_ref().map(|surface| textures.paint(surface));
@@ -147,7 +147,7 @@ impl<'a> CoveringText<'a> {
 }
 
 impl<'a> PatternText<'a> {
-    /// Reads the pattern in `entry`, one of a covering's table.
+    /// Reads the pattern in `entry`, which is an entry of a covering's table.
     fn read(entry: &Entry<'a, '_>) -> Option<Self> {
         if entry.key == "texture" {
             return Surface::read(entry, r#"texture = "tile""#).map(Self::Plain);
@@ -166,7 +166,7 @@ pub(crate) enum CeilingText<'a> {
 }
 
 impl<'a> CeilingText<'a> {
-    /// Reads the ceiling in `entry` as [`CoveringText::read`] does; `"sky"` is no ceiling.
+    /// Reads the ceiling in `entry` as [`CoveringText::read`] does. `"sky"` means no ceiling.
     pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
             DeValue::String(text) if text == "sky" => Some(Self::Sky),
@@ -174,7 +174,7 @@ impl<'a> CeilingText<'a> {
         }
     }
 
-    /// The ceiling itself, as [`CoveringText::covering`].
+    /// The ceiling itself, made as by [`CoveringText::covering`].
     pub(crate) fn ceiling(&self, textures: &mut Textures<'_>) -> Option<Ceiling> {
         match self {
             Self::Sky => Some(Ceiling::Sky),
@@ -216,7 +216,7 @@ impl<'a> SkyText<'a> {
         entry.reject(message, label, format!("write {SKY_EXAMPLE}"))
     }
 
-    /// The sky itself. Reports a fault where its texture is missing.
+    /// The sky itself. Reports a fault if its texture is missing.
     pub(crate) fn sky(&self, textures: &mut Textures<'_>) -> Option<Sky> {
         match self {
             &Self::Gradient(gradient) => Some(Sky::Gradient(gradient)),

@@ -123,7 +123,7 @@ fn moving_tiles_pass_through_states_an_eighth_apart() {
     assert_eq!(world.moving_tiles().len(), 4);
 }
 
-/// Whether a map whose exit door needs a key is refused, since the key is out of reach.
+/// Returns whether the reader rejects a map because the key of its exit door is out of reach.
 fn is_refused(grid: &str, things: &str) -> bool {
     let text = format!(
         "grid = '''\n{grid}\n'''\n[tiles]\n'#'.wall = 'brick'\n'%'.secret = 'brick'\n\

@@ -1,4 +1,4 @@
-//! Textures and sheets of sprites by name: built in, or a PNG file beside the map.
+//! Textures and sheets of sprites by name, either built in or a PNG file beside the map.
 //!
 //! Each is computed or decoded once, and only if the map uses it.
 
@@ -13,7 +13,7 @@ use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
 use crate::world::{Paint, Sprite, Texture, TextureId};
 
-/// A sheet's name and its numbers of frames and of facings.
+/// The name of a sheet, and its numbers of frames and facings.
 type SheetKey = (String, Option<u32>, Option<u32>);
 
 /// The textures that a map uses, each once, and the faults found in the map.
@@ -23,9 +23,9 @@ pub(crate) struct Textures<'m> {
     /// `None` after a picture exceeded it.
     budget: Option<picture::Budget>,
     list: Vec<Texture>,
-    /// The texture of a name; `None` where it has a fault.
+    /// The texture for each name; `None` if it has a fault.
     known: BTreeMap<String, Option<TextureId>>,
-    /// The sprite of a sheet; `None` where it has a fault.
+    /// The sprite for each sheet; `None` if it has a fault.
     sheets: BTreeMap<SheetKey, Option<Sprite>>,
 }
 
@@ -44,14 +44,13 @@ pub(crate) enum Source<'a> {
 }
 
 impl<'m> Textures<'m> {
-    /// Textures from `files` where they are not built in.
+    /// Creates an empty list. Textures that are not built in come from `files`.
     pub(crate) fn new(faults: &'m FaultList, files: &'m dyn TextureFiles) -> Self {
         let (budget, list) = (Some(picture::Budget::default()), Vec::new());
         Self { faults, files, budget, list, known: BTreeMap::new(), sheets: BTreeMap::new() }
     }
 
-    /// The paint for `surface`. Reports a fault where its texture is missing, once for each
-    /// texture.
+    /// The paint for `surface`. Reports a fault if its texture is missing, once for each texture.
     pub(crate) fn paint(&mut self, surface: &Surface<'_>) -> Option<Paint> {
         let name = match surface.source {
             Source::Color(color) => return Some(Paint::Color(color)),
@@ -71,8 +70,8 @@ impl<'m> Textures<'m> {
         id.map(Paint::Texture)
     }
 
-    /// The sprite of the sheet `key`, which `cut` divides. Its picture is decoded once for all sprites
-    /// that divide it alike.
+    /// The sprite of the sheet `key`, made by `cut`. The picture is decoded once for all sprites
+    /// that divide it in the same way.
     pub(crate) fn sheet(
         &mut self,
         key: SheetKey,

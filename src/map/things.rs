@@ -15,17 +15,17 @@ use crate::world::{
 const MAX_KINDS: usize = 1000;
 /// The largest number of things.
 const MAX_THINGS: usize = 1 << 20;
-/// The largest number of cells that lamps light, a cell counted for each lamp that reaches it: ten
-/// thousand lamps of the longest reach.
+/// The largest number of cells that lamps light: room for ten thousand lamps of the longest reach.
+/// A cell counts once for each lamp that reaches it.
 ///
-/// A lamp takes time for each cell within its reach, so a number of lamps alone would be no limit.
-/// Walls do not count, because lamps are counted before any of them is lit.
+/// A lamp takes time for each cell within its reach, so a limit on the number of lamps alone would
+/// not be enough. Walls do not count, because lamps are counted before any of them is lit.
 const MAX_LIT_CELLS: u64 = 1 << 25;
-/// The cells that a kind of lamp lights are computed once, which takes as long as to light this many
-/// lamps.
+/// The cost of a kind of lamp, in lamps. The cells that it lights are computed once, which takes as
+/// long as lighting this many lamps.
 const COST_OF_LAMP_KIND: u64 = 32;
 
-/// The things in a plan except the start, with what they refer to.
+/// The things in a plan except the start, with the sprites and texts that they refer to.
 #[derive(Default)]
 pub(crate) struct ThingList {
     pub(crate) things: Vec<Thing>,
@@ -77,7 +77,7 @@ impl ThingList {
         }
         list.things.extend(plan.drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
-            // Other things show the frame of the time.
+            // Other things select their frame by the time.
             let shows_its_state =
                 matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
             Some(Thing { kind, cell, sprite, frame: shows_its_state.then_some(0) })

@@ -1,7 +1,7 @@
 //! The kinds of tile in a plan, and the states of moving tiles.
 //!
-//! A tile that moves becomes a list of tiles, its states, at most [`STEP`] apart in height. The
-//! grid draws the first of them only.
+//! A tile that moves becomes a list of tiles, its states. Successive states differ in height by at
+//! most [`STEP`]. The grid draws only the first state.
 
 use std::collections::BTreeSet;
 
@@ -23,7 +23,7 @@ use crate::world::{
 const MAX_TILES: usize = 255;
 /// The largest difference in height between two states that follow each other, in cells.
 const STEP: f64 = 0.125;
-/// More states than a map has tiles.
+/// More states than a map may have tiles.
 const MAX_STATES: f64 = 256.0;
 
 /// The kinds of tile that a grid refers to.
@@ -45,12 +45,12 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    /// The riser below `floor`: the map's, or the surface of the floor.
+    /// The riser below `floor`: the map's own, or else the surface of the floor.
     pub(crate) fn riser(self, floor: Covering) -> Paint {
         self.riser.unwrap_or(floor.pattern.first_paint())
     }
 
-    /// The lintel above `ceiling`: the map's, or the surface of the ceiling.
+    /// The lintel above `ceiling`: the map's own, or else the surface of the ceiling.
     pub(crate) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
         let below = match ceiling {
             Ceiling::Covered(covering) => covering,
@@ -137,8 +137,8 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// A wall with holes. A texture without holes is a fault, since the author would not know why it
-    /// cannot be seen through.
+    /// A wall with holes. A texture without holes is a fault, because otherwise the author would
+    /// not know why the wall hides everything behind it.
     fn mask(&mut self, surface: &Surface<'_>) -> Option<TileKind> {
         if let Paint::Texture(id) = self.textures.paint(surface)?
             && self.textures.get(id).has_alpha()
@@ -151,7 +151,7 @@ impl Builder<'_, '_> {
         None
     }
 
-    /// A tile with what `symbol` defines, and otherwise like the map's own floor.
+    /// A tile with the properties that `symbol` defines. The map's own floor supplies the others.
     fn tile(&mut self, character: char, kind: TileKind, symbol: &Symbol<'_>) -> Option<Tile> {
         let own = &symbol.surroundings;
         let &Common { ground, faces, .. } = self.common;
@@ -237,7 +237,7 @@ impl Builder<'_, '_> {
         self.common.switches.id(name?.text).map(SwitchId)
     }
 
-    /// The fault of the definition with which there are more than [`MAX_TILES`].
+    /// The fault of the definition that exceeds [`MAX_TILES`].
     fn one_too_many(&self, symbol: &Symbol<'_>) -> Fault {
         let states: usize = self.moving.iter().map(|(states, _)| states.len()).sum();
         let message = format!("the grid has more than {} kinds of tile", MAX_TILES - 1);
@@ -275,8 +275,8 @@ impl Builder<'_, '_> {
     }
 }
 
-/// The heights of a tile with `own` ones below `overhead`, in a map whose ceiling is at `map_ceiling`. The
-/// error is where they contradict each other.
+/// The heights of a tile with the surroundings `own` below `overhead`, in a map whose ceiling is at
+/// `map_ceiling`. Returns a fault if the heights contradict each other.
 fn heights(
     own: &Surroundings<'_>,
     overhead: Ceiling,
@@ -314,13 +314,13 @@ fn heights(
     })
 }
 
-/// The states of the floor `tile` after the first, up or down to the height `end`. The faults of
-/// `end` are reported by [`end_fault`].
+/// The states of the floor `tile` after the first, up or down to the height `end`. [`end_fault`]
+/// reports the faults of `end`.
 fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
     let start = tile.heights.floor();
     let over = tile.heights.ceiling() - start;
     heights_between(start, end).filter_map(move |floor| {
-        // Under the sky, what stands on the floor moves with it.
+        // Under the sky, the objects on the floor move with it, so the ceiling height does too.
         let ceiling = match tile.ceiling {
             Ceiling::Covered(_) => tile.heights.ceiling(),
             Ceiling::Sky => (floor + over).min(Heights::MAX),
@@ -330,7 +330,7 @@ fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
     })
 }
 
-/// The fault of a floor that cannot move to the height `end`, if it cannot.
+/// The fault of a floor that cannot move to the height `end`; `None` if it can.
 fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
     let fault = |message: &str| Fault::new(end.place.clone(), message);
     let (floor, ceiling) = (tile.heights.floor(), tile.heights.ceiling());
@@ -351,14 +351,14 @@ fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
     None
 }
 
-/// The states of `wall` after the first that are lower walls. After them it is open.
+/// The states of `wall` after the first in which it is still a lower wall. After them, it is open.
 fn wall_states(wall: Tile) -> impl Iterator<Item = Tile> {
     let (ceiling, roof) = (wall.heights.ceiling(), wall.heights.roof());
     let lower = heights_between(wall.heights.floor(), 0.0).filter(|&top| top > 0.0);
     lower.filter_map(move |top| Some(Tile { heights: Heights::new(top, ceiling, roof)?, ..wall }))
 }
 
-/// Heights after `start` at equal distances, to `end`.
+/// Equally spaced heights after `start`, up to and including `end`.
 fn heights_between(start: f64, end: f64) -> impl Iterator<Item = f64> {
     let way = end - start;
     let count = (way.abs() / STEP).ceil().min(MAX_STATES) as u32;

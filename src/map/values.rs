@@ -1,4 +1,4 @@
-//! Values of single entries: what a map may write, and what to say of anything else.
+//! Values of single entries: the accepted values, and the reports on all others.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -88,7 +88,7 @@ impl<'a> Name<'a> {
     }
 }
 
-/// `value`; if there is none, reports that `entry` is not what is `wanted`.
+/// Returns `value`. If there is none, reports that `entry` must be `wanted`.
 pub(crate) fn known<T>(
     entry: &Entry<'_, '_>,
     value: Option<T>,
@@ -105,7 +105,7 @@ pub(crate) fn known<T>(
     })
 }
 
-/// The whole number in `entry`, if it is one up to 10⁹.
+/// The number in `entry`, if it is a whole number from 0 to 10⁹.
 pub(crate) fn whole_number(entry: &Entry<'_, '_>) -> Option<u32> {
     let is_whole = |number: &f64| number.fract() == 0.0 && (0.0..=1e9).contains(number);
     entry.number().filter(is_whole).map(|number| number as u32)
@@ -127,7 +127,8 @@ pub(crate) fn boolean(entry: &Entry<'_, '_>) -> Option<bool> {
     known(entry, entry.value.as_bool(), "true or false", true)
 }
 
-/// Reads a key that is there or not: reports any value but `true`, and returns whether it is.
+/// Reads a key whose only value is `true`. Reports any other value, and returns whether it is
+/// `true`.
 pub(crate) fn is_true(entry: &Entry<'_, '_>) -> bool {
     let key = entry.key;
     let help = match key {

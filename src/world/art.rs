@@ -1,7 +1,8 @@
 //! The built-in art: PNG sheets of `maps/art`, which are compiled in.
 //!
-//! A sheet has its frames from left to right and its facings from top to bottom, as the sheets of maps do. It is
-//! decoded when one of its texels is first read, because most levels show a few sheets only.
+//! A sheet has its frames from left to right and its facings from top to bottom, as the sheets of
+//! maps do. It is decoded when one of its texels is first read, because most levels show only a few
+//! sheets.
 
 use std::io::Cursor;
 use std::num::NonZeroU32;
@@ -12,7 +13,7 @@ use png::{ColorType, Decoder, DecodingError};
 use super::Texture;
 use crate::color::Rgb;
 
-/// The art of that name, with its name.
+/// The art with this name.
 macro_rules! art {
     ($name:literal) => {{
         let file = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/maps/art/", $name, ".png"));
@@ -38,8 +39,8 @@ impl Art {
         })
     }
 
-    /// The pictures of a sheet with a palette, frame by frame and within each frame facing by facing. All have
-    /// holes. Each colour is replaced by `recolored` of it.
+    /// The pictures of a sheet with a palette, frame by frame and within each frame facing by
+    /// facing. All of them have holes. `recolored` returns the replacement for each colour.
     pub(crate) fn pictures(
         self,
         frames: u32,
@@ -64,7 +65,7 @@ impl Art {
             .collect()
     }
 
-    /// The width and height in texels, which stand at a fixed place of every PNG file.
+    /// The width and height in texels, which are at a fixed place in every PNG file.
     fn size(self) -> [NonZeroU32; 2] {
         [16, 20].map(|start| {
             let bytes = self.file[start..start + 4].try_into().unwrap_or_default();
@@ -85,7 +86,7 @@ impl Art {
 struct Sheet {
     width: usize,
     samples: Vec<u8>,
-    /// The colours and alphas of indices; `None` where each texel has samples of red, green and blue.
+    /// The colours and alphas of indices; `None` if each texel has samples of red, green and blue.
     palette: Option<Vec<(Rgb, u8)>>,
 }
 

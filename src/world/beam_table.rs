@@ -1,4 +1,4 @@
-//! Beam tables: how far the way ahead of a ray is clear.
+//! Beam tables: the distance for which the way ahead of a ray is clear.
 //!
 //! A map is divided into strips of columns. A beam is the set of all lines that cross the middle of
 //! a strip at about one position with about one slope. For each beam, two bytes say in which
@@ -6,17 +6,16 @@
 //! however near the pillars that it passes. Rays that are faster along columns have a table of
 //! their own, with strips of rows.
 //!
-//! No solid cell is missed. The slopes of a beam are between two fractions and columns are between
-//! two integers, so that the rows which its lines reach in a column are bounded by products of
-//! integers. These rows are [widened](SLACK) on both sides by more than the rounding of a ray's
-//! position and slope. All cells around the map count as solid, so that a ray that leaves the map
-//! is noticed.
+//! No solid cell is missed. A beam's slopes lie between two fractions and columns lie between two
+//! integers, so products of integers bound the rows that its lines reach in a column. These rows
+//! are [widened](SLACK) on both sides by more than the rounding of a ray's position and slope. All
+//! cells around the map count as solid, so a ray that leaves the map is noticed.
 //!
 //! The tables take one byte for each cell, and as much again for margins on maps of 1024 cells on a
-//! side; at 4096 they take 1.25 bytes. Only maps of at least that size with few solid cells have
-//! them: among rooms, rays end before they gain by it.
+//! side; at 4096 they take 1.25 bytes. Only maps of at least 1024 cells on a side with few solid
+//! cells have tables: among rooms, rays end before a table pays off.
 //!
-//! Rejected: storing for each block of cells how far it is clear in many directions. A ray may be
+//! Rejected: storing, for each block of cells, how far it is clear in many directions. A ray may be
 //! anywhere in a wedge that widens with distance, and the same void is stored once for each block
 //! in it. By estimate, leaps would be half as long for the same memory.
 
@@ -29,7 +28,7 @@ pub(crate) struct BeamTable {
     /// Ordered by group, slope, position and strip.
     ///
     /// A line with exactly the slope of a beam has the same position in all strips of a group, so
-    /// that what one ray looks up is contiguous.
+    /// the entries that one ray reads are contiguous.
     solid: Vec<Solid>,
     /// The number of positions for each slope.
     positions: i64,
@@ -68,20 +67,21 @@ const WIDTH_BITS: u32 = 1;
 const STEEPEST: i64 = 1 << SLOPE_BITS;
 const SLOPE_BITS: u32 = 5;
 const SLOPES: i64 = 2 * STEEPEST;
-/// How far a beam is widened on both sides, in [`STEEPEST`]ths of a band. A ray's position and
-/// slope are rounded by less than a thousandth of that.
+/// The width by which a beam is widened on each side, in [`STEEPEST`]ths of a band. A ray's
+/// position and slope are rounded by less than a thousandth of that.
 const SLACK: i64 = 1;
 /// The number of positions of a slope on either side of the map: a line that is on the map
 /// elsewhere in a group may be that far from it in the group's middle.
 const MARGIN: i64 = GROUP * STRIP / 2 / WIDTH + 1;
 
 impl BeamTable {
-    /// The least side of a map on which rays gain by beams.
+    /// The least side of a map on which a beam table pays off.
     const LEAST_SIDE: i64 = 8 * STRIP;
-    /// The most solid cells on which rays gain: one in this many, walls around the map aside.
+    /// The density of solid cells up to which a beam table pays off: one in this many cells, apart
+    /// from walls around the map.
     const SPARSE: i64 = 1024;
 
-    /// Whether rays gain by beams on a map with these columns and rows and this number of cells
+    /// Returns whether a beam table pays off on a map of this size. `solid` is the number of cells
     /// that may be solid, the border included.
     pub(crate) fn are_worthwhile([columns, rows]: [i64; 2], solid: i64) -> bool {
         let around = 4 * (columns + rows);
@@ -113,8 +113,8 @@ impl BeamTable {
     /// Records a solid cell in all beams with slopes from `slope` to `slope + 1` that contain it.
     fn add(&mut self, line: i64, band: i64, slope: i64) {
         let (strip, within) = (line / STRIP, line % STRIP);
-        // How far a line through the cell can have moved since the middle of the strip, in parts of
-        // a band.
+        // The distances that a line through the cell can have moved since the middle of the strip,
+        // in parts of a band.
         let from_middle = within - STRIP / 2;
         let moves =
             [from_middle, from_middle + 1].map(|lines| [lines * slope, lines * (slope + 1)]);
@@ -148,7 +148,7 @@ impl BeamTable {
         (slope + STEEPEST) * self.positions + MARGIN
     }
 
-    /// The index of a position in a strip, where position 0 is at `start`.
+    /// The index of a position in a strip, given the index `start` of position 0.
     #[inline]
     fn index(&self, start: i64, strip: i64, position: i64) -> i64 {
         let group = (strip >> GROUP_BITS) * SLOPES * self.positions;
@@ -197,7 +197,8 @@ mod tests {
 
     use super::*;
 
-    /// A ray straight ahead through the middle of a band, among nothing but a pillar behind line 200.
+    /// Casts a ray straight ahead through the middle of a band, on a map that is empty except for a
+    /// pillar behind line 200.
     fn lines_ahead(band: i64, is_backward: bool, within: i64) -> i64 {
         let table = BeamTable::new([256, 64], iter::once([200, 30]));
         let position = (2 * band + 1) << (FRACTION_BITS - 1);

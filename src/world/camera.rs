@@ -1,9 +1,10 @@
 //! The camera: position, height of the eye, heading, pitch and field of view.
 //!
-//! Looking up or down shears the picture: it moves by whole rows of pixels. Rejected: a rotation. Walls
-//! would lean, a column of pixels would no longer be one ray, and every stage would pay for it. The shear
-//! is the picture of a camera that looks straight ahead with its image plane shifted, as in architectural
-//! photography. It looks distorted at large angles, so it is limited to [`Pitch::MAX_DEGREES`].
+//! Looking up or down shears the picture: it moves by whole rows of pixels. Rejected: a rotation.
+//! Walls would lean, a column of pixels would no longer be one ray, and every stage would pay for
+//! it. The shear is the picture of a camera that looks straight ahead with its image plane shifted,
+//! as in architectural photography. It looks distorted at large angles, so it is limited to
+//! [`Pitch::MAX_DEGREES`].
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
@@ -16,14 +17,14 @@ use super::Cell;
 /// A direction on the map: 0° is east, 90° south, clockwise.
 ///
 /// It is stored as a number of quarter turns and an angle of at most an eighth of a turn. Therefore
-/// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
-/// error in length: sine and cosine are computed from that angle. Rejected: a unit vector that is
-/// rotated in each step, since its length drifts.
+/// the four axes are exact (to the south, `x` is 0 and not 6e-17). Turning never accumulates an
+/// error in length, because sine and cosine are computed from that angle. Rejected: a unit vector
+/// that is rotated in each step. Its length drifts.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "(u8, f64)")]
 pub struct Heading {
     quarter_turns: u8,
-    /// Radians, within ±π/4 but for rounding.
+    /// In radians, within ±π/4 except for rounding.
     beside: f64,
 }
 
@@ -53,7 +54,8 @@ impl Heading {
             return self;
         }
         let beside = self.beside + radians % (4.0 * FRAC_PI_2);
-        // On a diagonal two quarters are equally near; changing between them would never end.
+        // On a diagonal, two quarters are equally near, and the heading could switch between them
+        // forever.
         let quarters = if beside.abs() <= FRAC_PI_4 { 0.0 } else { (beside / FRAC_PI_2).round() };
         Self {
             quarter_turns: (f64::from(self.quarter_turns) + quarters).rem_euclid(4.0) as u8,
@@ -189,7 +191,7 @@ impl Camera {
     }
 }
 
-/// How far the camera looks up or down: within ±30°.
+/// The angle by which the camera looks up or down, within ±30°.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "f64")]
 pub struct Pitch {

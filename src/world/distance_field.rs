@@ -1,17 +1,17 @@
-//! The distance field: how far a ray may go from each cell without a test.
+//! The distance field: the number of grid lines that a ray may cross from each cell without a test.
 //!
 //! For each cell, one byte says whether a ray has to test it. Around the map is a border of such
-//! cells, so that a ray that leaves the map needs no other check.
+//! cells, so a ray that leaves the map needs no other check.
 //!
 //! On mostly empty maps the byte is a distance, in the maximum norm, to the nearest cell that may
 //! be solid. A ray leaps that many grid lines. The field is computed once, when a map is read, and
-//! only where it pays: among rooms, a ray reaches a wall before it gains anything. Cells that may
-//! become solid count as solid, so that a door that opens or closes changes nothing.
+//! only if it pays off: among rooms, a ray reaches a wall before it gains anything. Cells that may
+//! become solid count as solid, so a door that opens or closes changes nothing.
 //!
 //! Fields with distances have a second level, the minimum of each block of 8×8 cells. On a large
-//! map these fit into the cache, and the cells do not.
+//! map, the blocks fit into the cache and the cells do not.
 //!
-//! Large maps with few solid cells have a [beam table](BeamTable) as well, which says how far the way
+//! Large maps with few solid cells also have a [beam table](BeamTable), which says how far the way
 //! ahead is clear.
 //!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
@@ -23,17 +23,15 @@ use std::fmt;
 
 use super::BeamTable;
 
-/// For each cell and the border, how many grid lines a ray in it may cross at once: no nearer cell
-/// is or may become solid. 0 if the cell itself may be solid.
+/// For each cell and the border, the number of grid lines that a ray in it may cross at once,
+/// because no nearer cell is solid or may become so. 0 if the cell itself may be solid.
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct DistanceField {
     /// Row by row from the border row in the north, each from the border cell in the west.
     cells: Vec<Coded>,
     /// The number of cells in a row.
     width: usize,
-    /// The minimum of each block of cells; empty where no minimum is above 1.
-    ///
-    /// On a large map these are in the cache, and the cells are not.
+    /// The minimum of each block of cells; empty if no minimum is above 1.
     blocks: Vec<Coded>,
     /// The number of blocks in a row.
     width_in_blocks: usize,
@@ -46,7 +44,7 @@ const BLOCK: usize = 1 << BLOCK_BITS;
 const BLOCK_BITS: u32 = 3;
 
 /// A number of lines in a byte: exact up to [`Coded::EXACT`], then rounded down to a multiple of
-/// [`Coded::STEP`], up to more than a map has.
+/// [`Coded::STEP`]. The largest number exceeds the lines of any map.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Coded(u8);
 
@@ -71,7 +69,7 @@ impl Coded {
 }
 
 impl DistanceField {
-    /// The mean number of lines crossed at once from which rays gain by distances.
+    /// The mean number of lines crossed at once from which distances pay off.
     const WORTHWHILE: f64 = 4.0;
 
     /// A field of zeros and ones. `rows` have equal lengths, and cells that `may_be_solid` are 0.
@@ -102,7 +100,7 @@ impl DistanceField {
         size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_beams
     }
 
-    /// The field with distances, if rays gain by them.
+    /// The field with distances, and with beam tables, if each pays off.
     pub(crate) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
         if !measured.is_worthwhile() {
@@ -114,7 +112,8 @@ impl DistanceField {
         }
     }
 
-    /// The nearest solid cell comes before the cell in reading order, or after it.
+    /// The field with distances. Two passes suffice, because the nearest solid cell comes either
+    /// before the cell in reading order or after it.
     pub(crate) fn measured(&self) -> Self {
         let width = self.width;
         let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MAX };
@@ -171,7 +170,7 @@ impl DistanceField {
         })
     }
 
-    /// Whether the mean of the distances is large enough for rays to gain by them.
+    /// Returns whether the mean of the distances is large enough for distances to pay off.
     fn is_worthwhile(&self) -> bool {
         let mut counts = [0_u64; u8::MAX as usize + 1];
         for &Coded(code) in &self.cells {
@@ -189,7 +188,7 @@ impl DistanceField {
         i64::from(self.at(index).lines())
     }
 
-    /// Whether the cell at `index` is not solid, and cannot become so.
+    /// Returns whether the cell at `index` is not solid and cannot become so.
     #[inline]
     pub(crate) fn is_clear(&self, index: i64) -> bool {
         self.at(index) != Coded::NONE
@@ -200,9 +199,9 @@ impl DistanceField {
         self.cells.get(index as usize).copied().unwrap_or(Coded::NONE)
     }
 
-    /// A lower bound of the number of lines that a ray can cross at once from the cell at these
-    /// `places` along two axes, of which `strides` are the [strides](DistanceField::strides_of_blocks).
-    /// 0 if it is not known.
+    /// A lower bound of the number of lines that a ray can cross at once from the cell at `places`
+    /// along two axes. `strides` are the [strides](DistanceField::strides_of_blocks) of blocks
+    /// along these axes. 0 if no bound is known.
     #[inline]
     pub(crate) fn lines_of_block(&self, places: [i64; 2], strides: [i64; 2]) -> i64 {
         let [one, other] = places.map(|place| (place + 1) >> BLOCK_BITS);
@@ -210,7 +209,7 @@ impl DistanceField {
         i64::from(self.blocks.get(index as usize).copied().unwrap_or(Coded::NONE).lines())
     }
 
-    /// The strides of blocks, as [`DistanceField::strides`].
+    /// The strides of blocks, in the order of [`DistanceField::strides`].
     #[inline]
     pub(crate) fn strides_of_blocks(&self) -> [i64; 2] {
         [1, self.width_in_blocks as i64]
@@ -228,7 +227,7 @@ impl DistanceField {
         [1, self.width as i64]
     }
 
-    /// Whether the field has distances.
+    /// Returns whether the field has distances.
     #[inline]
     pub(crate) fn is_measured(&self) -> bool {
         !self.blocks.is_empty()
@@ -259,7 +258,8 @@ fn approach(row: &mut [u16], beside: &[u16]) {
     }
 }
 
-/// Lowers the distance of each cell to one above that of the cell before it; the first is 0.
+/// Lowers the distance of each cell to at most one more than the distance of the cell before it.
+/// The first becomes 0.
 fn spread<'row>(cells: impl Iterator<Item = &'row mut u16>) {
     cells.fold(0, |before, cell| {
         *cell = (*cell).min(before + 1);

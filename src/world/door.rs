@@ -1,11 +1,11 @@
-//! Doors: their surfaces, their keys, and how far each of them is open.
+//! Doors: their surfaces, their keys, and how far each door is open.
 //!
-//! A door stands in the middle of its cell and slides aside into a jamb. It has two kinds of tile:
-//! [`Door`](super::TileKind::Door), which is solid, while any part of it is in the way, and
-//! [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, when it is fully
-//! open. So an open door costs no more than floor, a closed one no more than a wall, and collision
-//! need not know of doors. Rejected: a door that is solid only at its leaf. A player beside the
-//! leaf would be inside it when it closes.
+//! A door stands in the middle of its cell and slides aside into a jamb. It has two kinds of tile.
+//! While any part of it is in the way, it is a [`Door`](super::TileKind::Door), which is solid.
+//! When it is fully open, it is a [`Doorway`](super::TileKind::Doorway), which is open floor
+//! between two jambs. So an open door costs no more than floor, a closed one no more than a wall,
+//! and collision need not know about doors. Rejected: a door that is solid only at its leaf. A
+//! player beside the leaf would be inside it when it closes.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub struct Door {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct KeyId(pub u8);
 
-/// How far a door is open, from 0 to 1: the part of its leaf that is in the jamb.
+/// The open part of a door, from 0 to 1: the part of its leaf that is in the jamb.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Opening(f64);
 
@@ -59,7 +59,7 @@ impl World {
         }
     }
 
-    /// How far the door in `cell` is open; closed if there is none.
+    /// The opening of the door in `cell`; closed if there is no door.
     pub fn opening(&self, cell: Cell) -> Opening {
         match self.kind_at(cell) {
             Some(TileKind::Doorway(_)) => Opening::OPEN,

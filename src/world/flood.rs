@@ -1,7 +1,7 @@
 //! Flood fill: the cells that can be reached from a start in straight steps, the nearest first.
 //!
-//! The search is breadth-first, and the caller says which cells are open. Searches with costs and
-//! diagonal steps are those of `game::distances`.
+//! The search is breadth-first, and the caller says which cells are open. `game::distances`
+//! contains the searches with costs and diagonal steps.
 
 use std::collections::VecDeque;
 
@@ -11,9 +11,9 @@ use super::Cell;
 pub(crate) struct Flood {
     /// The columns and rows of the map.
     size: (u32, u32),
-    /// For each cell, row by row: whether it has been reached.
+    /// Whether each cell has been reached, row by row.
     is_reached: Vec<bool>,
-    /// The cells whose neighbours have not been looked at, and the steps to them.
+    /// The cells whose neighbours have not been visited, with the number of steps to each.
     queue: VecDeque<(Cell, u32)>,
 }
 
@@ -31,8 +31,8 @@ impl Flood {
         self.reach(cell, 0, |_| true);
     }
 
-    /// Returns the next cell and the steps to it, and spreads to those of its neighbours for which
-    /// `is_open` is true. `is_open` is asked about cells of the map that have not been reached.
+    /// Returns the next cell and the number of steps to it, and spreads to its neighbours for which
+    /// `is_open` is true. `is_open` is called with cells of the map that have not been reached.
     pub(crate) fn next(&mut self, mut is_open: impl FnMut(Cell) -> bool) -> Option<(Cell, u32)> {
         let (cell, steps) = self.queue.pop_front()?;
         cell.beside().for_each(|beside| self.reach(beside, steps + 1, &mut is_open));

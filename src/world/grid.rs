@@ -1,4 +1,4 @@
-//! The grid: one byte a cell, row by row from the north.
+//! The grid: one byte for each cell, row by row from the north.
 
 use std::collections::BTreeSet;
 use std::num::NonZeroU32;
@@ -44,13 +44,14 @@ impl Cell {
         Self { column: point.x as u32, row: point.y as u32 }
     }
 
-    /// The cell that is so many columns to the east and rows to the south; `None` at negative coordinates.
+    /// The cell `columns` to the east and `rows` to the south; `None` at negative coordinates.
     pub(crate) fn moved(self, columns: i64, rows: i64) -> Option<Self> {
         let along = |index: u32, by: i64| u32::try_from(i64::from(index) + by).ok();
         Some(Self { column: along(self.column, columns)?, row: along(self.row, rows)? })
     }
 
-    /// The neighbours in the west, east, north and south, without those at negative coordinates.
+    /// The neighbours in the west, east, north and south, except neighbours at negative
+    /// coordinates.
     pub(crate) fn beside(self) -> impl Iterator<Item = Self> {
         let west = self.column.checked_sub(1).map(|column| Self { column, ..self });
         let east = self.column.checked_add(1).map(|column| Self { column, ..self });
@@ -72,7 +73,7 @@ impl TileId {
 
 /// The tile of each cell, and which tiles are solid.
 ///
-/// Open tiles have the lower numbers, so that the test for a solid cell is one comparison without a
+/// Open tiles have the lower numbers, so the test for a solid cell is one comparison without a
 /// table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grid {
@@ -82,7 +83,7 @@ pub struct Grid {
     cells: Vec<TileId>,
     /// The cells with things that block.
     occupied: BTreeSet<Cell>,
-    /// The distance field. It is shared, since it never changes.
+    /// The distance field. It is shared, because it never changes.
     distance_field: Arc<DistanceField>,
 }
 
@@ -130,7 +131,7 @@ impl Grid {
         Self::new(width, height, TileId(1), cells)
     }
 
-    /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
+    /// Computes the distance field, if the map is empty enough for it to pay off. Some open tiles
     /// `may_become_solid`.
     pub fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.distance_field = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
@@ -198,7 +199,7 @@ impl Grid {
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
 
-    /// The same cells, of which those with uneven tiles are solid, too. Their tiles are not stored.
+    /// The same cells, in which uneven tiles are solid, too. Uneven tiles are not stored.
     pub(crate) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
         let tile = |&tile: &TileId| if is_level(tile) { tile } else { TileId(u8::MAX) };
         Self { cells: self.cells.iter().map(tile).collect(), ..self.clone() }
@@ -215,13 +216,13 @@ impl Grid {
         self.occupied.insert(cell);
     }
 
-    /// Whether a thing blocks a cell of the map.
+    /// Returns whether a thing blocks a cell of the map.
     pub fn is_occupied(&self, column: i64, row: i64) -> bool {
         let cell = Cell { column: column as u32, row: row as u32 };
         !self.occupied.is_empty() && self.occupied.contains(&cell)
     }
 
-    /// Whether a cell is solid; `false` outside the map.
+    /// Returns whether a cell is solid; `false` outside the map.
     pub fn is_solid(&self, column: i64, row: i64) -> bool {
         self.tile(column, row).is_some_and(|tile| self.is_solid_tile(tile))
     }
@@ -231,17 +232,17 @@ impl Grid {
         self.first_solid
     }
 
-    /// Whether cells with `tile` are solid.
+    /// Returns whether cells with `tile` are solid.
     pub fn is_solid_tile(&self, tile: TileId) -> bool {
         tile >= self.first_solid
     }
 
-    /// The size in memory, in bytes: of the cells and of the distance field.
+    /// The size of the cells and of the distance field in memory, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice()) + self.distance_field.bytes()
     }
 
-    /// The tiles of all cells, as in [`Grid::rows`].
+    /// The tiles of all cells, in the order of [`Grid::rows`].
     #[cfg(feature = "tui")]
     pub(crate) fn cells(&self) -> &[TileId] {
         &self.cells

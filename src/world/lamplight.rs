@@ -1,25 +1,25 @@
-//! Lamplight: what lamps add to the light of nearby cells.
+//! Lamplight: the light that lamps add to nearby cells.
 //!
 //! A cell is lit if the straight line from the middle of the lamp's cell to its own middle passes
-//! only through open floor, masks and glass. For the lamps of things, doors count as closed. Rejected:
-//! lamplight that passes through opening doors. All lamps around a door would have to be computed again,
-//! for a small difference. A lamp that moves shines through doors that are fully open, because the
-//! player carries one.
+//! only through open floor, masks and glass. For the lamps of things, doors count as closed.
+//! Rejected: lamplight that passes through opening doors. All lamps around a door would have to be
+//! computed again, for a small difference. A lamp that moves shines through doors that are fully
+//! open, because the player carries one.
 //!
-//! The sum of all lamps is stored for each cell, without a limit. The share of one lamp is therefore
-//! taken away exactly when it moves, goes out, or has a wall moved before it, and the other lamps
-//! are not computed again. Maps in which lamps change nothing store nothing.
+//! The sum of all lamps is stored for each cell, without a limit. When one lamp moves, goes out, or
+//! has a wall moved in front of it, its share is subtracted exactly, and the other lamps are not
+//! computed again. Maps in which lamps change nothing store nothing.
 //!
 //! The lines from a lamp to the cells within its reach are the same at every position, and many of
-//! them share their first cells. They are computed once for each kind of lamp, as a tree, its [`Glow`].
-//! Each lamp follows the branches of the tree until they meet an obstacle, so that a change costs at
-//! most the cells within the reach of the lamps that it concerns. Rejected: following every line by
-//! itself. A generated level has hundreds of lamps, and that took most of the time in which its window
-//! moves.
+//! them share their first cells. They are computed once for each kind of lamp, as a tree, its
+//! [`Glow`]. Each lamp follows the branches of the tree until they meet an obstacle. A change
+//! therefore costs at most the cells within the reach of the lamps that it concerns. Rejected:
+//! following every line by itself. A generated level has hundreds of lamps, and that took most of
+//! the time in which its window moves.
 //!
 //! Both ends of a line are middles of cells, so the order in which it crosses the lines of the grid
-//! is that of fractions of small integers. It is the order of a [`Ray`](crate::cast::Ray) between
-//! the two middles.
+//! is an order of fractions of small integers. It is the order of a [`Ray`](crate::cast::Ray)
+//! between the two middles.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ use crate::sort;
 pub struct Lamp {
     /// The light that it adds in its own cell.
     pub light: Light,
-    /// How far its light reaches.
+    /// The distance that its light reaches.
     pub reach: Reach,
 }
 
@@ -55,7 +55,7 @@ impl Reach {
         self.0
     }
 
-    /// The number of cells that a lamp with this reach lights where nothing stands around it.
+    /// The number of cells that a lamp with this reach lights if nothing stands around it.
     pub(crate) fn cell_count(self) -> u64 {
         let most = self.0 as i64;
         let around = (-most..=most).flat_map(|row| (-most..=most).map(move |column| (column, row)));
@@ -86,10 +86,10 @@ impl Lamp {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Lamplight {
     width: usize,
-    /// The sums of what lamps add, in 256ths, row by row from the north; empty if no lamp adds
-    /// anything.
+    /// The sums of the light of all lamps, in 256ths, row by row from the north; empty if no lamp
+    /// adds anything.
     sums: Vec<u32>,
-    /// Whether any cell is not fully lit without lamps.
+    /// `true` if any cell is not fully lit without lamps.
     is_needed: bool,
     /// The lamps that move, and the cells that they are in.
     moving: Vec<(Cell, Lamp)>,
@@ -97,7 +97,7 @@ pub(crate) struct Lamplight {
 }
 
 impl Lamplight {
-    /// Whether no lamp adds anything.
+    /// Returns whether no lamp adds any light.
     pub(crate) fn is_dark(&self) -> bool {
         self.sums.is_empty()
     }
@@ -118,7 +118,7 @@ impl Lamplight {
         self.sums.resize(width * height, 0);
     }
 
-    /// Adds `light` in `cell`, or takes away what was added.
+    /// Adds `light` in `cell`, or takes away light that was added before.
     fn change(&mut self, cell: Cell, light: Light, change: Change) {
         let place = self.place(cell);
         if let Some(sum) = self.sums.get_mut(place) {
@@ -134,7 +134,7 @@ impl Lamplight {
     }
 }
 
-/// The cells that a kind of lamp lights where nothing stands around it.
+/// The cells that a kind of lamp lights if nothing stands around it.
 #[derive(Debug)]
 struct Glow {
     /// The light that it adds in its own cell.
@@ -143,11 +143,12 @@ struct Glow {
     branches: Vec<Branch>,
 }
 
-/// A cell that light passes, coming from the cell before it in the tree. A lamp of the longest reach
-/// has 25,000 of them, so they are kept small.
+/// A cell that light passes through, coming from the cell before it in the tree. A lamp of the
+/// longest reach has 25,000 of them, so they are kept small.
 #[derive(Debug)]
 struct Branch {
-    /// Columns to the east of the lamp, and rows to the south, each at most the longest reach.
+    /// The offset from the lamp in columns to the east and rows to the south, each at most the
+    /// longest reach.
     offset: (i8, i8),
     /// The light that the lamp adds there; none if its light only passes through.
     light: Light,
@@ -180,8 +181,8 @@ impl Glow {
         Self { light: lamp.light_at(0.0), branches }
     }
 
-    /// Calls `add` for each cell of `grid` that a lamp at `place` lights, with what it adds there.
-    /// Light passes through tiles for which `is_clear` is true.
+    /// Calls `add` for each cell of `grid` that a lamp at `place` lights, with the light that it
+    /// adds there. Light passes through tiles for which `is_clear` is true.
     pub(crate) fn shine(
         &self,
         grid: &Grid,
@@ -213,7 +214,8 @@ fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
 
 type Offset = (i64, i64);
 
-/// The cells on the line from a lamp to a cell, without the first and with the last one.
+/// The cells on the line from a lamp to a cell, excluding the lamp's own and including the last
+/// one.
 struct Line {
     cells: Vec<Offset>,
     light: Light,
@@ -231,7 +233,7 @@ fn lines(lamp: &Lamp) -> Vec<Line> {
     ends.collect()
 }
 
-/// The cells that a line from the middle of a cell to that of the cell at `end` enters. Where it
+/// The cells that a line from the middle of a cell to the middle of the cell at `end` enters. If it
 /// meets a column line and a row line at once, it crosses the row line first.
 fn cells_to(end: Offset) -> Vec<Offset> {
     let (columns, rows) = (end.0.abs(), end.1.abs());
@@ -264,15 +266,15 @@ enum Carrier {
     Mover,
 }
 
-/// The glow of each kind of lamp that has been needed. Worlds that differ in it are equal.
+/// The glow of each kind of lamp that has been needed. It does not affect the equality of worlds.
 #[derive(Clone, Debug, Default)]
 struct Glows {
     list: Vec<(Lamp, Arc<Glow>)>,
 }
 
 impl World {
-    /// Replaces all lamps that move, each in a cell. Only light of lamps is computed that differ
-    /// from those set before at the same index. Returns whether any does.
+    /// Replaces all lamps that move, each in a cell. Computes only the light of lamps that differ
+    /// from the previous lamp at the same index. Returns whether any lamp differs.
     pub(crate) fn set_moving_lamps(
         &mut self,
         lamps: impl Iterator<Item = (Cell, Lamp)> + Clone,
@@ -307,8 +309,8 @@ impl World {
         true
     }
 
-    /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out: then they give no light
-    /// and show the last frame of their sprite.
+    /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out. A flame that is out gives
+    /// no light and shows the last frame of its sprite.
     pub(crate) fn set_flame(&mut self, cell: Cell, burns: bool) {
         let change = if burns { Change::Add } else { Change::TakeAway };
         let is_it = |thing: &&mut Thing| thing.kind == ThingKind::Flame && thing.burns() != burns;
@@ -333,8 +335,8 @@ impl World {
         }
     }
 
-    /// Sets the tile of `cell` to a state of the door or of the moving tile that is there. Lamplight passes
-    /// it from now on, or no longer does.
+    /// Sets the tile of `cell` to a state of the door or the moving tile there. From now on,
+    /// lamplight passes through the cell or stops at it accordingly.
     pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
         let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
         let before = self.grid.tile_in(cell).map(kind);
@@ -357,7 +359,7 @@ impl World {
         }
     }
 
-    /// Computes all lamplight anew, without lamps that move.
+    /// Computes all lamplight again, without lamps that move.
     pub(crate) fn light_up(&mut self) {
         let is_dim = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let is_needed = self.tiles.iter().any(is_dim);
@@ -388,7 +390,7 @@ impl World {
         self.light_varies = !self.lamplight.is_dark() || self.tiles_differ_in_light();
     }
 
-    /// Adds or takes away the light of all lamps of a carrier that may shine through `cell`.
+    /// Adds or takes away the light of all lamps of a carrier whose light may pass through `cell`.
     fn shine_around(&mut self, cell: Cell, carrier: Carrier, change: Change) {
         let Self { grid, tiles, things, sprites, lamplight, .. } = self;
         let is_near = |&(place, lamp): &(Cell, Lamp)| {
@@ -427,7 +429,7 @@ impl World {
         }
     }
 
-    /// Whether cells may differ in light without lamps.
+    /// Returns whether cells may differ in light without lamps.
     fn tiles_differ_in_light(&self) -> bool {
         // A wall without a light is as bright as the floor before it.
         let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
@@ -439,7 +441,7 @@ impl World {
 }
 
 impl Thing {
-    /// Whether it gives light, if its sprite is a lamp.
+    /// Returns whether it gives light, if its sprite is a lamp.
     fn burns(&self) -> bool {
         self.kind != ThingKind::Flame || self.frame.is_none()
     }

@@ -1,8 +1,8 @@
 //! Light, fog and sky, and the light along the face of a cell.
 //!
 //! Each cell has one light. The middle of a face has the light of the cell in front of it. Towards
-//! both ends the light changes linearly into that of the next cell along the face, so that
-//! adjoining faces agree on the mean and no bands show. Light passes only between cells of open
+//! both ends the light changes linearly into the light of the next cell along the face. Adjoining
+//! faces therefore agree on the mean, and no bands show. Light passes only between cells of open
 //! floor, masks and glass that have a common open height: not through walls or closed doors.
 //!
 //! Rejected: interpolation between corners, each with the mean of its four cells. The light would
@@ -44,7 +44,7 @@ impl Light {
         Self((self.0 + other.0).min(Self::FULL.0))
     }
 
-    /// A light between this one and `other`: this one for a `share` of 0, `other` for 1.
+    /// A light between this one and `other`: this one if `share` is 0, `other` if it is 1.
     #[must_use]
     pub(crate) fn towards(self, other: Self, share: f64) -> Self {
         let (from, to) = (f64::from(self.0), f64::from(other.0));
@@ -72,8 +72,8 @@ pub struct Fog {
 }
 
 impl Fog {
-    /// Fog that hides half of what is `distance` cells away. `None` unless `distance` is finite and
-    /// above 0.
+    /// Fog that hides half of an object `distance` cells away. `None` unless `distance` is finite
+    /// and above 0.
     pub fn new(color: Rgb, distance: f64) -> Option<Self> {
         (distance > 0.0 && distance.is_finite()).then_some(Self { color, distance })
     }
@@ -84,7 +84,8 @@ impl Fog {
         1.0 / (1.0 + relative * relative)
     }
 
-    /// A distance up to which the share is at least this one, from 0 to 1. Little beyond it, it is less.
+    /// A distance up to which the clearness is at least `clearness`, a number from 0 to 1. Slightly
+    /// beyond it, the clearness is less.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap needs it"))]
     pub(crate) fn clear_to(&self, clearness: f64) -> f64 {
         /// Less than 1, by more than rounding.
@@ -94,13 +95,13 @@ impl Fog {
     }
 }
 
-/// The sky: what shows where there is no ceiling, and outside the map.
+/// The sky, which is visible above cells without a ceiling and outside the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sky {
     /// From one colour overhead to another at the horizon.
     Gradient(SkyGradient),
-    /// A texture on the inside of a cylinder around the camera. Its left edge is east, its bottom
-    /// is the horizon, and above it the colours of its top edge continue. It turns with the
+    /// A texture on the inside of a cylinder around the camera. Its left edge is east and its
+    /// bottom is the horizon. Above it, the colours of its top edge continue. It turns with the
     /// heading; its texels are square.
     Panorama(TextureId),
 }
@@ -165,7 +166,7 @@ impl World {
         let Some(tile) = self.tile_in(before).filter(|_| self.light_varies) else {
             return FaceLight::even(middle);
         };
-        // To the right for an observer who looks from `before` to `cell`, since y grows to the
+        // The right side for an observer who looks from `before` to `cell`, because y grows to the
         // south.
         let ahead = step(before, cell);
         let right = (-ahead.1, ahead.0);
@@ -179,15 +180,15 @@ impl World {
     }
 }
 
-/// Whether light passes between two neighbouring tiles: both let it through, and the gap above the
-/// floor of one overlaps one of the other's.
+/// Returns whether light passes between two neighbouring tiles: both let it through, and the lowest
+/// gap of one overlaps a gap of the other.
 fn is_lit_from(one: &Tile, other: &Tile) -> bool {
     let is_clear =
         |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_));
     is_clear(one) && is_clear(other) && (is_open_to(one, other) || is_open_to(other, one))
 }
 
-/// Whether the lowest gap of `one` overlaps any gap of `other`.
+/// Returns whether the lowest gap of `one` overlaps any gap of `other`.
 fn is_open_to(one: &Tile, other: &Tile) -> bool {
     let lowest = one.gaps().next();
     lowest.is_some_and(|lowest| {
@@ -231,7 +232,7 @@ mod tests {
         Cell { column, row }
     }
 
-    /// Floor with several lights, and tiles that let light through or do not.
+    /// A floor with several lights, and tiles that let light through or block it.
     fn world(cells: &[char]) -> World {
         let rows: Vec<String> =
             cells.chunks(SIDE as usize).map(|row| row.iter().collect()).collect();
@@ -246,7 +247,7 @@ mod tests {
 
     proptest! {
         /// Two faces that meet on one line have equal lights at the common end, and no face is
-        /// brighter or darker than the cells before it and beside that.
+        /// brighter or darker than the cell in front of it and the neighbours of that cell.
         #[test]
         fn faces_that_meet_on_one_line_have_one_light_there(
             cells in prop::collection::vec(prop::sample::select(&['.', 'a', 'b', 'h', '#', 'g', 'o'][..]), 25),

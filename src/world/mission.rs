@@ -1,10 +1,10 @@
 //! The mission: the parts of a level that only a game uses, such as guards, switches and tiles that move.
 //!
 //! A moving tile has a list of states, which are tiles themselves. A game replaces the tile of a
-//! cell by the next state, so that drawing, collision and light need not know that it moves. Rejected:
-//! a height for each cell, which every stage would read in its innermost loop.
+//! cell by the next state, so drawing, collision and light need not know that it moves. Rejected: a
+//! height for each cell. Every stage would read it in its innermost loop.
 //!
-//! A guard post is data of the map. The guard itself, who moves, is part of the game.
+//! A guard post is data of the map. The guard, who moves, is part of the game.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use super::{Cell, Heading, ThingKind, TileId, World};
 pub(crate) struct Mission {
     /// The time in which a good player finishes, in seconds.
     pub(crate) par: Option<u32>,
-    /// The treasure without which exits do not let anybody out.
+    /// The worth of the treasure that exits require.
     pub(crate) treasure_needed: u32,
     /// The texts of notes.
     pub(crate) notes: Vec<String>,
@@ -27,7 +27,7 @@ pub(crate) struct Mission {
     pub(crate) guards: Vec<GuardPost>,
 }
 
-/// A switch: an index into the world's list of their names. Levers and plates set it.
+/// A switch, as an index into the world's list of switch names. Levers and plates set it.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
 )]
@@ -36,8 +36,8 @@ pub struct SwitchId(pub u8);
 /// A tile whose cells change their height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingTile {
-    /// The tiles that a cell shows in turn, from rest to the end; there are at least two. The first
-    /// one is drawn in the map, and is among the states of no other moving tile.
+    /// The tiles that a cell shows in turn, from rest to the end; there are at least two. The map
+    /// draws the first state, which belongs to no other moving tile.
     pub states: Vec<TileId>,
     /// The cause of its movement.
     pub driver: Driver,
@@ -46,7 +46,7 @@ pub struct MovingTile {
 /// A cause of a tile's movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driver {
-    /// A switch: all its cells move to the end while it is on, and back while it is off.
+    /// A switch: all cells of the tile move to the end while it is on, and back while it is off.
     Switch(SwitchId),
     /// A hand: a cell moves to the end, for good, after the player has opened it. It looks like a
     /// wall, and counts as a secret.
@@ -58,7 +58,8 @@ pub enum Driver {
 /// The effect of a tile on anyone who stands on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TileEffect {
-    /// Cold water: it slows, splashes, puts out lamps, and hurts anyone who stays.
+    /// Cold water: it slows anyone who stands in it, splashes, puts out lamps, and hurts anyone who
+    /// stays.
     Water,
     /// A plate: its switch is on while somebody stands on it.
     Plate(SwitchId),
@@ -73,7 +74,7 @@ pub struct GuardPost {
     pub cell: Cell,
     /// The direction in which the guard looks at first.
     pub heading: Heading,
-    /// The behaviour of the guard while nothing disturbs them.
+    /// The behaviour of the guard when undisturbed.
     pub duty: Duty,
     /// The easiest difficulty at which the guard is there.
     pub from: Difficulty,
@@ -84,7 +85,7 @@ pub struct GuardPost {
 pub enum GuardKind {
     /// Slow and armoured; hits hard.
     Warden,
-    /// Blind; hears well.
+    /// Blind, with good hearing.
     Listener,
     /// Carries a lamp, and calls the others.
     Lantern,
@@ -99,7 +100,7 @@ impl GuardKind {
     pub const ALL: [Self; 5] =
         [Self::Warden, Self::Listener, Self::Lantern, Self::Hound, Self::Archer];
 
-    /// The name in maps, which is also that of the built-in sprite.
+    /// The name in maps, and of the built-in sprite.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Warden => "warden",
@@ -110,7 +111,8 @@ impl GuardKind {
         }
     }
 
-    /// The height of the top of the head, in cells. A guard fits where there is as much room.
+    /// The height of the top of the head, in cells. A guard fits into a gap of at least that
+    /// height.
     pub const fn height(self) -> f64 {
         match self {
             Self::Warden => 0.9,
@@ -122,7 +124,7 @@ impl GuardKind {
     }
 }
 
-/// The behaviour of a guard while nothing disturbs them.
+/// The behaviour of a guard when undisturbed.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Duty {
     /// Stands at the post and looks around.
@@ -136,19 +138,19 @@ pub enum Duty {
     Wander(u8),
 }
 
-/// How hard a game is. The rules differ, not numbers only.
+/// The difficulty of a game. Levels of difficulty differ in their rules, not only in numbers.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
 )]
 pub enum Difficulty {
-    /// A player without health goes back to the last checkpoint and keeps what they have. Guards
-    /// do not hear walking, and tell nobody what they see.
+    /// A player without health goes back to the last checkpoint and keeps all possessions. Guards
+    /// do not hear walking, and alert no other guards.
     Easy,
-    /// Guards who see the player call the others.
+    /// A guard who sees the player calls the others.
     #[default]
     Normal,
-    /// As [`Normal`](Difficulty::Normal), without checkpoints: and guards who were alarmed stay
-    /// wary to the end.
+    /// The same as [`Normal`](Difficulty::Normal), but without checkpoints. Guards who were alarmed
+    /// stay wary to the end.
     Hard,
 }
 
@@ -165,15 +167,15 @@ impl Difficulty {
         }
     }
 
-    /// The difficulty of that name.
+    /// The difficulty with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|difficulty| difficulty.name() == name)
     }
 }
 
 impl World {
-    /// Whether there is anything but walls, doors, keys and exits: guards, mechanisms, hazards or
-    /// finds. A level without them is only walked through.
+    /// Returns whether the level contains more than walls, doors, keys and exits: guards,
+    /// mechanisms, hazards or items. A level without any of these is only walked through.
     pub fn is_mission(&self) -> bool {
         let Mission { par, treasure_needed, moving_tiles, guards, switches, .. } = &self.mission;
         let is_plain =
@@ -199,7 +201,7 @@ impl World {
         self
     }
 
-    /// Whether the map has an exit.
+    /// Returns whether the map has an exit.
     pub fn has_exit(&self) -> bool {
         self.things().iter().any(|thing| thing.kind == ThingKind::Exit)
     }
@@ -219,12 +221,12 @@ impl World {
         self
     }
 
-    /// The time in which a good player finishes, in seconds, if the map gives one.
+    /// The time in which a good player finishes, in seconds, if the map specifies it.
     pub fn par(&self) -> Option<u32> {
         self.mission.par
     }
 
-    /// The treasure without which exits do not let anybody out; 0 if they always do.
+    /// The worth of the treasure that exits require; 0 if they require none.
     pub fn treasure_needed(&self) -> u32 {
         self.mission.treasure_needed
     }

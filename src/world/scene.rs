@@ -20,7 +20,7 @@ pub const EYE_CLEARANCE: f64 = 0.25;
 pub struct Scene {
     /// The level's name; empty if the map has none.
     pub title: String,
-    /// The bodies in the order of the map. Where a ray hits two at once, the first is visible.
+    /// The bodies in the order of the map. If a ray hits two at once, the first is visible.
     pub bodies: Vec<Body>,
     /// The directional light.
     pub sun: Sun,
@@ -132,8 +132,8 @@ impl Plane {
     pub fn new(point: DVec3, normal: DVec3) -> Option<Self> {
         let largest = normal.abs().max_element();
         let has_direction = normal.is_finite() && largest > 0.0;
-        // Scaled first, because the squares of very large and very small doubles are not
-        // representable.
+        // The normal is scaled first, because the squares of very large and very small doubles are
+        // not representable.
         let fits = is_near(point) && has_direction;
         fits.then(|| Self { point, normal: (normal / largest).normalize() })
     }
@@ -191,8 +191,8 @@ impl Shape {
         }
     }
 
-    /// Whether the boxes around both shapes overlap: no tree then separates them. Planes, which have no
-    /// boxes, overlap each other.
+    /// Returns whether the boxes around both shapes overlap, in which case no tree separates them.
+    /// Planes have no boxes, and overlap each other.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         match (self.bounds(), other.bounds()) {
             (Some([low, high]), Some([other_low, other_high])) => {
@@ -266,9 +266,9 @@ impl Sun {
         self.toward
     }
 
-    /// The brightness of a surface with this unit normal, from the ambient fraction to 1. It is
-    /// Lambert's cosine law ("Photometria", 1760): proportional to the cosine of the angle to the
-    /// sun.
+    /// The brightness of a surface with this unit normal, from the ambient fraction to 1. By
+    /// Lambert's cosine law ("Photometria", 1760), it is proportional to the cosine of the angle to
+    /// the sun.
     pub fn brightness(&self, normal: DVec3) -> f64 {
         let Fraction(ambient) = self.ambient;
         ambient + (1.0 - ambient) * self.toward.dot(normal).clamp(0.0, 1.0)
@@ -323,7 +323,7 @@ impl Elevation {
     }
 }
 
-/// Whether a position is within the limits of bodies and cameras.
+/// Returns whether a position is within the limits of bodies and cameras.
 pub(crate) fn is_near(point: DVec3) -> bool {
     point.is_finite() && point.abs().max_element() <= FARTHEST
 }

@@ -14,22 +14,22 @@ use serde::{Deserialize, Serialize};
 
 use super::{Heading, Heights, Lamp, Texture};
 
-/// The pictures of a thing, and their place in the cell.
+/// The pictures of a thing, and their position in the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sprite {
     /// Frame by frame, and within each frame facing by facing.
     pictures: Arc<[Texture]>,
     facings: Facings,
     frame_time: FrameTime,
-    /// The number of frames that time goes through: the first ones.
+    /// The number of frames in the animation, counted from the first. A game selects the others.
     animated: usize,
     /// The direction of its front.
     pub heading: Heading,
-    /// Where it is fixed.
+    /// The surface that it is fixed to.
     pub anchor: Anchor,
     /// The height, in cells.
     pub height: SpriteHeight,
-    /// Whether it stops players.
+    /// `true` if it stops players.
     pub blocks: bool,
     /// Its light, if it is a lamp.
     pub lamp: Option<Lamp>,
@@ -47,7 +47,7 @@ pub enum Facings {
     One,
     /// Front, right, back and left.
     Four,
-    /// Those, and the sides between them.
+    /// The four sides, and the sides between them.
     Eight,
 }
 
@@ -61,13 +61,13 @@ impl Facings {
         }
     }
 
-    /// That number of facings. `None` for anything but 1, 4 and 8.
+    /// The variant with `count` facings. `None` unless `count` is 1, 4 or 8.
     pub fn new(count: u32) -> Option<Self> {
         [Self::One, Self::Four, Self::Eight].into_iter().find(|facings| facings.count() == count)
     }
 }
 
-/// Where a sprite is fixed.
+/// The surface that a sprite is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Anchor {
     /// On the floor.
@@ -96,7 +96,7 @@ impl SpriteHeight {
     }
 }
 
-/// How long a frame of an animation shows, in seconds.
+/// The time for which a frame of an animation shows, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTime(f64);
 
@@ -116,7 +116,7 @@ impl Default for FrameTime {
 }
 
 impl Sprite {
-    /// The height of its lower edge in a cell with those heights.
+    /// The height of its lower edge in a cell with these heights.
     pub fn base(&self, heights: Heights) -> f64 {
         match self.anchor {
             Anchor::Floor => heights.floor(),
@@ -147,30 +147,30 @@ impl Sprite {
         Self { frame_time, ..self }
     }
 
-    /// The sprite, in which time goes through the first `frames` frames only. A game selects the
-    /// others. A count of 0 is that of one frame, and a count above that of all frames is all.
+    /// The sprite with only its first `frames` frames in the animation. A game selects the others.
+    /// The count is clamped to at least 1 and at most the number of all frames.
     #[must_use]
     pub fn with_animated_frames(self, frames: usize) -> Self {
         Self { animated: frames.clamp(1, self.frames()), ..self }
     }
 
-    /// The number of all frames, of those too that only a game selects.
+    /// The number of all frames, including frames that only a game selects.
     pub fn frames(&self) -> usize {
         self.pictures.len() / self.facings.count() as usize
     }
 
-    /// The number of frames that time goes through, from the first one on; 1 for a sprite that is
-    /// not animated. The frame after them, if there is one, is that of a lamp that is out.
+    /// The number of frames in the animation, counted from the first; 1 for a sprite that is not
+    /// animated. The frame after them, if there is one, shows a lamp that is out.
     pub fn animated_frames(&self) -> usize {
         self.animated
     }
 
-    /// The last frame: that of a lamp that is out.
+    /// The last frame, which shows a lamp that is out.
     pub(crate) fn last_frame(&self) -> u8 {
         (self.frames() - 1).min(usize::from(u8::MAX)) as u8
     }
 
-    /// The width in cells, by the proportions of its picture.
+    /// The width in cells, in proportion to its picture.
     pub fn width(&self) -> f64 {
         let picture = &self.pictures[0];
         self.height.cells() * f64::from(picture.width()) / f64::from(picture.height())
@@ -182,12 +182,12 @@ impl Sprite {
     }
 
     /// The picture of a frame, for a viewer in the direction `to_viewer`, if the front faces
-    /// `heading`. The last frame, if there is no such frame.
+    /// `heading`. If there is no such frame, returns the picture of the last one.
     pub fn picture_of(&self, frame: u8, heading: Heading, to_viewer: DVec2) -> &Texture {
         &self.pictures[self.picture_index(usize::from(frame), heading, to_viewer)]
     }
 
-    /// The index of that picture.
+    /// The index of the picture that [`Sprite::picture_of`] returns.
     pub(crate) fn picture_index(&self, frame: usize, heading: Heading, to_viewer: DVec2) -> usize {
         let frame = frame.min(self.frames() - 1);
         frame * self.facings.count() as usize + self.facing(heading, to_viewer)
@@ -203,7 +203,7 @@ impl Sprite {
         &self.pictures
     }
 
-    /// The time at which the picture next changes after `seconds`; `None` if it never does.
+    /// The time of the first change of the picture after `seconds`; `None` if it never changes.
     pub fn next_change(&self, seconds: f64) -> Option<f64> {
         let frame = (seconds.max(0.0) / self.frame_time.0).floor();
         (self.animated > 1).then_some((frame + 1.0) * self.frame_time.0)

@@ -1,7 +1,8 @@
-//! The validity of worlds: an oracle, which builds with debug assertions apply to every world that is made.
+//! The validity of worlds: an oracle, applied to every world that a build with debug assertions
+//! makes.
 //!
-//! The map reader verifies the same and reports what is wrong. Here, errors of the reader and of the
-//! generator are found where they are made.
+//! The map reader verifies the same properties and reports faults. Here, errors of the reader and
+//! of the generator are found at their origin.
 
 use super::{
     Ceiling, Cell, Covering, Door, Driver, Duty, GuardPost, Mission, MovingTile, Paint, Sky,
@@ -9,7 +10,7 @@ use super::{
 };
 
 impl World {
-    /// Whether the parts fit together as [`World::from_parts`] says.
+    /// Returns whether the parts fit together as [`World::from_parts`] requires.
     pub(crate) fn fits_together(&self) -> bool {
         let known = |paint: Paint| match paint {
             Paint::Color(_) => true,
@@ -64,7 +65,8 @@ impl World {
             && self.mission_fits(open)
     }
 
-    /// Whether the mission refers to what there is; `open` says which cells are open floor.
+    /// Returns whether everything that the mission refers to exists. `open` says which cells are
+    /// open floor.
     fn mission_fits(&self, open: impl Fn(Cell) -> bool) -> bool {
         let Mission { notes, switches, moving_tiles, guards, .. } = &self.mission;
         let known = |switch: SwitchId| usize::from(switch.0) < switches.len();

@@ -2,13 +2,13 @@
 //!
 //! Texels are stored column by column, from top to bottom, because walls are drawn column by column
 //! and then read contiguous memory. A texture has mip levels (Williams, "Pyramidal Parametrics",
-//! 1983), each half the size of the one before: distant surfaces use a level whose texels are about
-//! as large as pixels.
+//! 1983), each half the size of the level before: distant surfaces use a level whose texels are
+//! about as large as pixels.
 //!
-//! A built-in texture is decoded when a texel is first read, and the mip levels are made when one of
-//! them is. So a level begins without the textures that it does not show, and rays without any.
-//! Rejected: making all of them with the world, which took nine tenths of the instructions of a first
-//! frame.
+//! A built-in texture is decoded when a texel is first read, and the mip levels are made when one
+//! of them is first read. So a level starts without the textures that it does not show, and rays
+//! without any. Rejected: making all of them with the world. That took nine tenths of the
+//! instructions of a first frame.
 
 mod area_levels;
 pub mod builtin;
@@ -36,7 +36,7 @@ pub struct Texture {
     source: Source,
     /// The mip levels after the picture itself, down to one texel.
     smaller: OnceLock<Vec<MipLevel>>,
-    /// Its means over boxes; most textures are never asked for them.
+    /// Its means over boxes, which most textures never need.
     means: OnceLock<Box<AreaLevels>>,
 }
 
@@ -63,8 +63,8 @@ impl Texture {
         Self::new(width, height, has_alpha, Source::Made(picture))
     }
 
-    /// A texture as [`Texture::from_fn_with_alpha`], whose function of texels is asked for when one is first
-    /// read. `has_alpha` says whether any texel is not opaque.
+    /// A texture as [`Texture::from_fn_with_alpha`]. Its function of texels is requested when a
+    /// texel is first read. `has_alpha` says whether any texel is not opaque.
     pub(crate) fn on_demand<T: FnMut(u32, u32) -> (Rgb, u8)>(
         width: NonZeroU32,
         height: NonZeroU32,
@@ -97,7 +97,7 @@ impl Texture {
         self.level(0).column(u)
     }
 
-    /// Whether any texel is not opaque.
+    /// Returns whether any texel is not opaque.
     pub fn has_alpha(&self) -> bool {
         self.has_alpha
     }
@@ -111,7 +111,7 @@ impl Texture {
         self.level(0).texel(x, y)
     }
 
-    /// The part from `(left, top)` on, as a texture.
+    /// The part with its top left corner at `(left, top)`, as a texture.
     ///
     /// # Panics
     /// If the part reaches beyond an edge.
@@ -125,7 +125,7 @@ impl Texture {
         self.area
     }
 
-    /// The mip level after `lod` halvings, at most the one with a single texel.
+    /// The mip level after `lod` halvings, at most the level with a single texel.
     #[inline]
     pub fn level(&self, lod: usize) -> &MipLevel {
         let picture = &self.source.picture().level;
@@ -146,12 +146,12 @@ impl Texture {
         self.means.get_or_init(|| Box::new(AreaLevels::new(picture))).level(picture, lod, repeat)
     }
 
-    /// The height in texels of that mip level, which is not made for it.
+    /// The height of the mip level `lod` in texels, computed without making the level.
     pub(crate) fn height_of_level(&self, lod: usize) -> u32 {
         self.height.get().checked_shr(lod as u32).unwrap_or(0).max(1)
     }
 
-    /// The number of mip levels made so far, of which the picture itself is the first.
+    /// The number of mip levels that have been made, counting the picture itself.
     pub fn levels_made(&self) -> usize {
         usize::from(self.source.is_made()) + self.smaller.get().map_or(0, Vec::len)
     }
@@ -162,7 +162,7 @@ impl Texture {
     }
 }
 
-/// Textures are equal if all their texels are.
+/// Textures are equal if all of their texels are equal.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
         self.source.is_same(&other.source) || self.level(0) == other.level(0)
@@ -181,25 +181,25 @@ impl fmt::Debug for Texture {
     }
 }
 
-/// The picture itself, and what is computed from all of it.
+/// The picture itself, and its mean colour.
 #[derive(Clone)]
 struct Picture {
     level: MipLevel,
     mean: Rgb,
 }
 
-/// Where a texture has its picture from.
+/// The source of a texture's picture.
 #[derive(Clone)]
 enum Source {
     Made(Picture),
     OnDemand { paint: Arc<Paint>, made: OnceLock<Picture> },
 }
 
-/// The function that makes a picture: the same one, whenever it is called.
+/// The function that makes a picture. It returns the same picture at every call.
 type Paint = dyn Fn() -> Picture + Send + Sync;
 
 impl Picture {
-    /// The picture with the texel `texel(x, y)` at `(x, y)`, and its alpha.
+    /// The picture with the texel `texel(x, y)`, a colour and an alpha, at `(x, y)`.
     fn from_fn(
         width: NonZeroU32,
         height: NonZeroU32,
@@ -238,7 +238,7 @@ impl Source {
         }
     }
 
-    /// Whether both are painted by the same function.
+    /// Returns whether the same function paints both.
     fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::OnDemand { paint: one, .. }, Self::OnDemand { paint: other, .. }) => {

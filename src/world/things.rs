@@ -1,20 +1,20 @@
 //! Things, which stand in the cells, and figures, which move.
 //!
-//! Things are sorted by row and column, so that the things in a range of cells are one slice. The
-//! start of each row is known; within it the slice is found by binary search. A frame looks at the
-//! things in the cells that it shows, and others cost nothing. Rejected: a list for each cell. Most
-//! cells are empty, and a map has millions.
+//! Things are sorted by row and column, so the things in a range of cells are one slice. The start
+//! of each row is stored; within the row, a binary search finds the slice. A frame looks at the
+//! things in the cells that it shows, and other things cost nothing. Rejected: a list for each
+//! cell. Most cells are empty, and a map has millions.
 //!
 //! A figure is at any place, and its owner sets its height, heading and frame: a guard, a thrown
-//! stone, a cloud of smoke. A game replaces all figures at once after each step, so that none can
-//! be left behind. Rules:
+//! stone, a cloud of smoke. A game replaces all figures at once after each step, so none can be
+//! left behind. Rules:
 //!
-//! - A frame considers every figure. There are tens, and each costs one projection. Rejected: sorting
-//!   them by cell, because they change their cells all the time.
-//! - A figure has the light of the cell that it is in. As with a thing, no part of it is drawn behind
-//!   the edge of the map.
-//! - A figure never changes with time, and causes no
-//!   [next change](crate::render::Renderer::next_change).
+//! - A frame considers every figure. There are tens, and each costs one projection. Rejected:
+//!   sorting them by cell. They change their cells all the time.
+//! - A figure has the light of the cell that it is in. As with a thing, no part of it is drawn
+//!   behind the edge of the map.
+//! - A figure never changes with time, and causes no [next
+//!   change](crate::render::Renderer::next_change).
 
 use std::ops::Range;
 
@@ -42,23 +42,23 @@ pub struct Thing {
 pub enum ThingKind {
     /// Reaching it finishes the level.
     Exit,
-    /// Reaching it takes it; it opens the doors that need it.
+    /// Reaching it takes it. It opens the doors that need it.
     Key(KeyId),
     /// Decoration.
     Ornament,
-    /// Reaching it takes it; it is worth this much.
+    /// Reaching it takes it. Contains its worth.
     Treasure(u16),
-    /// Reaching it takes it, if the player is hurt; it gives back this much health.
+    /// Reaching it takes it, if the player is hurt. Contains the health that it restores.
     Healing(u8),
-    /// Reaching it takes it; it is this many of a tool that is used up.
+    /// Reaching it takes it. Contains the kind and the number of a tool that is used up.
     Supply(Supply, u8),
     /// Reaching it shows its text.
     Note(NoteId),
-    /// Reaching it makes it the place from which a dead player goes on.
+    /// Reaching it makes it the place from which the player continues after death.
     Checkpoint,
     /// Opening it turns its switch on or off.
     Lever(SwitchId),
-    /// They come out of the floor at intervals, and hurt.
+    /// Spikes, which come out of the floor at intervals and hurt.
     Spikes(Rhythm),
     /// A lamp that the player can put out.
     Flame,
@@ -69,7 +69,7 @@ pub enum ThingKind {
 pub enum Supply {
     /// Thrown, to make a noise elsewhere.
     Pebbles,
-    /// Shot; a guard who is hit is stunned.
+    /// Shot; stuns a guard.
     Darts,
     /// Thrown; makes smoke.
     Flasks,
@@ -89,16 +89,16 @@ impl Supply {
     }
 }
 
-/// A text that is found: an index into the world's list of notes.
+/// A text to be found, as an index into the world's list of notes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NoteId(pub u16);
 
 /// The times at which spikes come out: once in each period, in steps of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Rhythm {
-    /// The steps from one time to the next; at least 60.
+    /// The number of steps from one time to the next; at least 60.
     pub period: u16,
-    /// The steps before the first time; below the period.
+    /// The number of steps before the first time; below the period.
     pub delay: u16,
 }
 
@@ -119,7 +119,8 @@ impl Rhythm {
 /// A sprite at any place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// Its sprite, among those of the world; a figure with any other is not drawn.
+    /// Its sprite, which must be one of the world's sprites. A figure with any other sprite is not
+    /// drawn.
     pub sprite: SpriteId,
     /// The place of its middle, on the map.
     pub position: DVec2,
@@ -129,13 +130,13 @@ pub struct Figure {
     pub heading: Heading,
     /// The frame of the sprite that it shows; the last one, if there is no such frame.
     pub frame: u8,
-    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
+    /// The share of it that covers the background, from 0 for none to 255 for all. The opacity of
     /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
     pub opacity: u8,
 }
 
 impl Figure {
-    /// The cell that it is in; `None` west or north of the map, where there are no cells.
+    /// The cell that contains it; `None` west or north of the map, where there are no cells.
     pub fn cell(&self) -> Option<Cell> {
         Cell::containing(self.position)
     }
@@ -205,14 +206,14 @@ impl World {
         id
     }
 
-    /// The greatest height that a figure reaches; 0 if there is none.
+    /// The greatest height that a figure reaches; 0 if there is no figure.
     pub(crate) fn top_of_figures(&self) -> f64 {
         let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
         let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
         self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
     }
 
-    /// The light on `figure`; off the map, that of the map's own floor.
+    /// The light on `figure`. Off the map, returns the light of the map's own floor.
     pub(crate) fn light_on(&self, figure: &Figure) -> Light {
         let off_map = self.ground().light.unwrap_or(Light::FULL);
         figure.cell().map_or(off_map, |cell| self.light_in(cell))
@@ -247,7 +248,7 @@ impl Things {
         &self.sorted[self.range(row, first, last)]
     }
 
-    /// The things in `cell`, of which anything but the place may change.
+    /// The things in `cell`. The caller may change anything but their places.
     pub(crate) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
         let range = self.range(cell.row, cell.column, cell.column);
         &mut self.sorted[range]
@@ -272,8 +273,8 @@ impl Things {
         self.find_rows();
     }
 
-    /// Removes the things in `cell` for which `is_gone` is true. Other things are moved, and not looked
-    /// at: a map may have a million.
+    /// Removes the things in `cell` for which `is_gone` is true. Other things are moved without
+    /// being looked at, because a map may have a million.
     fn remove(&mut self, cell: Cell, is_gone: impl Fn(ThingKind) -> bool) {
         let range = self.range(cell.row, cell.column, cell.column);
         let Self { sorted, before_row, treasure } = self;

@@ -2,13 +2,14 @@
 //!
 //! A cell is a solid column with gaps: one between floor and ceiling and one above the roof, or a
 //! single one under the sky or above a low wall. Drawing, walking and falling use the gaps, and
-//! need not know which kind of tile makes them. Rejected: a list of solid blocks for each cell. Floor,
-//! ceiling and roof describe all that the levels of a raycaster need, with at most two gaps.
+//! need not know which kind of tile makes them. Rejected: a list of solid blocks for each cell.
+//! Floor, ceiling and roof, with at most two gaps, describe everything that the levels of a
+//! raycaster need.
 //!
-//! A shape is a wall that does not fill its cell: a round pillar, or a line, which is a thin wall along
-//! an edge or across the middle of the cell, or a diagonal. Each is a curve whose equation is solved as
-//! exactly as the lines of the grid. Rejected: polygons. A curve made of lines shows its corners, and a
-//! level of polygons can no longer be drawn with characters.
+//! A shape is a wall that does not fill its cell: a round pillar or a line. A line is a diagonal or
+//! a thin wall along an edge or across the middle of the cell. Each shape is a curve whose equation
+//! is solved as exactly as the lines of the grid. Rejected: polygons. A curve made of lines shows
+//! its corners, and a level of polygons can no longer be drawn with characters.
 
 use glam::DVec2;
 
@@ -22,21 +23,21 @@ pub struct Tile {
     pub character: char,
     /// The kind of tile.
     pub kind: TileKind,
-    /// The floor: its own, or the map's.
+    /// The floor: the tile's own, or else the map's.
     pub floor: Covering,
-    /// The ceiling: its own, or the map's.
+    /// The ceiling: the tile's own, or else the map's.
     pub ceiling: Ceiling,
     /// For open floor, the light on it and on the walls around it; for a wall, the light on its
-    /// sides. `None` if the map does not say: full light for open floor, and for a wall the light
-    /// of the floor before it.
+    /// sides. `None` if the map does not specify it. Then open floor has full light, and a wall has
+    /// the light of the floor in front of it.
     pub light: Option<Light>,
     /// The heights of its floor, its ceiling and its roof.
     pub heights: Heights,
-    /// The surface of the sides below its floor, seen from a lower floor; of a wall, its sides and
-    /// its top.
+    /// The surface of the sides below its floor, seen from a lower floor. For a wall, the surface
+    /// of its sides and its top.
     pub riser: Paint,
-    /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
-    /// roof.
+    /// The surface of its roof, and of the sides above its ceiling, seen from below a higher
+    /// ceiling.
     pub lintel: Paint,
     /// The effect on anyone who stands on it.
     pub effect: Option<TileEffect>,
@@ -70,18 +71,17 @@ pub enum TileKind {
 pub struct Glass {
     /// The colour of the tint.
     pub color: Rgb,
-    /// How much of the tint shows instead of what is behind, or reflected: from 0 for none to 255
-    /// for all.
+    /// The share of the tint over the background or the reflection, from 0 for none to 255 for all.
     pub opacity: u8,
 }
 
 impl Glass {
-    /// Whether the tint shows nowhere.
+    /// Returns whether the tint is invisible.
     pub(crate) fn is_clear(self) -> bool {
         self.opacity == 0
     }
 
-    /// Whether the tint hides what is behind, or reflected.
+    /// Returns whether the tint hides the background or the reflection.
     pub(crate) fn is_opaque(self) -> bool {
         self.opacity == u8::MAX
     }
@@ -102,11 +102,11 @@ pub struct TextureId(pub u16);
 
 /// The surface of a floor or a ceiling: paints in a pattern, and the scale of the pattern.
 ///
-/// A texture is oriented with its top in the north, and its corner at the corner of the map. A
-/// ceiling has the same texel as a floor below it would have.
+/// The top of a texture points north, and one of its corners is at the corner of the map. A ceiling
+/// has the same texel as a floor below it would have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covering {
-    /// Which paint is where.
+    /// The arrangement of the paints.
     pub pattern: Pattern,
     /// The size of a piece of the pattern.
     pub scale: Scale,
@@ -131,7 +131,7 @@ impl Scale {
     /// One cell.
     pub const ONE: Self = Self(1.0);
 
-    /// A scale of `cells`. `None` unless that is finite and above 0.
+    /// A scale of `cells`. `None` unless `cells` is finite and above 0.
     pub fn new(cells: f64) -> Option<Self> {
         (cells > 0.0 && cells.is_finite()).then_some(Self(cells))
     }
@@ -196,7 +196,7 @@ pub struct Gap {
 impl Heights {
     /// A floor at 0, with ceiling and roof at 1.
     pub const LEVEL: Self = Self { floor: 0.0, ceiling: 1.0, roof: 1.0 };
-    /// The same as a solid wall.
+    /// The same for a solid wall.
     pub const LEVEL_WALL: Self = Self { floor: 1.0, ..Self::LEVEL };
     /// The largest absolute value of a height.
     pub const MAX: f64 = 1e9;
@@ -209,13 +209,13 @@ impl Heights {
         [floor, ceiling, roof].into_iter().all(is_in_range).then_some(heights)
     }
 
-    /// The height of the floor; of a wall, that of its top.
+    /// The height of the floor, or of the top of a wall.
     pub fn floor(self) -> f64 {
         self.floor
     }
 
-    /// The height of the ceiling, or under the sky where it would be. Doors, glass and masks reach
-    /// up to it.
+    /// The height of the ceiling. Under the sky, the height where the ceiling would be. Doors,
+    /// glass and masks reach up to it.
     pub const fn ceiling(self) -> f64 {
         self.ceiling
     }
@@ -232,7 +232,7 @@ impl Gap {
         self.top - self.bottom
     }
 
-    /// Whether `height` is in the gap or at one of its ends.
+    /// Returns whether `height` is in the gap or at one of its ends.
     pub fn holds(self, height: f64) -> bool {
         (self.bottom..=self.top).contains(&height)
     }
@@ -254,7 +254,8 @@ impl Tile {
         inside.into_iter().chain([above])
     }
 
-    /// The height above which there is nothing: the top of all that is solid or stands here.
+    /// The height above which the cell is empty, above everything solid and everything that stands
+    /// here.
     pub(crate) fn top(&self) -> f64 {
         let solid = self.gaps().next_back().map_or(f64::INFINITY, |gap| gap.bottom);
         match self.kind {
@@ -277,7 +278,8 @@ impl Tile {
         }
     }
 
-    /// Whether its floor is at 0, and its ceiling, or the wall or shape that it is, a cell above that.
+    /// Returns whether its floor is at 0, and its ceiling, or the wall or shape itself, is one cell
+    /// higher.
     pub(crate) fn has_level_heights(&self) -> bool {
         let level = match self.kind {
             TileKind::Wall(_) | TileKind::Mirror(_) => Heights::LEVEL_WALL,
@@ -290,12 +292,13 @@ impl Tile {
         self.heights == level && is_as_high
     }
 
-    /// Whether it is a mirror that shows an image: an opaque tint hides all of it.
+    /// Returns whether it is a mirror that shows an image. An opaque tint hides the whole image.
     pub(crate) fn reflects(&self) -> bool {
         matches!(self.kind, TileKind::Mirror(tint) if !tint.is_opaque())
     }
 
-    /// Whether a ray through it goes neither above nor below anything, and is not reflected.
+    /// Returns whether every ray through it passes neither above nor below anything, and is not
+    /// reflected.
     pub(crate) fn is_level(&self) -> bool {
         self.has_level_heights() && !self.reflects()
     }
@@ -306,7 +309,8 @@ impl Tile {
 pub struct Shape {
     /// The place in its cell.
     pub outline: Outline,
-    /// The surface. It repeats once along a line, and around a pillar as often as fits best.
+    /// The surface. It repeats once along a line. Around a pillar, it repeats the number of times
+    /// that fits best.
     pub paint: Paint,
     /// The height; `None` if it reaches up to the ceiling.
     pub height: Option<ShapeHeight>,
@@ -369,9 +373,9 @@ pub enum Line {
     EastWest,
     /// Across the middle, from north to south.
     NorthSouth,
-    /// From the north-western corner to the one opposite.
+    /// From the north-western corner to the opposite corner.
     FromNorthWest,
-    /// From the north-eastern corner to the one opposite.
+    /// From the north-eastern corner to the opposite corner.
     FromNorthEast,
 }
 

@@ -1,9 +1,9 @@
-//! A search for a script that wins: best-first over what a player can do next, on copies of the game.
+//! A search for a script that wins: best-first over the player's next moves, on copies of the game.
 //!
-//! A state's estimate is its steps, what it has cost in health and alarms, and the walking that is
-//! left. A move is played only when its estimate is the lowest, so that a level without resistance
-//! takes as many moves as its way has stretches. Search by random play was refused: it finds ways
-//! out of small rooms only.
+//! The estimate of a state consists of its steps, its cost in health and alarms, and the walking
+//! that is left. A move is played only when its estimate is the lowest, so a level without
+//! resistance takes as many moves as its route has stretches. Rejected: a search by random play. It
+//! only finds ways out of small rooms.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -17,9 +17,9 @@ use crate::route::{Errand, Verb};
 use crate::temper::{TEMPERS, Temper};
 use crate::ways::Ways;
 
-/// The steps that an errand is estimated to take beside the walk to it.
+/// The estimated steps of an errand, apart from the walk to it.
 const ERRAND: u64 = 100;
-/// The steps of walking for a cost of ten, one cell.
+/// The steps of walking one cell, which has a cost of ten.
 const CELL: u64 = 20;
 
 /// A move of the player.
@@ -51,12 +51,12 @@ impl Move {
         Self::Retreat,
     ];
 
-    /// Whether it is made by taps on the keys to walk.
+    /// Returns whether the move is made by tapping walking keys.
     fn is_tapped(self) -> bool {
         matches!(self, Self::Walk | Self::Shun | Self::Pause | Self::Wait | Self::WaitLong)
     }
 
-    /// What the move adds to the estimate before it is played.
+    /// The surcharge of the move on the estimate before it is played.
     fn surcharge(self) -> u64 {
         match self {
             Self::Walk => 0,
@@ -76,15 +76,15 @@ impl Move {
 /// A state of the search.
 struct State {
     pilot: Pilot,
-    /// The number of errands done.
+    /// The number of completed errands.
     done: usize,
     toll: u64,
 }
 
-/// The winning game on the way through `errands` from the state of `pilot`.
+/// The winning game that completes `errands`, starting from the state of `pilot`.
 ///
 /// # Errors
-/// How far each temper got, if none wins.
+/// The progress of each temper, if none wins.
 pub(crate) fn search(pilot: &Pilot, errands: &[Errand]) -> Result<Pilot, String> {
     let mut failures = String::new();
     for temper in TEMPERS {
@@ -115,7 +115,7 @@ fn search_with(pilot: Pilot, errands: &[Errand], temper: Temper) -> Result<Pilot
 
 struct Search<'a> {
     errands: &'a [Errand],
-    /// For each errand, the steps that are estimated to be left when it is done.
+    /// For each errand, the estimated steps that are left after it.
     after_errand: Vec<u64>,
     temper: Temper,
     waiting: BinaryHeap<(Reverse<u64>, Reverse<Move>, usize)>,
@@ -124,7 +124,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Adds the moves from a state, unless a similar one is known.
+    /// Adds the moves from a state, unless a similar state is known.
     fn add(&mut self, state: State) {
         let steps = state.pilot.steps();
         let health = u32::from(state.pilot.game.health().points);
@@ -141,7 +141,7 @@ impl Search<'_> {
         }
     }
 
-    /// The state that got farthest.
+    /// Describes the state that made the most progress.
     fn failure(&self) -> String {
         let farthest = self.states.iter().min_by_key(|state| self.left(state));
         let Some(state) = farthest else { return String::new() };
@@ -154,7 +154,7 @@ impl Search<'_> {
         )
     }
 
-    /// The steps that are estimated to be left.
+    /// The estimated steps that are left.
     fn left(&self, state: &State) -> u64 {
         let Some(ways) = self.ways(state, |_| 0) else { return 0 };
         let next = walk(&ways, state.pilot.cell(), self.errands[state.done].cell);
@@ -173,7 +173,7 @@ impl Search<'_> {
         })
     }
 
-    /// The state after a move; `None` if it makes no sense there or kills.
+    /// The state after a move; `None` if the move makes no sense there or kills the player.
     fn after(&self, state: &State, way: Move) -> Option<State> {
         let mut pilot = state.pilot.clone();
         let mut done = state.done;
@@ -203,7 +203,7 @@ impl Search<'_> {
         is_alive.then_some(State { pilot, done, toll })
     }
 
-    /// Runs back towards the last errand from guards who follow; `None` if nobody does.
+    /// Runs back towards the last errand, away from guards who follow. `None` if no guard follows.
     fn retreat(&self, state: &State, pilot: &mut Pilot) -> Option<()> {
         pilot.game.guards().find(|guard| matches!(guard.mood, Mood::Chasing | Mood::Attacking))?;
         let last = self.errands[..state.done].last();
@@ -212,7 +212,7 @@ impl Search<'_> {
         Some(())
     }
 
-    /// Goes on with the next errand: the number of errands that are done by that, 0 or 1.
+    /// Continues with the next errand. Returns the number of errands that this completes, 0 or 1.
     fn errand(
         &self,
         state: &State,
@@ -243,9 +243,9 @@ impl Search<'_> {
     }
 }
 
-/// For each errand, the steps that are estimated to be left when it is done: the walks from each
-/// errand to the next in the first state of the game. The estimate has no step at the end of an
-/// errand, after which the search would turn back to states before it.
+/// For each errand, the estimated steps that are left after it: the walks from each errand to the
+/// next in the first state of the game. The estimate does not jump at the end of an errand.
+/// Otherwise the search would turn back to states before that point.
 fn after_errands(game: &Game, errands: &[Errand]) -> Vec<u64> {
     let walks = errands.windows(2).map(|pair| {
         ERRAND + walk(&Ways::beside(game, pair[1].cell, |_| 0), pair[0].cell, pair[1].cell)
@@ -254,8 +254,8 @@ fn after_errands(game: &Game, errands: &[Errand]) -> Vec<u64> {
     (0..errands.len()).map(|index| walks[index..].iter().sum()).collect()
 }
 
-/// The steps of walking along `ways`; if they lead nowhere yet, those of half as much again as the
-/// straight line.
+/// The steps of walking along `ways`. If they lead nowhere yet, returns the steps of one and a half
+/// times the straight line.
 fn walk(ways: &Ways, from: Cell, to: Cell) -> u64 {
     let cost = match ways.cost(from) {
         u32::MAX => (from.center() - to.center()).length() * 15.0,
@@ -264,13 +264,13 @@ fn walk(ways: &Ways, from: Cell, to: Cell) -> u64 {
     cost as u64 * CELL / 10
 }
 
-/// The guards who are awake and on their feet: position and direction of look.
+/// The guards who are awake and on their feet, with their positions and viewing directions.
 fn feared(game: &Game) -> Vec<(glam::DVec2, glam::DVec2)> {
     let awake = game.guards().filter(|guard| !guard.is_down && guard.mood != Mood::Asleep);
     awake.map(|guard| (guard.position, guard.heading.direction())).collect()
 }
 
-/// The additional cost of a cell near guards or before them.
+/// The additional cost of a cell near guards or in front of them.
 fn dread(feared: &[(glam::DVec2, glam::DVec2)], cell: Cell) -> u32 {
     let cost = |&(position, ahead): &(glam::DVec2, glam::DVec2)| {
         let to = cell.center() - position;
@@ -292,7 +292,7 @@ fn strike(pilot: &mut Pilot) -> Option<()> {
     Some(())
 }
 
-/// Whether there are spikes close to the player.
+/// Returns whether there are spikes close to the player.
 fn is_near_spikes(pilot: &Pilot) -> bool {
     let Cell { column, row } = pilot.cell();
     let world = pilot.game.world();

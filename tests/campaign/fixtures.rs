@@ -11,7 +11,7 @@ use crate::route::{Errand, Verb};
 
 const RULES: Rules = Rules { difficulty: Difficulty::Easy, seed: 0 };
 
-/// The start of a level in an easy game.
+/// Starts a level in an easy game.
 fn begin(name: &str) -> Pilot {
     let level = builtin::LEVELS.iter().find(|level| level.name == name).unwrap();
     Pilot::new(Game::with_rules(world(level), RULES))

@@ -1,4 +1,4 @@
-//! A player without care: walks the shortest way from errand to errand, whatever happens.
+//! A careless player, who walks the shortest way from errand to errand, whatever happens.
 
 use cellcaster::game::{Game, Outcome, Rules};
 use cellcaster::map::builtin::{self, Level};
@@ -9,10 +9,10 @@ use crate::pilot::{Pace, Pilot};
 use crate::route::{Errand, Verb};
 use crate::ways::Ways;
 
-/// The time after which the player has got stuck, in steps.
+/// The time after which the player counts as stuck, in steps.
 const MOST_STEPS: u64 = 60 * 60 * 6;
 
-/// Plays a level without care.
+/// Plays a level carelessly.
 pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
     let mut pilot = Pilot::new(Game::with_rules(world(level), rules));
     for errand in route(level).into_iter().filter(|errand| !errand.is_careful) {
@@ -24,7 +24,7 @@ pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
     pilot
 }
 
-/// Does an errand without care.
+/// Does an errand carelessly.
 pub(crate) fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
     let is_over =
         |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;

@@ -1,4 +1,4 @@
-//! What every level of the campaign has.
+//! Properties of every level of the campaign.
 
 use cellcaster::map;
 use cellcaster::map::builtin::{self, Level};
@@ -6,7 +6,8 @@ use cellcaster::world::{Difficulty, Driver, ThingKind, World};
 
 use crate::route::{self, Errand};
 
-/// The world of a level, from its file: tests need not be compiled again after a change of a map.
+/// The world of a level, read from its file, so that a change of a map does not require compiling
+/// the tests again.
 pub(crate) fn world(level: &Level) -> World {
     map::parse_str(&text(level)).unwrap_or_else(|faults| panic!("{}: {faults}", level.name))
 }

@@ -1,5 +1,5 @@
-//! The campaign: every level is won by a script on every difficulty, and lost by a player who takes
-//! the shortest way without care.
+//! The campaign: on every difficulty, a script wins every level, and a careless player who takes
+//! the shortest way loses it.
 
 mod careful;
 mod fixtures;

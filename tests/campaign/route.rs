@@ -1,32 +1,32 @@
-//! Routes: what a player does in a level, in which order, as text.
+//! Routes: a player's actions in a level, in order, as text.
 //!
-//! A line has a verb and a place. A place is a character that the map draws once, or a column and a
-//! row. `go 12,5` goes there by the shortest way, `straight 12,5` in a straight line and over edges,
-//! `open v` opens or pulls what is there, `hop 20,15` jumps there (`hop 20,15,0.5` onto something of
-//! that height), and `throw 9,9` throws a pebble in that direction. A line that begins with `careful`
-//! is left out by a player without care. A `#` begins a comment.
+//! A line consists of a verb and a place. A place is a character that the map draws once, or a
+//! column and a row. `go 12,5` goes there by the shortest way, and `straight 12,5` in a straight
+//! line and over edges. `open v` opens or pulls the thing there. `hop 20,15` jumps there, and
+//! `hop 20,15,0.5` onto something of that height. `throw 9,9` throws a pebble in that direction. A
+//! careless player skips lines that begin with `careful`. A `#` begins a comment.
 
 use cellcaster::world::Cell;
 
-/// One thing to do.
+/// One action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Errand {
     pub(crate) verb: Verb,
     pub(crate) cell: Cell,
-    /// The height of what stands there, if it is not the floor.
+    /// The height of the thing there, if the target is not the floor.
     pub(crate) height: Option<f64>,
-    /// Whether a player without care leaves it out.
+    /// `true` if a careless player skips it.
     pub(crate) is_careful: bool,
 }
 
-/// What to do with a cell.
+/// An action on a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verb {
     /// Go there.
     Go,
     /// Go there in a straight line.
     Straight,
-    /// Go beside it, and open or pull what is there.
+    /// Go beside it, and open or pull the thing there.
     Open,
     /// Jump there.
     Hop,
@@ -37,7 +37,7 @@ pub(crate) enum Verb {
 /// The errands of the route `text` in a map.
 ///
 /// # Panics
-/// If the text is no route in that map.
+/// If the text is not a route in that map.
 pub(crate) fn parse(text: &str, map: &str) -> Vec<Errand> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or("").trim());
     lines.filter(|line| !line.is_empty()).map(|line| errand(line, map)).collect()

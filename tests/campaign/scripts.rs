@@ -1,7 +1,8 @@
-//! The scripts that win: their outcome, their time, their rank, and the exact state at their end.
+//! The scripts that win: their outcome, time and rank, and the exact state at their end.
 //!
-//! `CELLCASTER_UPDATE_SCRIPTS=1 cargo test --release --test campaign scripts` searches for new ones,
-//! and `CELLCASTER_UPDATE_SCRIPTS=prison,clock.hard` for those of some levels and pairs only.
+//! `CELLCASTER_UPDATE_SCRIPTS=1 cargo test --release --test campaign scripts` searches for new
+//! scripts. `CELLCASTER_UPDATE_SCRIPTS=prison,clock.hard` does so only for some levels, or for
+//! pairs of a level and a difficulty.
 
 use std::env;
 use std::fs;
@@ -17,7 +18,7 @@ use crate::careful;
 use crate::levels::{self, route};
 use crate::pilot::Pilot;
 
-/// The variable that asks for new scripts.
+/// The variable that requests new scripts.
 const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
 
 fn path(level: &Level, difficulty: Difficulty) -> PathBuf {
@@ -52,7 +53,7 @@ fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     Ok(format!("{name}: {} steps", pilot.steps()))
 }
 
-/// Searches for the scripts that [`UPDATE`] asks for, in two threads.
+/// Searches for the scripts that [`UPDATE`] requests, in two threads.
 fn update_all() {
     let Ok(wanted) = env::var(UPDATE) else { return };
     let is_wanted = |&(level, difficulty): &(&Level, Difficulty)| {
@@ -71,7 +72,7 @@ fn update_all() {
     thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
 }
 
-/// A line with the state at the end of a script; `Err` if it does not win.
+/// Describes the state at the end of a script in a line; `Err` if the script does not win.
 fn line(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{} {}", level.name, difficulty.name());
     let game = replayed(level, difficulty)?;
@@ -92,7 +93,7 @@ fn line(level: &Level, difficulty: Difficulty) -> Result<String, String> {
     ))
 }
 
-/// A par time is about twice the time of the slowest of a level's scripts, which know the way.
+/// A level's par time is about twice the time of its slowest script, which knows the way.
 #[test]
 fn par_times_fit_the_scripts() {
     for level in builtin::LEVELS {

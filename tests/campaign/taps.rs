@@ -1,7 +1,7 @@
 //! The scripts of taps: ways through the first levels that can be typed in a terminal without key
 //! releases. `tests/terminal/play/campaign.rs` types them.
 //!
-//! `CELLCASTER_UPDATE_TAPS=1 cargo test --release --test campaign taps` searches for new ones.
+//! `CELLCASTER_UPDATE_TAPS=1 cargo test --release --test campaign taps` searches for new scripts.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -14,10 +14,10 @@ use crate::careful;
 use crate::levels::{self, route};
 use crate::pilot::Pilot;
 
-/// The number of levels with a script, and its rules.
+/// The number of levels with a script, and the rules of the scripts.
 const LEVELS: usize = 3;
 const RULES: Rules = Rules { difficulty: Difficulty::Easy, seed: 0 };
-/// The steps for which the player looks around at first.
+/// The steps for which the player looks around first.
 const LOOK: u32 = 60;
 
 fn path(level: &Level) -> PathBuf {

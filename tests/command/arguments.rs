@@ -85,7 +85,7 @@ fn completions_and_the_manual_page_know_every_subcommand_and_option() {
         assert!(options.contains("--help"), "{options:?}");
         for option in options {
             assert!(manual.contains(&option), "no {option} in the manual");
-            // Fish has the name without its dashes.
+            // Fish lists the name without its dashes.
             let name = option.trim_start_matches('-');
             for script in &completions {
                 assert!(script.contains(name), "no {option} of {subcommand} in\n{script}");
@@ -225,7 +225,7 @@ fn a_recording_replaces_no_file_and_has_an_ending_that_is_known() {
     assert_eq!(fs::read_to_string(&taken).unwrap(), "precious");
     insta::assert_snapshot!(told("walk.txt", &[]), @r#"cellcaster: --record takes a file that ends in .cast, for what the terminal is sent, or in .script, for what you do, not "walk.txt""#);
     assert_eq!(told("cast", &[]), told("walk.txt", &[]).replace("walk.txt", "cast"));
-    // Without a terminal to play in, no file is left that would prevent the next recording.
+    // Without a terminal, the game leaves no file that would prevent the next recording.
     for name in ["new.cast", "new.script"] {
         assert!(told(name, &[]).contains("is not a terminal"));
         assert!(!folder.join(name).exists(), "{name} was left behind");

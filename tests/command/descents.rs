@@ -1,4 +1,4 @@
-//! Scripts of descents: `replay --verify` says how far they come.
+//! Scripts of descents: `replay --verify` reports their progress.
 #![cfg(feature = "cli")]
 
 use std::fs;
@@ -16,7 +16,7 @@ use crate::ways::Ways;
 /// The longest time on a floor, in steps.
 const MOST_STEPS: u64 = 60 * 90;
 
-/// The nearest treasure while some is needed, then the exit.
+/// The goal of the player: the nearest treasure while some is needed, and then the exit.
 fn goal(pilot: &Pilot) -> Option<Cell> {
     let world = pilot.game.world();
     let needs_more = pilot.game.treasure().found < world.treasure_needed();
@@ -30,7 +30,7 @@ fn goal(pilot: &Pilot) -> Option<Cell> {
     })
 }
 
-/// Runs through a floor without care.
+/// Runs through a floor carelessly.
 fn run(seed: u64, floor: u32, difficulty: Difficulty) -> Pilot {
     let mut pilot =
         Pilot::new(Game::with_rules(descent(seed, floor).unwrap(), Rules { difficulty, seed }));
@@ -42,7 +42,8 @@ fn run(seed: u64, floor: u32, difficulty: Difficulty) -> Pilot {
     pilot
 }
 
-/// A descent to the first floor whose exit is not reached: its script, and how far it comes.
+/// A descent to the first floor whose exit the player does not reach. Returns its script and its
+/// progress.
 fn descend(seed: u64, difficulty: Difficulty, most: u32) -> (String, Reached) {
     let level = Some(LevelName::of_floor(1));
     let mut script = format!("{}\n", Header::of(level, Rules { difficulty, seed }));

@@ -1,5 +1,5 @@
-//! A full disk: every command that writes says so in one sentence, and what was in a file before is
-//! still in it.
+//! A full disk: every command that writes says so in one sentence, and the previous content of a
+//! file is still in it.
 #![cfg(unix)]
 
 use std::fs::{self, File};
@@ -18,7 +18,7 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Asserts that the program said `sentence`, and no more, and failed.
+/// Asserts that the program printed `sentence`, and nothing else, and failed.
 #[track_caller]
 fn assert_failed(output: &Output, sentence: &str) {
     let said = String::from_utf8_lossy(&output.stderr);
@@ -26,7 +26,7 @@ fn assert_failed(output: &Output, sentence: &str) {
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// Runs the program where no file can grow beyond `blocks` of 512 bytes.
+/// Runs the program with a limit of `blocks` of 512 bytes for each file.
 fn run_without_room(blocks: u32, arguments: &[&str]) -> Output {
     // Without the trap, the signal would end the program.
     let limit = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");

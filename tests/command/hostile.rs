@@ -9,11 +9,11 @@ use std::process::{Output, Stdio};
 
 use crate::support::{cellcaster, output_of};
 
-/// A title, a colour, a line break, a rubout and a C1 introducer: each of them as a terminal
-/// obeys it. No separator of a path is in it.
+/// A title, a colour, a line break, a rubout and a C1 introducer, each in the form that a terminal
+/// obeys. It contains no path separator.
 const HOSTILE: &str = "h\u{1b}]0;title\u{7}\u{9b}31m\r\n\u{7f}\u{202e}";
 
-/// The prefix of [`HOSTILE`] as it is shown.
+/// The prefix of [`HOSTILE`] as the program shows it.
 const SHOWN: &str = "h\\u{1b}]0;title\\u{7}\\u{9b}31m\\r";
 
 /// An empty folder for the test `name`, whose own name is hostile.
@@ -24,12 +24,12 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs the program in a folder of its own, without input.
+/// Runs the program in its own folder, without input.
 fn run<A: AsRef<OsStr>>(folder: &PathBuf, arguments: impl IntoIterator<Item = A>) -> Output {
     cellcaster(&[]).args(arguments).current_dir(folder).stdin(Stdio::null()).output().unwrap()
 }
 
-/// The text, which has no control character but line breaks.
+/// Returns the text, which must contain no control character except line breaks.
 fn harmless(bytes: &[u8], about: &str) -> String {
     let text = String::from_utf8(bytes.to_vec()).unwrap();
     let obeyed = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
@@ -70,7 +70,7 @@ fn no_command_sends_the_control_bytes_of_its_arguments() {
         assert!(check(&[subcommand, &option]).contains(SHOWN), "{subcommand}");
         for option in options_of(subcommand).iter().filter(|option| *option != "--help") {
             check(&[subcommand, option, HOSTILE, HOSTILE]);
-            // The last word is a mistake, so that no command runs with the value.
+            // The last word is a mistake, so no command runs with the value.
             check(&[subcommand, &format!("{option}={HOSTILE}"), "--nonsense"]);
         }
     }

@@ -33,7 +33,7 @@ fn terminal() -> Parser {
     Parser::new(length(SIZE.height), length(SIZE.width), 0)
 }
 
-/// The cells of a terminal that has received all of `picture`.
+/// The cells of a terminal that has received the whole `picture`.
 fn drawn(picture: &Buffer) -> Vec<Look> {
     let mut bytes = Vec::new();
     let mut writer = CellWriter::new(&mut bytes, SIZE);
@@ -52,7 +52,7 @@ fn a_recording_shows_every_frame_of_the_game_at_its_time() {
     assert_eq!((recording.columns, recording.rows), (60, 20));
     let mut terminal = terminal();
     let mut events = recording.events.iter().peekable();
-    // The sequence for the alternate screen has the time of the first frame.
+    // The sequence for the alternate screen has the same time as the first frame.
     terminal.process(events.next().unwrap().data.as_bytes());
 
     let levels = Levels::new(builtin::LEVELS[1].world().unwrap().into(), std::iter::empty());

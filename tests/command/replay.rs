@@ -1,4 +1,5 @@
-//! Any intents, any number of times: the frames are equal, and the player is never inside a wall.
+//! For any intents, repeated any number of times, the frames are equal and the player is never
+//! inside a wall.
 
 use crate::geometry::clearance;
 use cellcaster::game::{Game, Intent, Intents};

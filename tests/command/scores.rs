@@ -1,4 +1,4 @@
-//! `levels` and `replay --verify`: best results, and what a script achieves.
+//! `levels` and `replay --verify`: the best results, and the result of a script.
 #![cfg(feature = "cli")]
 
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs `levels` with a data folder in which a run is kept.
+/// Runs `levels` with a data folder in which a run is stored.
 fn levels(name: &str, arguments: &[&str]) -> String {
     let folder = scratch(name);
     let (mut store, _) = Store::open(&folder);
@@ -66,7 +66,8 @@ fn a_newer_data_folder_is_left_alone_with_a_sentence() {
     assert!(sentence.contains("version 9") && sentence.lines().count() == 1, "{sentence}");
 }
 
-/// A test of several processes starts itself with this variable, which names the data folder and the game.
+/// A test with several processes starts itself with this variable, which names the data folder and
+/// the game.
 const GAME: &str = "CELLCASTER_TEST_GAME";
 
 #[test]
@@ -96,7 +97,7 @@ fn two_processes_that_record_at_once_lose_nothing() {
     assert_eq!(store.script("same", Difficulty::Normal), Some(least.to_string()));
 }
 
-/// Records runs in levels of one's own, and in one that both processes play.
+/// Records runs in levels of this process alone, and in a level that both processes play.
 fn record_runs(folder: &Path, number: u64, runs: u64) {
     let (mut store, _) = Store::open(folder);
     for index in 0..runs {
@@ -105,7 +106,7 @@ fn record_runs(folder: &Path, number: u64, runs: u64) {
             let tally = Tally { steps, ..Tally::default() };
             let run = Run { tally, rank: Rank::Thief, script: steps.to_string() };
             store.record(&level, Difficulty::Normal, run);
-            // Locks are not fair: without a pause, one process could keep the other from its turn.
+            // Locks are not fair: without a pause, one process could keep the other waiting.
             thread::sleep(Duration::from_millis(4));
         }
     }
@@ -135,7 +136,7 @@ fn a_script_that_wins_is_told_by_the_status() {
     assert_eq!(won.status.code(), Some(0), "{report}");
     let report = report.replace(map.to_str().unwrap(), "hall.toml");
     insta::assert_snapshot!(report);
-    // MAP takes precedence, and rules without a header are the usual ones.
+    // MAP takes precedence, and without a header, the usual rules apply.
     let map = map.to_str().unwrap();
     let other = verify("other", "level cellar\n2 steps forward\n", &[map]);
     let report = String::from_utf8(other.stdout).unwrap();

@@ -126,7 +126,7 @@ fn the_changelog_has_a_section_for_this_version() {
     assert!(sections.next().is_some_and(is_named), "the first section is neither");
 }
 
-/// A block with a grid is a whole map. Any other block is a part of one, and is TOML.
+/// A block with a grid is a whole map. Any other block is a part of a map, and is valid TOML.
 #[test]
 fn maps_in_the_documents_are_right() {
     let mut maps = 0;

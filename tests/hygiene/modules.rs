@@ -1,9 +1,10 @@
-//! Modules of the game and of the server depend on modules above them in the tables of ARCHITECTURE.md, and on no others.
+//! The modules of the game and of the server depend only on modules above them in the tables of
+//! ARCHITECTURE.md.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The parts of a package that are for tests alone.
+/// The parts of a package that are only for tests.
 const FOR_TESTS: [&str; 5] = ["tests", "simulation", "simulated", "testing", "fuzzing"];
 
 /// The modules in the order of the table under `heading`.
@@ -20,7 +21,7 @@ fn is_for_tests(path: &Path) -> bool {
     FOR_TESTS.iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name))
 }
 
-/// The files of a module, without those of its tests.
+/// The files of a module, without the files of its tests.
 fn files(path: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     if path.with_extension("rs").is_file() {

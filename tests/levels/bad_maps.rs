@@ -1,5 +1,5 @@
 //! The reports on maps with faults: one for each file in `tests/bad_maps`, and for maps that cannot
-//! be a file there.
+//! be stored there as a file.
 
 use std::error::Error;
 use std::fs;
@@ -10,7 +10,7 @@ use cellcaster::map;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// The faults of a map that has some.
+/// The faults of a map that must have some.
 fn faults(path: &Path) -> Result<Faults, String> {
     map::load_level(path).err().ok_or_else(|| format!("{} was accepted", path.display()))
 }

@@ -1,4 +1,4 @@
-//! Steps, ledges, low ceilings and deep falls: which of them the player can climb and pass,
+//! Steps, ledges, low ceilings and deep falls: tests which of them the player can climb and pass,
 //! and that the player is never inside anything.
 
 use crate::open::is_in_the_open;
@@ -162,7 +162,7 @@ fn any_world() -> impl Strategy<Value = World> {
     })
 }
 
-/// Intents, each held for a while.
+/// Lists of intents, each held for a while.
 fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=6);
     prop::collection::vec((1..50_usize, held), 1..25)
@@ -203,7 +203,7 @@ proptest! {
             walk(&mut game, *steps, wanted);
         }
         walk(&mut game, 300, &[]);
-        // A player who still falls has gone farther down since.
+        // A player who is still falling has fallen farther since.
         if game.feet() > -100.0 {
             prop_assert!(game.is_at_rest(Intents::new()));
         }

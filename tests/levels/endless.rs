@@ -1,4 +1,4 @@
-//! Generated levels: golden pictures, equality on all machines, and the mistakes in options.
+//! Generated levels: golden pictures, equality on all machines, and mistakes in the options.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -183,7 +183,7 @@ proptest! {
     }
 }
 
-/// A picture is neither too dark to read nor brighter than a dungeon.
+/// A picture is neither too dark to read nor too bright for a dungeon.
 #[test]
 fn first_views_are_neither_too_dark_nor_too_bright() {
     for (generator, allowed) in

@@ -1,4 +1,4 @@
-//! The growth of costs with the map: counts of look-ups of rays, not times.
+//! The growth of costs with the map. Counts the look-ups of rays, and measures no times.
 
 use allocation_counter::measure;
 use cellcaster::cast::{Caster, Exact, Ray};
@@ -30,7 +30,7 @@ fn explained(world: &World) -> Explanation {
     Renderer::new().explain(world, &camera, &mut frame)
 }
 
-/// The bytes that stay allocated after a map of this side is read, and the bytes that its grid
+/// The bytes that stay allocated after reading a map of this side, and the bytes that its grid
 /// reports.
 fn bytes(side: u32) -> (i64, i64) {
     let mut world = None;
@@ -63,7 +63,7 @@ fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
     assert!(small.looks < small.cells / 3);
 }
 
-/// The pillars are in one cell of each 64 by 64, and not in its middle.
+/// There is one pillar in each block of 64 by 64 cells, and not in its middle.
 #[test]
 fn a_plain_sixty_four_times_as_wide_takes_three_times_the_looks_for_a_ray() {
     let pillar = |column: u32, row: u32| {

@@ -1,7 +1,8 @@
-//! Maps that were written to take long or to need much memory: the bytes that reading them takes.
+//! Maps that were written to take long or to need much memory, and the bytes that reading them
+//! takes.
 //!
-//! Bytes are asserted and seconds are not, since every step of the work that a limit bounds also
-//! allocates, or is counted against the limit itself.
+//! The tests assert bytes and not seconds, because every bounded step of the work also allocates,
+//! or is counted against the limit itself.
 
 use std::cell::Cell;
 
@@ -88,7 +89,7 @@ impl TextureFiles for LargePictures {
     }
 }
 
-/// The `count` characters from U+4E00 on, all of which are letters.
+/// The `count` characters from U+4E00 on, which are all letters.
 fn characters(count: u32) -> impl Iterator<Item = char> {
     ('\u{4e00}'..).take(count as usize)
 }
@@ -117,7 +118,7 @@ fn the_texels_of_all_pictures_are_limited() {
     let files = LargePictures::new();
     let sheets = things(900, |index| format!("{{ sprite = \"{index}.png\" }}"));
     let faults = read_with(&files, &sheets, SMALL_MAP).unwrap_err();
-    // After the first one too many, none is read.
+    // After the first picture that is one too many, no picture is read.
     assert_eq!((faults.len(), files.reads.get()), (1, 17));
     insta::assert_snapshot!(faults.summary(), @r#"map:20: the sprite "16.png" is too much: the pictures of a map have 16777216 texels and 64 MiB at most"#);
     let wall = |it| format!("{it:?} = {{ wall = \"{}.png\" }}", u32::from(it));
@@ -130,7 +131,7 @@ fn the_texels_of_all_pictures_are_limited() {
     assert_eq!((faults.len(), files.reads.get()), (1, 2 * 17));
 }
 
-/// A dim map of `side` rows and columns of a lamp, `lamp`, with one start.
+/// A dim map with `side` rows and columns of the lamp `lamp`, and one start.
 fn lamps(side: usize, lamp: &str) -> String {
     let row = "l".repeat(side);
     let rows = vec![row.as_str(); side - 1].join("\n");
@@ -173,7 +174,7 @@ fn the_number_of_things_is_limited() {
     insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, and 1048576 at most can be there");
 }
 
-/// A map in which one switch moves `lifts` floors, and that many spikes come out.
+/// A map in which one switch moves `lifts` floors, and in which `spikes` spikes come out.
 fn lifts_and_spikes(lifts: usize, spikes: usize) -> String {
     let (lifts, spikes) = ("m".repeat(lifts), "s".repeat(spikes));
     format!(
@@ -222,11 +223,11 @@ fn the_number_of_bodies_is_limited() {
     assert!(read(&spheres(1000, 16.0), SMALL_MAP).is_ok());
     let faults = read(&spheres(1001, 16.0), SMALL_MAP).unwrap_err();
     insta::assert_snapshot!(faults.summary(), @"map:2: a map has 1000 bodies at most");
-    // Of more, the first one too many is named alone.
+    // If there are more, only the first one that is one too many is reported.
     assert_eq!(read(&spheres(15_000, 16.0), SMALL_MAP).unwrap_err().len(), 1);
 }
 
-/// A ray is tested against all bodies of one place.
+/// A ray is tested against all bodies in one place.
 #[test]
 fn the_number_of_bodies_in_one_place_is_limited() {
     for apart in [0.0, 1e-6, 0.1] {

@@ -1,4 +1,5 @@
-//! Low things and low shapes: which of them the player jumps onto or over, and which block the way.
+//! Low things and low shapes: tests which of them the player can jump onto or over, and which block
+//! the way.
 
 use crate::walker::{SKY, corridor, position, walk};
 use cellcaster::game::{Game, Intent};

@@ -1,4 +1,4 @@
-//! Maps, scripts and levels: valid and invalid ones, and playing levels to their end.
+//! Maps, scripts and levels: valid and invalid ones, and levels played to their end.
 
 mod bad_maps;
 mod bad_scripts;

@@ -106,7 +106,7 @@ fn exit_is_within_reach(world: &World) -> bool {
                 continue;
             }
             let cell = Cell { column: column as u32, row: row as u32 };
-            // A map with unreachable keys would have been refused.
+            // The reader would have rejected a map with unreachable keys.
             let open = !world.grid().is_solid(column, row) || world.door(cell).is_some();
             if open && !reached.contains(&cell) {
                 reached.push(cell);

@@ -1,4 +1,4 @@
-//! Floors and walls that move among guards and a player: none of them is ever inside anything.
+//! Floors and walls that move among guards and a player. No body is ever inside anything.
 
 use crate::open::{is_in_the_open, is_open_for};
 use crate::walker::{position, want};
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const SIDE: usize = 10;
 
-/// The characters of [`world_of`], each as often as it should come.
+/// The characters of [`world_of`], each as often as it should appear.
 const CELLS: &[u8] = b".........mmmmmnnnnpppppsslghHHHGGAb";
 
 /// A room whose cells have these characters. The player starts in its middle.
@@ -34,7 +34,7 @@ fn world_of(cells: &[u8], ends: (f64, f64), room: f64) -> World {
     map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"))
 }
 
-/// The body that is inside something, if there is one.
+/// Describes a body that is inside something, if there is one.
 fn inside(game: &Game) -> Option<String> {
     let world = game.world();
     let guard =

@@ -51,7 +51,7 @@ fn the_exit_needs_a_jump() {
     }
 }
 
-/// For any skill in jumping.
+/// This holds for any skill in jumping.
 #[test]
 fn the_exit_needs_the_key() {
     for name in ["citadel", "cistern", "observatory"] {
@@ -77,7 +77,7 @@ fn the_player_cannot_get_stuck() {
                 assert!(sure.gets_out(place, &safe), "{name}: {place:?} with the keys {keys:?}");
                 safe.insert(place);
             }
-            // With all keys that are in reach so far.
+            // The search uses all keys that are in reach already.
             let mut lucky = lucky;
             lucky.from(lucky.start());
             if lucky.keys == keys {
@@ -98,14 +98,14 @@ fn picture(world: &World, row: f64, degrees: f64) -> Frame {
     frame
 }
 
-/// The mirror opposite shows which of the shafts in the cistern is lit. Nothing else does.
+/// The mirror opposite shows which of the shafts in the cistern is lit. Nothing else shows it.
 #[test]
 fn a_mirror_shows_which_shaft_to_take() {
     const MIRROR: &str = "\"M\" = { mirror = \"#a8c0c0\", opacity = 0.1, height = 2 }";
     const TORCH: &str = "\"i\" = { sprite = \"torch\", on = \"T\", reach = 5, light = 0.9 }";
     let text = builtin::LEVELS.iter().find(|level| level.name == "cistern").unwrap().text;
     assert!(text.contains(MIRROR) && text.contains(TORCH));
-    // A torch that lights nothing, instead of the one that lights a little.
+    // A torch that lights nothing replaces the torch with a little light.
     let unlit = |text: &str| text.replace(TORCH, &TORCH.replace("0.9", "0"));
     let without = |text: &str| unlit(text).replace("Ti", "TT");
     let shows_torch = |text: &str, row: f64, degrees: f64| {

@@ -1,4 +1,4 @@
-//! The memory that games for several take: counts, not times.
+//! The memory of games with several players. Counts allocations, and measures no times.
 
 use allocation_counter::measure;
 use cellcaster::game::{Game, Input, Intent, Intents, MultiplayerRules, PlayerColor, Rules};
@@ -18,7 +18,7 @@ fn a_step_of_eight_players_allocates_nothing_after_a_while() {
         let rules = MultiplayerRules { collides, ..MultiplayerRules::default() };
         let mut game = Game::for_players(world, Rules::default(), rules);
         let players = PlayerColor::ALL.map(|color| game.join(color).unwrap());
-        // Ducking wakes nobody.
+        // Ducking wakes no guard.
         let circling = [Intent::Forward, Intent::Duck, Intent::TurnRight];
         let mut step = || {
             let (seen, intents) = (game.steps(), circling.into_iter().collect::<Intents>());

@@ -1,16 +1,17 @@
-//! A step of the game allocates nothing once its memory has grown, and takes as long as what moves needs.
+//! A step of the game allocates nothing once its memory has grown, and takes only as long as the
+//! moving parts need.
 
 use allocation_counter::measure;
 use cellcaster::game::{Alarm, Game, Intent, Intents, Outcome};
 use cellcaster::map::{self, builtin};
 use cellcaster::world::World;
 
-/// The steps in which the memory grows, and those that are counted.
+/// The number of steps in which the memory grows, and the number of steps that are counted.
 const GROWS: u32 = 14_400;
 const COUNTED: u32 = 600;
 
-/// A corridor with rooms to both sides. The player starts in that column; guards with this duty
-/// stand in the west.
+/// A corridor with rooms on both sides. The player starts in column `start`; guards with the duty
+/// `duty` stand in the west.
 fn rooms(start: usize, duty: &str) -> World {
     const COLUMNS: usize = 160;
     let lines = (0..13_usize).map(|row| {
@@ -62,7 +63,8 @@ fn guards_on_duty_and_asleep_allocate_nothing() {
     }
 }
 
-/// Guards share the searches for their ways, twelve at a time, and each search has two lists.
+/// Guards share their path searches, of which there are at most twelve at once, and each search has
+/// two lists.
 #[test]
 fn guards_who_search_allocate_two_lists_for_each_search() {
     let mut game = Game::new(rooms(30, ""));
@@ -78,8 +80,8 @@ fn guards_who_search_allocate_two_lists_for_each_search() {
     assert!(counted.count_total <= 36, "{}", counted.count_total);
 }
 
-/// A hall of `rows` rows of the characters of `row` in turn, and before them one in which the player
-/// starts beside `first`.
+/// A hall of `rows` rows, each of which repeats the characters of `row`, and one more row before
+/// them, in which the player starts beside `first`.
 fn hall(rows: usize, first: &str, row: &str, legend: &str) -> Game {
     let row = row.repeat(40);
     let grid = format!("@{first}.{row}\n{}", format!("...{row}\n").repeat(rows));
@@ -87,7 +89,7 @@ fn hall(rows: usize, first: &str, row: &str, legend: &str) -> Game {
     Game::new(map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}")))
 }
 
-/// The most work of a step in ten seconds of running ahead.
+/// The largest work of a step in ten seconds of running ahead.
 fn most_work(mut game: Game) -> u64 {
     let run = [Intent::Forward, Intent::Run, Intent::Open].into_iter().collect();
     let work = (0..600).map(|_| {

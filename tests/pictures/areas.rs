@@ -1,4 +1,5 @@
-//! The filter by area: the share of each pixel that a wall covers, against many rays for each column of pixels.
+//! The area filter: the share of each pixel that a wall covers, compared with many rays for each
+//! column of pixels.
 
 use std::num::NonZero;
 
@@ -69,8 +70,8 @@ fn encoded(light: f64) -> f64 {
     255.0 * if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The colours of a column of pixels by many rays; `None` if it shows a wall that neither its own ray hits nor the
-/// one beside it in the picture.
+/// The colours of a column of pixels, computed from many rays. `None` if the column shows a wall
+/// that neither its own ray nor a ray of a neighbouring column hits.
 fn column(world: &World, camera: &Camera, x: u32) -> Option<Vec<[f64; 3]>> {
     let middle = f64::from(x) + 0.5;
     let known = [middle - 1.0, middle, middle + 1.0]

@@ -1,4 +1,4 @@
-//! A frame costs what its scene shows: counts of reads and writes for each map of the gallery.
+//! A frame costs only what its scene shows: counts of reads and writes for each map of the gallery.
 
 use std::path::Path;
 
@@ -36,9 +36,9 @@ fn a_flat_scene_reads_texels_for_its_walls_alone() {
     assert!(matches!(plan.ceiling, CeilingLoop::Plane(PlaneLoop::Fill(_))));
     assert_eq!((stats.floor.texels, stats.ceiling.texels, stats.sky.pixels), (0, 0, 0));
     assert_eq!(stats.walls.texels, stats.walls.pixels);
-    // Rays between two that hit the same face need not be cast.
+    // Rays between two rays that hit the same face need not be cast.
     assert!((2..u64::from(WIDTH) / 2).contains(&stats.walk.rays));
-    // Two fills of half the picture each, and the walls over them.
+    // There are two fills, each of half the picture, and the walls over them.
     assert_eq!(stats.floor.pixels + stats.ceiling.pixels, PIXELS);
     assert_eq!(stats.overwritten, stats.walls.pixels);
 }
@@ -99,11 +99,11 @@ fn a_still_door_costs_the_same_as_a_wall() {
         map::parse_str(&text).unwrap()
     };
     let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).stats);
-    // The rays go on into the cell of the door.
+    // The rays continue into the cell of the door.
     assert!(door.walk.rays <= 4 * wall.walk.rays, "{:?}", [door.walk, wall.walk]);
     assert_eq!(door.see_through, wall.see_through);
     assert_eq!(door.walls.texels, door.walls.pixels);
-    // It is half a cell farther away, and covers slightly fewer pixels.
+    // The door is half a cell farther away, and covers slightly fewer pixels.
     assert!(door.walls.pixels <= wall.walls.pixels && door.pixels() <= wall.pixels());
 }
 
@@ -117,11 +117,11 @@ fn what_is_not_level_costs_what_is_in_view_of_it() {
         );
         explained(&map::parse_str(&text).unwrap()).stats
     };
-    // It is behind the camera.
+    // The tile is behind the camera.
     assert_eq!(map(0.25, 0), map(0.0, 0));
     let (level, raised) = (map(0.0, 180), map(0.25, 180));
     assert_eq!(level.walk.sectors, 1);
-    // The raised tile, and the floor behind it and beside it.
+    // The sectors are the raised tile, and the floor behind it and beside it.
     assert!((2..6).contains(&raised.walk.sectors), "{raised:?}");
     assert!(raised.walk.rays < level.walk.rays + 20, "{:?}", [raised.walk, level.walk]);
 }
@@ -143,7 +143,7 @@ fn a_single_lamp_costs_the_pixels_that_it_covers() {
         .replace("@..", "@.l");
     let flat = explained(&gallery("flat")).stats;
     let Explanation { plan, stats, .. } = explained(&map::parse_str(&with_lamp).unwrap());
-    // Everything is fully lit, so that the lamp adds no light and the floor is still one fill.
+    // Everything is fully lit, so the lamp adds no light and the floor is still one fill.
     assert!(matches!(plan.floor, PlaneLoop::Fill(_)));
     assert_eq!((stats.things_considered, stats.things_drawn), (1, 1));
     let without_lamp = FrameStats {
@@ -270,7 +270,7 @@ fn no_feature_allocates_once_the_first_frame_is_drawn() {
             camera.heading = camera.heading.turned(0.3);
             let made = world.mip_levels_made();
             let counted = measure(|| renderer.render(&world, &camera, &mut frame));
-            // A texture takes memory when it is first seen.
+            // A texture takes memory when it is first visible.
             let is_new = world.mip_levels_made() > made;
             assert!(counted.count_total == 0 || is_new && turn < 21, "{}", world.title());
         }
@@ -288,7 +288,8 @@ fn assert_no_allocation_in_space(scene: &Scene) {
     }
 }
 
-/// The map of glass with other panes, and with a tile somewhere that makes it uneven.
+/// The map of glass with different panes, and the same map with a tile somewhere that makes it
+/// uneven.
 fn with_panes(pane: &str) -> [World; 2] {
     let text = |rest: &str| {
         format!(

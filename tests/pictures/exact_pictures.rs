@@ -1,5 +1,5 @@
-//! Pictures compared with exact geometry: every pixel of a map of plain colours is computed again
-//! in rational arithmetic, from the camera alone, by a test of all faces of all walls.
+//! Pictures compared with exact geometry: every pixel of a map with plain colours is computed again
+//! in rational arithmetic, from the camera alone, by testing all faces of all walls.
 
 mod geometry;
 
@@ -40,7 +40,7 @@ aa.accc
 const FLOOR: Rgb = Rgb::new(0x10, 0x20, 0x30);
 const CEILING: Rgb = Rgb::new(0x40, 0x50, 0x60);
 
-/// The same map with floors of different brightness, and a wall with its own brightness.
+/// The same map with floors of different brightness, and a wall with a brightness of its own.
 fn lit_map() -> String {
     let cells = MAP
         .replace("b.....c\na..d", "be..f.c\na.fd")
@@ -51,7 +51,7 @@ fn lit_map() -> String {
     cells.replace(d, lit).replace("floor   =", "light = 0.5\nfloor   =")
 }
 
-/// Pixels whose centres are closer than this to an edge are not compared, in pixels.
+/// Pixels whose centres are closer than this to an edge, in pixels, are not compared.
 const DOUBTFUL: f64 = 1e-6;
 
 proptest! {
@@ -83,7 +83,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Along a wall, the light is interpolated between the middles of the cells before it.
+    /// Along a wall, the light is interpolated between the middles of the cells in front of it.
     #[test]
     fn every_pixel_of_a_wall_is_as_bright_as_geometry_says(
         position in (1.1..5.9, 1.1..5.9),
@@ -124,7 +124,8 @@ fn a_huge_picture_is_as_exact_as_a_small_one() {
 
 #[test]
 fn a_very_close_wall_shows_the_texels_at_eye_height() {
-    // The texture has 64 rows, whose red channel is their number. The wall's face is at x = 0.
+    // The texture has 64 rows, and the red channel of each row is its number. The wall's face is at
+    // x = 0.
     let world = map::load(Path::new("tests/maps/nose.toml")).unwrap();
     let mut frame = Frame::new(FrameSize::new(40, 24).unwrap(), PixelAspect::SQUARE);
     for gap in [1e-12, 1e-30, 1e-300, 5e-324] {

@@ -1,7 +1,7 @@
 //! Extreme cameras: positions, fields of view and pixels of any size that the types allow.
 //!
-//! A picture is a function of its scene and its camera. A renderer and a frame that drew another
-//! picture before draw the same one as fresh ones do.
+//! A picture is a function of its scene and its camera. A renderer and a frame that have drawn
+//! another picture draw the same picture as new ones.
 
 use std::sync::LazyLock;
 
@@ -18,7 +18,7 @@ use proptest::sample::select;
 struct View {
     place: DVec3,
     heading: Heading,
-    /// In degrees, from −30 to 30.
+    /// The pitch in degrees, from −30 to 30.
     pitch: f64,
     width: FieldOfView,
     size: FrameSize,
@@ -114,7 +114,7 @@ impl Drawing {
     }
 }
 
-/// Checks that the second view is drawn the same after the first one as alone.
+/// Checks that the second view is drawn the same after the first view as without it.
 fn check(levels: [&Level; 2], views: [&View; 2]) -> Result<(), TestCaseError> {
     let mut old = Drawing::new(views[0]);
     old.draw(levels[0], views[0]);

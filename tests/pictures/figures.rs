@@ -1,4 +1,4 @@
-//! Figures: the same pixels as things in their places, seen directly and in mirrors.
+//! Figures show the same pixels as things in their places, seen directly and in mirrors.
 
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
@@ -9,11 +9,11 @@ use proptest::prelude::*;
 const WIDTH: usize = 9;
 const HEIGHT: usize = 7;
 
-/// The things, which are no lamps.
+/// The things, none of which is a lamp.
 const THINGS: [char; 3] = ['p', 's', 'c'];
 
-/// The tiles besides plain floor and walls that make frames of each way: only level ones, those and
-/// heights, and those and mirrors.
+/// The tiles, other than plain floor and walls, that select each way of drawing: only level tiles,
+/// these and heights, and these and mirrors.
 const TILES: [&[char]; 3] = [&['%', 'g', 'd'], &['%', 'g', 'd', 'u', 'l'], &['%', 'g', 'd', 'M']];
 
 /// A map of `cells` in a dim fog. South of it, a row of walls holds a thing of each kind.
@@ -28,7 +28,7 @@ fn world(cells: &[char]) -> World {
          '@' = {{ start = 0 }}\n'p' = {{ sprite = 'plant' }}\n\
          's' = {{ sprite = 'statue', heading = 70 }}\n\
          'c' = {{ sprite = 'bones', anchor = 'ceiling', height = 0.4 }}\n",
-        // A kind of tile decides the way, whether it is drawn or not.
+        // A kind of tile selects the way of drawing, whether it is in the grid or not.
         if cells.contains(&'u') || cells.contains(&'l') {
             "'u' = { floor_height = 0.25 }\n'l' = { wall = 'brick', height = 0.4 }\n"
         } else if cells.contains(&'M') {
@@ -40,7 +40,7 @@ fn world(cells: &[char]) -> World {
     map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}{faults}"))
 }
 
-/// The things of `world` that are not in the southern walls, as figures.
+/// The things of `world` that are not in the southern walls, turned into figures.
 fn figures_of(world: &World) -> Vec<Figure> {
     let things = world.things().iter().filter(|thing| (thing.cell.row as usize) < HEIGHT);
     let figure = |thing: &cellcaster::world::Thing| {
@@ -111,7 +111,7 @@ fn room_with(tile: char, cell: Cell) -> Vec<char> {
     cells
 }
 
-/// A figure in the room of the kind of the first thing in the southern walls.
+/// A figure in the room, with the sprite of the first thing in the southern walls.
 fn figure_at(world: &World, x: f64, y: f64) -> Figure {
     Figure {
         sprite: world.things()[0].sprite,

@@ -1,4 +1,4 @@
-//! The gallery: a small map for each feature, with golden pictures; and the examples of the page
+//! The gallery: a small map for each feature, with golden pictures, and the examples of the page
 //! about maps.
 
 use std::fs;
@@ -58,7 +58,7 @@ fn every_example_on_the_page_about_maps_is_a_map() {
             assert!(shows_something(&scene_picture(example)), "{example}");
             continue;
         }
-        // An example of a feature is a part of a map. The rest is always the same.
+        // An example of a feature is a part of a map. The other parts are always the same.
         let text = if example.contains("grid") { example.to_owned() } else { with_room(example) };
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{text}\n{faults}"));
         let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
@@ -102,7 +102,7 @@ fn with_room(part: &str) -> String {
     }
 }
 
-/// Compares with a golden file of the picture, and one of its characters.
+/// Compares with a golden file of the picture, and with a golden file of its characters.
 fn assert_golden(map: &str, name: &str, options: &[&str]) {
     let path = format!("maps/gallery/{map}.toml");
     for format in ["png", "text"] {

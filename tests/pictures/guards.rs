@@ -1,5 +1,5 @@
 //! The kinds of guard, seen from afar in a dim room of stone, as a window of 80 by 24 cells shows
-//! them: golden pictures, and how far each kind stands out from the room and from the other kinds.
+//! them: golden pictures, and the contrast of each kind with the room and with the other kinds.
 
 use std::fmt::Write;
 
@@ -11,10 +11,10 @@ use crate::support::run_with_input;
 type Picture = Vec<Vec<String>>;
 
 const KINDS: [&str; 5] = ["warden", "listener", "lantern", "hound", "archer"];
-/// The distances in cells, and the columns and the rows of the picture at each.
+/// The distances in cells, and the number of columns and rows of the picture at each distance.
 const DISTANCES: [(f64, usize, usize); 3] = [(2.0, 20, 18), (5.0, 16, 12), (9.0, 12, 8)];
-/// The colour depths, and the numbers of half cells by which a kind differs from the empty room, and
-/// from each other kind, at each distance.
+/// The colour depths, each with the smallest number of half cells by which a kind must differ from
+/// the empty room, and then from every other kind, at each distance.
 const DEPTHS: [(&str, [usize; 3], [usize; 3]); 3] = [
     ("true", [70, 10, 10], [200, 40, 12]),
     ("256", [70, 8, 4], [200, 25, 8]),
@@ -23,7 +23,7 @@ const DEPTHS: [(&str, [usize; 3], [usize; 3]); 3] = [
 const COLUMNS: usize = 80;
 const ROWS: usize = 23;
 
-/// A room with `thing` at its end, which looks at who stands in the room.
+/// A room with `thing` at its end, which faces the viewer.
 fn room(thing: &str) -> String {
     format!(
         "floor = 'flagstone'\nlight = 0.6\n\
@@ -33,7 +33,7 @@ fn room(thing: &str) -> String {
     )
 }
 
-/// The picture of the thing from `distance` cells.
+/// The picture of the thing from a distance of `distance` cells.
 fn picture(thing: &str, depth: &str, (distance, columns, rows): (f64, usize, usize)) -> Picture {
     let camera = format!("{},2.5,0", 12.5 - distance);
     let size = format!("{COLUMNS}x{ROWS}");
@@ -51,8 +51,8 @@ fn picture(thing: &str, depth: &str, (distance, columns, rows): (f64, usize, usi
     halves.flat_map(|(upper, lower)| [upper, lower]).collect()
 }
 
-/// The colours of the halves of a cell: three digits each, or a sign in a picture without colours. A
-/// shade is as bright as its dots.
+/// The colours of the halves of a cell: three digits each, or a sign in a picture without colours.
+/// A shade is as bright as its dots.
 fn halves(cell: &Value) -> (String, String) {
     let glyph = cell["ch"].as_str().unwrap();
     if let Some(quarters) = ["░", "▒", "▓"].iter().position(|shade| *shade == glyph) {

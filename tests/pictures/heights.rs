@@ -1,5 +1,5 @@
 //! Worlds with heights compared with geometry: every pixel of small random worlds is computed again
-//! by a test of the line through the pixel against everything in the world.
+//! by testing the line through the pixel against everything in the world.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch, SpriteId};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
-/// Pixels whose centres are closer than this to an edge are not compared, in pixels.
+/// Pixels whose centres are closer than this to an edge, in pixels, are not compared.
 const DOUBTFUL: f64 = 1e-5;
 const SKY: Rgb = Rgb::new(1, 2, 3);
 const COLUMNS: usize = 6;
@@ -116,7 +116,7 @@ fn open_kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<
     let rock = prop_oneof![Just(0.0), 0.1..1.0];
     prop_oneof![
         height().prop_map(|floor| Kind::Open { floor }),
-        // No ceiling is higher than a map may have.
+        // No ceiling is higher than a map allows.
         (height(), above(), rock).prop_map(|(floor, room, rock)| Kind::Covered {
             floor: floor.min(1e9 - 2e3),
             room,
@@ -135,7 +135,7 @@ fn kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value
     ]
 }
 
-/// A tile that shows what is behind it, or before it.
+/// A tile that shows the scene behind it or a reflection.
 fn see_through_kind() -> impl Strategy<Value = Kind> {
     let opacity = || prop_oneof![1 => Just(0.0), 1 => Just(1.0), 3 => 0.0..=1.0];
     let cube = || (ordinary_height(), 0.25..2.0);
@@ -158,7 +158,7 @@ const OUTLINES: [&str; 6] = [
 ];
 
 /// A map of tiles `a`, `b` and so on, with things on some tiles of the first kind. The player
-/// starts in a corner outside all pictures.
+/// starts in a corner that is outside all pictures.
 fn map_of(scene: &Scene, look: Look) -> String {
     let Scene { kinds, cells, is_covered, lights, .. } = scene;
     let is_covered = *is_covered;
@@ -208,7 +208,7 @@ fn map_of(scene: &Scene, look: Look) -> String {
                 )
             }
             Kind::Glass { floor: height, room, opacity } => {
-                // Under the sky, it is as high as the map's ceiling would be.
+                // Under the sky, glass is as high as the map's ceiling would be.
                 let above = if scene.is_covered {
                     format!("ceiling = \"{ceiling}\", ceiling_height = {:?}", height + room)
                 } else {
@@ -349,7 +349,8 @@ fn level(kind: Kind) -> Kind {
 }
 
 prop_compose! {
-    /// A world in which all is level. Things and figures may be partly in the floor, or above the ceiling.
+    /// A world in which everything is level. Things and figures may be partly in the floor, or
+    /// above the ceiling.
     fn level_scene(of: Look)(
         scene in scene(of),
         up in prop_oneof![0.01..0.99, prop::sample::select(vec![1e-12, 0.001, 0.015, 0.99, 0.999])],
@@ -360,8 +361,8 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// A world of level floors and walls under the sky. The walls are as high as those of a level scene, or of
-    /// any height, and so is the ceiling from which things hang.
+    /// A world of level floors and walls under the sky. The walls are as high as in a level scene,
+    /// or of any height. The same applies to the ceiling height from which things hang.
     fn walled_scene()(
         scene in level_scene(Look::Colors),
         heights in prop::collection::vec(prop_oneof![1 => Just(1.0), 2 => 0.01..2.0], KINDS),
@@ -377,7 +378,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// A world in which some tiles show what is behind them, or before them.
+    /// A world in which some tiles show the scene behind them or a reflection.
     fn see_through_scene()(
         scenes in (scene(Look::Textures), level_scene(Look::Textures)),
         is_level in any::<bool>(),
@@ -394,7 +395,7 @@ prop_compose! {
 fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let text = map_of(scene, look);
     let mut world = map::parse(&text, "random", &Noise).unwrap_or_else(|it| panic!("{text}\n{it}"));
-    // Figures have the sprite of things.
+    // Figures have the same sprite as things.
     let sprite = world.things().first().map(|thing| thing.sprite);
     let figures = scene.figures.iter().filter_map(|figure| {
         let &Standing { position, base, degrees, opacity } = figure;
@@ -409,7 +410,7 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
         })
     });
     let position = scene.position;
-    // Mirrors show the player, unless there is a figure of them.
+    // Mirrors show the player, unless a figure represents the player.
     let own = Figure {
         sprite: SpriteId(0),
         position,
@@ -503,7 +504,8 @@ proptest! {
 
 #[test]
 fn a_ceiling_goes_on_over_a_step_at_the_centres_of_pixels() {
-    // A point half a cell above the eye and half a cell to its side is at the centre of some pixel.
+    // The point half a cell above the eye and half a cell to its side is at the centre of some
+    // pixel.
     let grid = "##########\n#BBBBBBBB#\n#@AAAAAAA#\n#BBBBBBBB#\n##########\n#0########";
     let text = format!(
         "floor = '#808080'\nceiling = '#0000ff'\nsky = {{ gradient = ['#ffffff', '#ffffff'] }}\n\

@@ -1,5 +1,5 @@
 //! Mirrors compared with a copy: a room behind the mirror's position, built in reverse, looks the
-//! same without a mirror.
+//! same without the mirror.
 
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surface};
@@ -15,8 +15,8 @@ const KINDS: [char; 7] = ['.', 'f', 'a', 'l', 's', 't', 'g'];
 /// The largest number of reflections of a ray.
 const MOST_BOUNCES: usize = 8;
 
-/// Whether a room is seen in a mirror that faces east or west, and in one that faces north or
-/// south.
+/// Whether a room is seen in a mirror that faces east or west, and whether it is seen in a mirror
+/// that faces north or south.
 type Flips = (bool, bool);
 
 /// A texture of noise, and its mirror image.
@@ -53,7 +53,7 @@ fn tiles(flips: Flips) -> String {
     let (x, y) = flips;
     let letters = |x, y| format!("{}{}", if x { "x" } else { "" }, if y { "y" } else { "" });
     let floor = format!("noise-{}.png", letters(x, y));
-    // In two mirrors, left is left again.
+    // After two mirrors, left is left again.
     let wall = format!("noise-{}.png", letters(x != y, false));
     let of = |kind, what: String| format!("\"{}\" = {{ {what} }}\n", character(kind, flips));
     let tiles = of('#', format!("wall = \"{wall}\""))
@@ -64,8 +64,8 @@ fn tiles(flips: Flips) -> String {
     if x || y {
         return tiles;
     }
-    // Glass that touches a mirror forms one cube with its image. The top of a low wall is visible,
-    // too, and its texture is mirrored differently from that of the sides.
+    // Glass that touches a mirror forms one cube with its image. The top of a low wall is also
+    // visible, and its texture is mirrored differently from the texture of the sides.
     tiles
         + &of('g', "glass = \"#80c0ff\"".to_owned())
         + &of('l', "wall = \"#a07040\", height = 0.375".to_owned())
@@ -107,14 +107,15 @@ fn picture(world: &World, position: DVec2, degrees: f64, eye: f64) -> Picture {
     let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
     let mut frame = Frame::new(FrameSize::new(72, 48).unwrap(), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
-    // A texel without filtering is visible or not. An average could be partly visible.
+    // Without filtering, a texel is either visible or not. An average could be partly visible.
     renderer.set_filter(Filter::Nearest);
     renderer.keep_surfaces(true);
     renderer.render(world, &camera.with_eye(eye).unwrap(), &mut frame);
     Picture { frame, renderer }
 }
 
-/// The first difference of two pictures, except for the player's own image in one of them.
+/// The position of the first difference between two pictures, ignoring the player's own image in
+/// one of them.
 fn first_difference(reflected: &Picture, straight: &Picture) -> Option<(u32, u32)> {
     let (width, height) = (straight.frame.width(), straight.frame.height());
     let mut places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -184,7 +185,7 @@ proptest! {
         prop_assert_eq!(first_difference(&reflected, &straight), None);
     }
 
-    /// Between two mirrors is a row of rooms, and at its end the mirrors' own colour.
+    /// Between two mirrors there is a row of rooms, with the mirrors' own colour at its end.
     #[test]
     fn two_mirrors_show_a_row_of_rooms(
         cells in cells(),

@@ -1,4 +1,4 @@
-//! Doors in a game: they open, wait, and close, but never on the player; locked doors need their
+//! Doors in a game: they open, wait, and close, but never on the player. Locked doors need their
 //! key.
 
 use crate::geometry::clearance;
@@ -10,10 +10,10 @@ use proptest::prelude::*;
 
 /// The player's radius.
 const RADIUS: f64 = 0.25;
-/// The steps of a second.
+/// The number of steps in a second.
 const SECOND: u64 = 60;
 
-/// A game in these rows: `+` is a door, `=` a locked door, `k` its key.
+/// A game on a map with these rows: `+` is a door, `=` a locked door, `k` its key.
 fn game(rows: &[&str], degrees: i32) -> Game {
     let text = format!(
         "grid = '''\n{}\n'''\n\
@@ -188,7 +188,7 @@ proptest! {
     }
 }
 
-/// The distance of the player to the nearest door's cell, open or not.
+/// The distance from the player to the nearest cell with a door, open or not.
 fn clearance_of_doors(game: &Game) -> f64 {
     let point = position(game);
     let cells = (0..7).flat_map(|row| (0..9).map(move |column| Cell { column, row }));

@@ -33,7 +33,7 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// Points closer than this to an edge are not compared, in cells or texels.
+/// Points closer than this to an edge, in cells or texels, are not compared.
 const DOUBTFUL: f64 = 1e-5;
 
 /// The colour of `covering` at a point of the map; `None` near an edge.
@@ -64,8 +64,8 @@ fn near_a_line(place: DVec2) -> bool {
     (place - place.round()).abs().min_element() < DOUBTFUL
 }
 
-/// The colour of the pixel `(x, y)` if it shows floor or ceiling; `None` otherwise, and near an
-/// edge.
+/// The colour of the pixel `(x, y)` if it shows floor or ceiling. `None` if it shows anything else,
+/// and near an edge.
 fn expected(world: &World, camera: &Camera, frame: &Frame, x: u32, y: u32) -> Option<Rgb> {
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let half_width = camera.field_of_view.half_width();
@@ -124,7 +124,7 @@ proptest! {
     }
 }
 
-/// Most pixels are compared, so that the property above is meaningful.
+/// Most pixels are compared, so the property above is meaningful.
 #[test]
 fn most_pixels_are_certain() {
     let world = map::parse_str(MAP).unwrap();
@@ -163,7 +163,7 @@ things."@".start = 0
     assert!((120..=128).contains(&brightest), "{brightest}");
 }
 
-/// The visible floor and ceiling of a cell in the middle of a corridor.
+/// The floor and the ceiling of a cell in the middle of a corridor are visible.
 #[test]
 fn floor_and_ceiling_of_a_cell_show_around_a_thing() {
     const FLOOR: Rgb = Rgb::new(200, 10, 10);

@@ -1,4 +1,4 @@
-//! Masks and glass compared with a simple renderer: for each pixel, it tests every face of every
+//! Masks and glass compared with a simple renderer. For each pixel, it tests every face of every
 //! cell, and blends the hits from far to near.
 
 use crate::geometry::camera;
@@ -32,11 +32,11 @@ grid = '''
 "@" = { start = 0 }
 "##;
 
-/// As in the map.
+/// The colours in the map.
 const FLOOR: &str = "#102030";
 const CEILING: &str = "#405060";
 
-/// Pixels whose centres are closer than this to an edge are not compared, in pixels.
+/// Pixels whose centres are closer than this to an edge, in pixels, are not compared.
 const DOUBTFUL: f64 = 1e-6;
 
 proptest! {
@@ -100,7 +100,7 @@ impl Picture<'_> {
         let (width, height) = (f64::from(self.size.0), f64::from(self.size.1));
         let ray = self.camera.direction() + self.camera.plane() * (2.0 * x / width - 1.0);
         let focal_length = width / 2.0 / self.camera.field_of_view.half_width();
-        // The slope downwards, at a distance of one cell.
+        // The downward slope, at a distance of one cell.
         let slope = (y - height / 2.0) / focal_length;
         let background: Rgb = if slope < 0.0 { CEILING } else { FLOOR }.parse().unwrap();
 
@@ -119,8 +119,8 @@ impl Picture<'_> {
         })
     }
 
-    /// All faces through which the ray enters a solid cell, without those between two cells of one
-    /// tile.
+    /// All faces through which the ray enters a solid cell, except faces between two cells with the
+    /// same tile.
     fn faces(&self, ray: DVec2) -> Vec<Face> {
         let grid = self.world.grid();
         let cells = (0..i64::from(grid.height()))

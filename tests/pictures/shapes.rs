@@ -81,7 +81,7 @@ impl ExactRay {
         }
     }
 
-    /// By Cramer's rule.
+    /// The meeting with a line, by Cramer's rule.
     fn meets_line(&self, cell: Cell, line: Line) -> Option<Meeting> {
         let [start_x, start_y] = line.start(cell).to_array().map(exact);
         let [stretch_x, stretch_y] = line.stretch().to_array().map(exact);
@@ -100,7 +100,7 @@ impl ExactRay {
         Some(Meeting { cell, t, u: u.to_f64().unwrap() })
     }
 
-    /// By the quadratic formula.
+    /// The meeting with a pillar, by the quadratic formula.
     fn meets_pillar(&self, cell: Cell, radius: f64) -> Option<Meeting> {
         let [x, y] = cell.center().to_array().map(exact);
         let (x, y) = (&self.x - &x, &self.y - &y);
@@ -137,7 +137,7 @@ fn cast(world: &World, ray: &Ray) -> Option<Hit> {
 }
 
 /// Half of the points are multiples of an eighth of a cell, and half of the directions lead from
-/// one such point to another, so that rays hit ends, run along lines and touch pillars exactly.
+/// one such point to another. Rays therefore hit ends, run along lines and touch pillars exactly.
 fn any_ray() -> impl Strategy<Value = Ray> {
     let coordinate =
         || prop_oneof![-1.0..8.0, (-8..64).prop_map(|eighths| f64::from(eighths) / 8.0)];
@@ -165,8 +165,8 @@ proptest! {
             .collect();
         meetings.sort_by(|one, other| one.t.cmp(&other.t));
         let hit = cast(&world, &ray);
-        // A ray through a corner of the grid is in only one of the two cells beside it, so that it
-        // may miss the end of a line in the other. A ray along a grid line may miss shapes that
+        // A ray through a corner of the grid is in only one of the two cells beside it, so it may
+        // miss the end of a line in the other cell. A ray along a grid line may miss shapes that
         // touch the line.
         let is_corner = |meeting: &Meeting| {
             let x = &exact_ray.x + &meeting.t * &exact_ray.dx;
@@ -200,7 +200,7 @@ proptest! {
     }
 }
 
-/// Whether a cell has a pillar so thin that the hit side depends on the last digit.
+/// Returns whether a cell has a pillar so thin that the side of a hit depends on the last digit.
 fn is_thin(world: &World, cell: Cell) -> bool {
     shapes(world).any(|(other, outline)| {
         other == cell && matches!(outline, Outline::Pillar(radius) if radius.cells() < 1e-6)
@@ -234,9 +234,9 @@ fn a_pillar_that_touches_the_edges_of_its_cell_is_met_there() {
     let pillar = "pillar = \"brick\", radius = 0.5";
     assert_eq!(hit(pillar, (0.0, 1.5), (1.0, 0.0)), Some((2.0, Side::X)));
     assert_eq!(hit(pillar, (2.5, 0.0), (0.0, 1.0)), Some((1.0, Side::Y)));
-    // Along its edge, in the cell: it touches.
+    // A ray along its edge, in the cell, touches it.
     assert_eq!(hit(pillar, (0.0, 1.0), (1.0, 0.0)), Some((2.5, Side::Y)));
-    // An ulp beyond, in the next cell.
+    // A ray an ulp farther away is in the next cell.
     assert_eq!(hit(pillar, (0.0, 1.0_f64.next_down()), (1.0, 0.0)), None);
 }
 
@@ -246,7 +246,7 @@ fn a_line_is_met_at_its_tips_and_not_along_itself() {
     assert_eq!(hit(diagonal, (1.0, 0.0), (1.0, 1.0)), None);
     let across = hit(diagonal, (3.0, 1.0), (-1.0, 1.0));
     assert_eq!(across, Some((0.5, Side::X)));
-    // Through the end in the north-west, on rays through the cell.
+    // Rays through the end in the north-west that also pass through the cell.
     for direction in [(1.0, 0.5), (1.0, 0.0), (0.5, 1.0)] {
         let origin = (2.0 - direction.0, 1.0 - direction.1);
         assert_eq!(hit(diagonal, origin, direction).map(|(t, _)| t), Some(1.0), "{direction:?}");

@@ -15,7 +15,7 @@ use ratatui::style::Color;
 use ratatui::widgets::StatefulWidget;
 use serde_json::Value;
 
-/// Levels that stay as they are, unlike those of the campaign.
+/// Levels that never change, unlike the levels of the campaign.
 const LEVELS: [&str; 5] = ["cellar", "museum", "citadel", "cistern", "observatory"];
 
 /// Compares with a golden file, whose bytes are the same on every machine.
@@ -114,7 +114,7 @@ fn ansi_shows_the_same_cells_in_a_terminal() {
             vt100::Parser::new(NonZeroU16::new(24).unwrap(), NonZeroU16::new(80).unwrap(), 0);
         terminal.process(&String::from_utf8(ansi).unwrap().replace('\n', "\r\n").into_bytes()[..]);
         let shown: Vec<String> = terminal.screen().rows(0, 80).collect();
-        // The last line break scrolled the first row away.
+        // The last line break has scrolled the first row away.
         for (row, line) in text.lines().skip(1).enumerate() {
             assert_eq!(shown[row].trim_end(), line.trim_end(), "{depth}, row {row}");
         }
@@ -161,7 +161,7 @@ fn a_camera_in_a_wall_is_reported() {
     assert!(remark(&["maps/gallery/floor.toml", "--eye", "1.0"]).is_empty());
 }
 
-/// The map in which this fault was found.
+/// The map is the one in which this fault was found.
 #[test]
 fn an_unreachable_exit_is_reported() {
     let check = |map: &str| String::from_utf8(output_of(&["check", map])).unwrap();

@@ -59,7 +59,7 @@ fn camera() -> impl Strategy<Value = Camera> {
     )
 }
 
-/// Whether another body is between the sun and `point` on `body`, by casting at each body
+/// Returns whether another body is between the sun and `point` on `body`, by casting at each body
 /// separately.
 fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
     let others = scene.bodies.iter().enumerate().filter(|&(index, _)| index != body);
@@ -72,8 +72,8 @@ fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
 }
 
 proptest! {
-    /// By an angle instead of a quadratic equation: a sphere of radius r at distance d covers the
-    /// cone of half-angle asin(r/d) around its center.
+    /// The oracle uses an angle instead of a quadratic equation: a sphere of radius r at distance d
+    /// covers the cone of half-angle asin(r/d) around its center.
     #[test]
     fn a_spheres_outline_is_where_geometry_says(
         toward in direction(),
@@ -109,7 +109,7 @@ proptest! {
         prop_assert!((hit.t - distance).abs() <= rounding, "{} for {distance}", hit.t);
         let tilt = 1e-6 + f64::EPSILON * 4.0 * center.length() / radius;
         prop_assert!((hit.normal - outwards).length() < tilt);
-        // From inside, a ray through the center hits the far side.
+        // A ray from inside through the center hits the far side.
         let inside = scene([sphere]).cast(&Ray::new(center, aside)).unwrap();
         prop_assert!((inside.t / radius - 1.0).abs() <= ROUNDING);
     }
@@ -257,7 +257,7 @@ fn far_squares_are_grey() {
     let mut frame = Frame::new(FrameSize::new(80, 400).unwrap(), PixelAspect::SQUARE);
     Renderer::new().render(&scene, &camera, &mut frame);
     for column in 0..80 {
-        // Half of white in linear light.
+        // Half of white, in linear light.
         assert!(frame.pixel(column, 200).red().abs_diff(188) <= 6, "{}", frame.pixel(column, 200));
     }
 }
@@ -295,7 +295,7 @@ fn a_sphere_ahead_is_round() {
     assert!(down > 8 && across.abs_diff(2 * down) <= 2, "{across} by {down}");
 }
 
-/// Where bodies overlap on the screen, a ray is tested against few of them.
+/// If bodies overlap on the screen, a ray is tested against only a few of them.
 #[test]
 fn bodies_that_overlap_cost_little_more_than_the_nearest() {
     let place = |index: u32, factor: u32| f64::from(index * factor % 1000) / 1000.0;
@@ -313,8 +313,8 @@ fn bodies_that_overlap_cost_little_more_than_the_nearest() {
     assert!(explained.tests < 50 * explained.rays, "{} tests", explained.tests);
 }
 
-/// Draws `scene` in bands, and goes on before as many of them. Returns whether the frame is complete, and
-/// the number of bands.
+/// Draws `scene` in bands while fewer than `most` are drawn. Returns whether the frame is complete,
+/// and the number of bands.
 fn draw_bands(scene: &Scene, camera: &Camera, frame: &mut Frame, most: u64) -> (bool, u64) {
     let mut bands = 0;
     let is_complete = Renderer::new().render_while(scene, camera, frame, &mut || {

@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{StatefulWidget, Widget};
 
-/// A texture takes memory when it is first seen.
+/// A texture takes memory when it is first visible.
 #[test]
 fn drawing_a_frame_allocates_nothing_but_new_textures_after_the_first() {
     for level in builtin::LEVELS {
@@ -159,7 +159,7 @@ fn the_whole_pipeline_allocates_nothing_once_its_memory_has_grown() {
             });
             frames.sum::<u64>()
         };
-        // The second walk starts where the first ended, and sees other things.
+        // The second walk starts where the first ended, and shows other things.
         pass();
         assert_eq!(pass(), 0, "{fidelity}");
     }

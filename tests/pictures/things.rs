@@ -1,4 +1,4 @@
-//! Things: visible and hidden pixels, compared with a calculation for each pixel.
+//! Things: visible and hidden pixels, compared with a separate calculation for each pixel.
 
 use cellcaster::color::Rgb;
 use cellcaster::game::{Game, Intent, Intents};
@@ -74,7 +74,7 @@ proptest! {
         prop_assert!(frame_of(&with, &camera) != frame_of(&without, &camera));
     }
 
-    /// Each pixel is computed separately: it shows the thing, or the picture without it.
+    /// Each pixel is computed separately: it shows the thing, or else the picture without it.
     #[test]
     fn its_pixels_are_those_of_a_calculation_for_each(
         x in 1.3..4.5,
@@ -100,7 +100,7 @@ proptest! {
         prop_assert!(compared > WIDTH * HEIGHT * 9 / 10, "{compared} pixels");
     }
 
-    /// As above, for a figure at any place.
+    /// The same as above, for a figure at any place.
     #[test]
     fn the_pixels_of_a_figure_are_those_of_a_calculation_for_each(
         x in 1.3..4.5,
@@ -111,7 +111,7 @@ proptest! {
         opacity in prop_oneof![1 => Just(0), 2 => Just(u8::MAX), 2 => any::<u8>()],
         sprite in prop::sample::select(&SPRITES[..]),
     ) {
-        // The thing that brings the sprite is behind walls.
+        // The thing that provides the sprite is behind walls.
         let grid = "########\n#@.....#\n#.....##\n#......#\n#......#\n########\n#t######\n########\n";
         let [mut world, empty] = with_and_without(grid, sprite);
         let heading = Heading::from_degrees(degrees.0).unwrap();
@@ -132,8 +132,8 @@ proptest! {
     }
 }
 
-/// Maps with a room around a court: everything is level in one, and a tile that is not is out of view in
-/// the other.
+/// Maps with a room around a court. In one, everything is level; in the other, an uneven tile is
+/// out of view.
 fn level_and_uneven(thing: &str) -> [World; 2] {
     let world = |last_row: &str| {
         let text = format!(
@@ -154,7 +154,7 @@ const TALLER_THAN_THE_ROOM: [&str; 3] = [
 ];
 
 proptest! {
-    /// A thing reaches neither through the ceiling nor through the floor, whichever way draws it.
+    /// A thing reaches neither through the ceiling nor through the floor, in either way of drawing.
     #[test]
     fn what_is_taller_than_the_room_is_cut_off(
         x in prop_oneof![2.1..7.9, (3..8).prop_map(|line| f64::from(line) + 1e-7)],
@@ -174,7 +174,7 @@ proptest! {
     }
 }
 
-/// The figure that stands where the first thing of a level world does.
+/// A figure in the place of the first thing of a level world.
 fn standing(world: &World) -> Figure {
     let thing = world.things()[0];
     let sprite = world.sprite(thing.sprite);
@@ -249,7 +249,7 @@ impl<'a> Oracle<'a> {
 #[test]
 fn a_symmetrical_scene_is_symmetrical() {
     let grid = "#######\n#.....#\n#.t.t.#\n#..t..#\n#.....#\n#..@..#\n#######\n";
-    // The table is a built-in sprite that is its own mirror image; bricks are not symmetrical.
+    // The table is a built-in sprite that is its own mirror image, but bricks are not symmetrical.
     let text = format!(
         "grid = '''\n{grid}'''\ntiles.'#'.wall = '#804030'\n\
          things = {{ '@'.start = 0, 't'.sprite = 'table' }}\n"
@@ -340,7 +340,7 @@ fn a_picture_changes_when_its_next_frame_is_due_and_not_before() {
     assert!(draw(change + 0.01).0 != first);
 }
 
-/// The number of pixels in which a thing shows behind a tile, under the sky.
+/// The number of pixels in which a thing is visible behind a tile, under the sky.
 fn pixels_behind(tile: &str, thing: &str, ceiling_height: f64) -> usize {
     let [with, without] = ["B", "."].map(|cell| {
         let text = format!(
@@ -353,7 +353,7 @@ fn pixels_behind(tile: &str, thing: &str, ceiling_height: f64) -> usize {
     with.rows().flatten().zip(without.rows().flatten()).filter(|(one, other)| one != other).count()
 }
 
-/// It hangs as high as the ceiling would be.
+/// The thing hangs at the height that the ceiling would have.
 #[test]
 fn a_thing_hangs_above_a_low_wall_under_the_sky() {
     let thing = "sprite = 'column', height = 0.5, anchor = 'ceiling'";
@@ -365,7 +365,7 @@ fn a_thing_hangs_above_a_low_wall_under_the_sky() {
     }
 }
 
-/// It does whatever the height of the ceiling is, which nobody sees.
+/// This does not depend on the height of the ceiling, which is not visible.
 #[test]
 fn a_tall_thing_shows_above_a_wall_under_the_sky() {
     let column = "sprite = 'column', height = 3";

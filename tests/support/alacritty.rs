@@ -1,4 +1,4 @@
-//! Alacritty's emulator: cells, the palette and its answers.
+//! Alacritty's emulator: cells, the palette, and its answers.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::collections::BTreeSet;
@@ -18,7 +18,7 @@ pub(crate) struct Alacritty {
     events: Receiver<Event>,
 }
 
-/// Passes on what the emulator asks of its window.
+/// Passes on the emulator's requests to its window.
 struct Events(Sender<Event>);
 
 impl EventListener for Events {
@@ -53,10 +53,11 @@ impl Alacritty {
         Self { terminal, parser: Processor::new(), events }
     }
 
-    /// Takes `bytes`, and returns what the terminal answers.
+    /// Processes `bytes`, and returns the terminal's answers.
     pub(crate) fn process(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut answers = Vec::new();
-        // A query is answered before the next sequence changes what was asked for.
+        // Each byte is processed separately, so that a query is answered before the next sequence
+        // changes its subject.
         for byte in bytes {
             self.parser.advance(&mut self.terminal, std::slice::from_ref(byte));
             for event in self.events.try_iter() {
@@ -83,7 +84,7 @@ impl Alacritty {
         *self.terminal.mode()
     }
 
-    /// What the screen shows, row by row.
+    /// The text of the screen, row by row.
     pub(crate) fn text(&self) -> String {
         let row = |row| {
             let columns = 0..self.terminal.columns() as u16;
@@ -98,8 +99,8 @@ impl Alacritty {
         self.cell(column, row).c
     }
 
-    /// The colours of a cell's character and of its background, as its palette has them; `None` for the
-    /// terminal's own.
+    /// The colours of a cell's character and of its background, resolved through the palette.
+    /// `None` for the terminal's own colours.
     pub(crate) fn colors(&self, column: u16, row: u16) -> [Option<[u8; 3]>; 2] {
         let cell = self.cell(column, row);
         [cell.fg, cell.bg].map(|color| match color {
@@ -110,8 +111,8 @@ impl Alacritty {
         })
     }
 
-    /// What a cell shows in its upper and its lower half; `None` for other characters than blocks, and for the
-    /// terminal's own colours.
+    /// The colours of the upper and the lower half of a cell. `None` for characters other than
+    /// blocks, and for the terminal's own colours.
     pub(crate) fn halves(&self, column: u16, row: u16) -> Option<[[u8; 3]; 2]> {
         let [text, ground] = self.colors(column, row);
         match self.character(column, row) {
@@ -123,8 +124,8 @@ impl Alacritty {
         }
     }
 
-    /// The entries of the palette that cells are shown in, or that the next character would be. A space
-    /// does not show its text colour, nor a full block its background.
+    /// The palette entries in which cells are shown, or in which the next character would be. A
+    /// space does not show its text colour, and a full block does not show its background.
     pub(crate) fn entries_in_use(&self) -> BTreeSet<u8> {
         let rows = 0..self.terminal.screen_lines() as u16;
         let places = rows
@@ -145,13 +146,13 @@ impl Alacritty {
             .collect()
     }
 
-    /// The entries of the palette that are defined.
+    /// The palette entries that are defined.
     pub(crate) fn entries_defined(&self) -> BTreeSet<u8> {
         let is_defined = |entry: &u8| defined(&self.terminal, usize::from(*entry)).is_some();
         (0..=u8::MAX).filter(is_defined).collect()
     }
 
-    /// The colour of an entry of the palette.
+    /// The colour of a palette entry.
     pub(crate) fn entry(&self, entry: u8) -> [u8; 3] {
         defined(&self.terminal, usize::from(entry)).unwrap_or_else(|| standard(entry))
     }
@@ -165,8 +166,8 @@ fn defined(terminal: &Term<Events>, entry: usize) -> Option<[u8; 3]> {
     terminal.colors()[entry].map(|Rgb { r, g, b }| [r, g, b])
 }
 
-/// The colour of an entry of xterm's palette from the sixteenth on; those below differ from user to user, and
-/// are black here.
+/// The colour of an entry of xterm's palette, from the sixteenth on. The entries below differ from
+/// user to user, and are black here.
 pub(crate) fn standard(entry: u8) -> [u8; 3] {
     match entry {
         0..16 => [0; 3],

@@ -1,24 +1,24 @@
-//! Players who want anything, and one who follows a script.
+//! Players with arbitrary intents, and a player who follows a script.
 
 use cellcaster::game::{Game, Input, Intent, Intents, Look, PlayerColor, PlayerId};
 use cellcaster::rng::SplitMix64;
 
-/// What players want in the steps to come.
+/// The intents of players in the coming steps.
 pub(crate) struct Crowd {
     script: std::vec::IntoIter<Intents>,
     most: usize,
     random: SplitMix64,
-    /// What each slot wants, and for how many steps.
+    /// The intents of each slot, and the number of steps for which they last.
     wants: [(Intents, usize); 16],
 }
 
 impl Crowd {
-    /// At most `most` players; the one in the first slot follows `script` to its end.
+    /// At most `most` players. The player in the first slot follows `script` to its end.
     pub(crate) fn new(script: Vec<Intents>, most: usize, random: SplitMix64) -> Self {
         Self { script: script.into_iter(), most, random, wants: [(Intents::new(), 0); 16] }
     }
 
-    /// Lets the same happen in all `games`, which are equal.
+    /// Applies the same inputs to all `games`, which must be equal.
     pub(crate) fn step(&mut self, games: &mut [&mut Game]) {
         let present: Vec<PlayerId> = games[0].players().collect();
         let joins = present.is_empty() || self.random.one_in(120);
@@ -47,7 +47,7 @@ impl Crowd {
         }
     }
 
-    /// The same in games for one.
+    /// The same in single-player games.
     pub(crate) fn step_alone(&mut self, games: &mut [&mut Game]) {
         let intents = self.want(0);
         for game in games {
@@ -55,7 +55,7 @@ impl Crowd {
         }
     }
 
-    /// What the player in a slot wants in the next step.
+    /// The intents of the player in a slot for the next step.
     pub(crate) fn want(&mut self, slot: usize) -> Intents {
         if let Some(intents) = self.script.next().filter(|_| slot == 0) {
             return intents;

@@ -21,8 +21,8 @@ pub(crate) enum Speaks {
     /// for mouse positions in pixels. A key release arrives whenever the program switches the
     /// protocol off.
     Kitty,
-    /// What Alacritty does, whose palette can be defined, and which repeats characters. The screen is
-    /// [its own](Emulator::alacritty).
+    /// The same queries as Alacritty, whose palette can be defined, and which repeats characters.
+    /// The screen is [its own](Emulator::alacritty).
     Alacritty,
 }
 
@@ -34,13 +34,13 @@ pub(crate) struct Modes {
     pub(crate) cursor_hidden: bool,
     pub(crate) wrap: bool,
     pub(crate) synchronized: bool,
-    /// Whether changes of the focus are reported.
+    /// `true` if changes of the focus are reported.
     pub(crate) focus: bool,
-    /// The events of the mouse that are reported, and their encoding.
+    /// The reported events of the mouse, and their encoding.
     pub(crate) mouse: (MouseProtocolMode, MouseProtocolEncoding),
-    /// Whether its position is reported in pixels.
+    /// `true` if the position of the mouse is reported in pixels.
     pub(crate) mouse_pixels: bool,
-    /// The number of sets of keyboard flags on the stack of the main and of the alternate screen.
+    /// The number of keyboard flag sets on the stacks of the main and of the alternate screen.
     pub(crate) key_flags: [i32; 2],
 }
 
@@ -80,7 +80,7 @@ struct Extensions {
 /// The requests for the terminal's status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Statuses {
-    /// Whether answers are lost.
+    /// `true` if answers are lost.
     pub(crate) lost: bool,
     /// The number of unanswered requests.
     pub(crate) unanswered: usize,
@@ -113,8 +113,8 @@ impl Emulator {
         [last_motion(bytes), &self.answer_about_colors(before), &answers].concat()
     }
 
-    /// Answers the query for 24-bit colours, in a kind of string that the parser ignores. It ends
-    /// after the first `before` bytes.
+    /// Answers the query for 24-bit colours, which is in a kind of string that the parser ignores.
+    /// The query must end after the first `before` bytes.
     fn answer_about_colors(&mut self, before: usize) -> Vec<u8> {
         const QUERY: &[u8] = b"\x1bP+q524742\x1b\\";
         const ANSWER: &[u8] = b"\x1bP1+r524742=38\x1b\\";
@@ -141,8 +141,8 @@ impl Emulator {
         self.parser.screen()
     }
 
-    /// The colours of the upper and the lower half of a cell; `None` for other characters than blocks, and for
-    /// the terminal's own colours.
+    /// The colours of the upper and the lower half of a cell. `None` for characters other than
+    /// blocks, and for the terminal's own colours.
     pub(crate) fn halves(&self, column: u16, row: u16) -> Option<[[u8; 3]; 2]> {
         if let Some(alacritty) = &self.alacritty {
             return alacritty.halves(column, row);
@@ -161,7 +161,7 @@ impl Emulator {
         }
     }
 
-    /// The emulator of a terminal that speaks as Alacritty does.
+    /// The emulator of a terminal that speaks like Alacritty.
     pub(crate) fn alacritty(&self) -> &Alacritty {
         self.alacritty.as_ref().unwrap()
     }
@@ -240,7 +240,7 @@ impl Callbacks for Extensions {
     }
 }
 
-/// The motion of the mouse that is always in flight when a program disables its reports.
+/// A motion of the mouse, which is always on its way when a program disables mouse reports.
 fn last_motion(bytes: &[u8]) -> &'static [u8] {
     const DISABLE: &[u8] = b"\x1b[?1003l";
     let is_disabled = bytes.windows(DISABLE.len()).any(|window| window == DISABLE);

@@ -11,8 +11,8 @@ pub(crate) fn camera(position: impl Into<DVec2>, degrees: f64, field_of_view: f6
     Camera::new(position.into(), heading, field_of_view).unwrap()
 }
 
-/// The distance of `point` to the nearest cell around it that a wall fills. Pillars and other shapes,
-/// which leave room in their cells, do not count.
+/// The distance from `point` to the nearest cell around it that a wall fills. Pillars and other
+/// shapes do not count, because they leave room in their cells.
 pub(crate) fn clearance(world: &World, point: DVec2) -> f64 {
     let (column, row) = (point.x as i64, point.y as i64);
     let around =

@@ -8,7 +8,7 @@ use vt100::{Color, Screen};
 pub(crate) enum Look {
     /// The colours of an upper and a lower pixel.
     Pixels([Color; 2]),
-    /// A character, its colours, and whether they are reversed.
+    /// A character, its colours, and whether the colours are reversed.
     Text(String, [Color; 2], bool),
 }
 

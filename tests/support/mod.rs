@@ -11,7 +11,7 @@ pub(crate) fn cellcaster(arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs the program with that standard input.
+/// Runs the program with this standard input.
 pub(crate) fn run_with_input(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = cellcaster(arguments)
         .stdin(Stdio::piped())

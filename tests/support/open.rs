@@ -1,18 +1,19 @@
-//! Whether a body is inside anything: an independent predicate, from the tiles and things of a world.
+//! An independent test whether a body is inside anything, based on the tiles and things of a world.
 
 use cellcaster::world::{Anchor, Ceiling, Cell, Gap, ShapeHeight, TileKind, World};
 use glam::DVec2;
 
 const RADIUS: f64 = 0.25;
-/// The player's least height.
+/// The player's smallest height.
 const DUCKING: f64 = 0.5;
 
-/// Whether the whole player, at the least height, is in gaps of the cells around the position.
+/// Returns whether the whole player, at the smallest height, fits into gaps of the cells around the
+/// position.
 pub(crate) fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
     is_open_for(world, position, feet, DUCKING)
 }
 
-/// Whether a body of this height is in gaps of the cells around the position.
+/// Returns whether a body of this height fits into gaps of the cells around the position.
 pub(crate) fn is_open_for(world: &World, position: DVec2, feet: f64, height: f64) -> bool {
     let (column, row) = (position.x.floor() as i64, position.y.floor() as i64);
     let around =
@@ -29,7 +30,7 @@ pub(crate) fn is_open_for(world: &World, position: DVec2, feet: f64, height: f64
         })
 }
 
-/// The gaps of a cell without its things; none off the map.
+/// The gaps of a cell without its things; empty off the map.
 fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     use TileKind::{Door, Glass, Mask};
     let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else {
@@ -51,7 +52,7 @@ fn gaps(world: &World, column: i64, row: i64) -> Vec<Gap> {
     .collect()
 }
 
-/// Whether the player is beside or above the shape in a cell, if there is one.
+/// Returns whether the player is beside or above the shape in a cell. `true` if there is no shape.
 fn is_beside_shape(world: &World, column: i64, row: i64, position: DVec2, feet: f64) -> bool {
     let Some(tile) = world.grid().tile(column, row).map(|id| world.tile(id)) else { return true };
     let TileKind::Shape(shape) = tile.kind else { return true };

@@ -1,5 +1,5 @@
-//! A player that finds its own way: it walks, ducks, jumps, opens and throws towards given cells, and
-//! records its intents as a script.
+//! A player that finds its own way. It walks, ducks, jumps, opens and throws towards given cells,
+//! and records its intents as a script.
 
 use std::fmt::Write;
 
@@ -11,12 +11,12 @@ use crate::ways::Ways;
 
 /// The largest turn in a step, in degrees.
 const TURN: f64 = 6.0;
-/// The distance from the middle of a cell at which the player is there, in cells.
+/// The distance from the middle of a cell at which the player has arrived, in cells.
 const NEAR: f64 = 0.25;
-/// How far a cell's middle may be to be opened or pulled, in cells.
+/// The largest distance at which a cell can be opened or pulled, measured to its middle, in cells.
 const REACH: f64 = 0.72;
 
-/// How the player moves on the ground.
+/// The player's pace on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
     /// Ducking.
@@ -27,17 +27,18 @@ pub(crate) enum Pace {
     Run,
 }
 
-/// How the player controls the game.
+/// The way in which the player controls the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
-    /// By turns and steps of any size.
+    /// Turns and steps of any size.
     Free,
-    /// By taps on the keys to walk, without turning. Such a script can be typed at a keyboard that
+    /// Taps on the walking keys, without turning. Such a script can be typed at a keyboard that
     /// reports no releases.
     Taps,
 }
 
-/// The steps for which a tap walks, and those between two taps: no keyboard repeats as slowly.
+/// The number of steps that a tap walks, and the number of steps between two taps. No keyboard
+/// repeats this slowly.
 const TAP: u32 = 5;
 const BETWEEN_TAPS: u32 = 2;
 
@@ -61,17 +62,17 @@ impl Pilot {
         Self { control: Control::Taps, ..Self::new(game) }
     }
 
-    /// Whether the pilot only taps keys.
+    /// Returns whether the pilot only taps keys.
     pub(crate) fn taps(&self) -> bool {
         self.control == Control::Taps
     }
 
-    /// The steps so far.
+    /// The number of recorded steps.
     pub(crate) fn steps(&self) -> u64 {
         self.stretches.iter().map(|&(steps, _)| u64::from(steps)).sum()
     }
 
-    /// The intents so far, as lines of a script.
+    /// The recorded intents, as lines of a script.
     pub(crate) fn script(&self) -> String {
         let mut text = String::new();
         for &(steps, intents) in &self.stretches {
@@ -106,7 +107,7 @@ impl Pilot {
         (0..steps).for_each(|_| self.step(Intents::new()));
     }
 
-    /// Goes along `ways` for at most a number of steps; whether the player has arrived.
+    /// Goes along `ways` for at most `steps` steps. Returns whether the player has arrived.
     pub(crate) fn go(&mut self, ways: &Ways, pace: Pace, steps: u32) -> bool {
         let moves = if self.taps() { steps.div_ceil(TAP + BETWEEN_TAPS) } else { steps };
         for _ in 0..moves {
@@ -123,7 +124,8 @@ impl Pilot {
         self.has_arrived(ways)
     }
 
-    /// Taps the key that leads farthest towards `target`; if a wall is in its way, the other one.
+    /// Taps the key that leads farthest towards `target`. If a wall is in its way, taps the other
+    /// key.
     fn tap_towards(&mut self, target: DVec2) {
         let before = self.position();
         let to = target - before;
@@ -148,7 +150,7 @@ impl Pilot {
         }
     }
 
-    /// Turns to `cell` and opens what is there: a lever, a flame or a secret wall.
+    /// Turns to `cell` and opens the thing there: a lever, a flame or a secret wall.
     pub(crate) fn open(&mut self, cell: Cell) {
         for _ in 0..90 {
             let to = cell.center() - self.position();
@@ -167,7 +169,7 @@ impl Pilot {
         self.wait(2);
     }
 
-    /// Turns to `cell` and does something that works once a press.
+    /// Turns to `cell` and does something that takes one press of a key.
     pub(crate) fn act_towards(&mut self, cell: Cell, intent: Intent) {
         self.face(cell);
         self.wait(1);
@@ -175,9 +177,9 @@ impl Pilot {
         self.wait(1);
     }
 
-    /// Jumps to `cell` from where the player stands: tries each time of take-off, and keeps the first
-    /// that ends there. Whether there is one.
-    /// `height` is that of what stands there, if it is not the floor.
+    /// Jumps from the player's position to `cell`. Tries each time of take-off, and keeps the first
+    /// jump that ends there. Returns whether there is one. `height` is the height of the thing
+    /// there, if the target is not the floor.
     pub(crate) fn hop(&mut self, cell: Cell, height: Option<f64>) -> bool {
         let floor = height.unwrap_or_else(|| self.game.world().floor_at(cell));
         for (pace, run_up) in
@@ -194,7 +196,7 @@ impl Pilot {
         false
     }
 
-    /// Walks straight to `cell`, over edges; whether the player has arrived and stands.
+    /// Walks straight to `cell`, over edges. Returns whether the player has arrived and stands.
     pub(crate) fn straight(&mut self, cell: Cell) -> bool {
         for _ in 0..300 {
             let is_there = (cell.center() - self.position()).length() < NEAR;
@@ -234,7 +236,7 @@ impl Pilot {
         false
     }
 
-    /// Wants something for one step.
+    /// Applies an intent for one step.
     pub(crate) fn press(&mut self, intent: Intent) {
         self.step([intent].into_iter().collect());
     }
@@ -264,7 +266,7 @@ impl Pilot {
         self.step(walking.with_look(look.unwrap_or(Look::NONE)));
     }
 
-    /// The turn of the next step; `None` if the player looks there.
+    /// The turn of the next step; `None` if the player already looks there.
     fn turn_to(&self, to: DVec2) -> Option<Look> {
         let error = self.error(to);
         let turn = (error.clamp(-TURN, TURN) * f64::from(Look::PER_DEGREE)).round() as i16;

@@ -20,7 +20,7 @@ use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
 use super::emulator::{Emulator, Modes, Speaks};
 
-/// The longest wait. Expected events take milliseconds; a machine under load is slower.
+/// The longest wait. Expected events take milliseconds, and more on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A program and its terminal.
@@ -31,7 +31,7 @@ pub(crate) struct Player {
     terminal: Pts,
     attributes_before: Termios,
     shared: Arc<Shared>,
-    /// What the program keeps, unless `environment` names another folder.
+    /// The program's data folder, unless `environment` names another one.
     data: PathBuf,
 }
 
@@ -50,14 +50,15 @@ struct State {
 
 /// A terminal that stops reading.
 struct Stall {
-    /// It stops when it has received these bytes, and only then answers what came before.
+    /// The bytes at which the terminal stops reading. Only then does it answer the queries before
+    /// them.
     at: &'static [u8],
     answers: Vec<u8>,
 }
 
 impl Player {
-    /// Starts `program` in a terminal of `columns` by `rows` that answers as `speaks`. The
-    /// environment of the program consists of `TERM`, an empty folder for what it keeps, and `environment`.
+    /// Starts `program` in a terminal of `columns` by `rows` that answers according to `speaks`.
+    /// The environment of the program consists of `TERM`, an empty data folder, and `environment`.
     pub(crate) fn start<A: AsRef<OsStr>>(
         size: (u16, u16),
         speaks: Speaks,
@@ -68,8 +69,8 @@ impl Player {
         Self::start_in(size, (speaks, None), program, arguments, environment)
     }
 
-    /// Does the same in a terminal that answers nothing until it has received `stalls_at`; then it
-    /// answers and stops reading.
+    /// Does the same in a terminal that answers nothing until it has received `stalls_at`. It then
+    /// answers, and stops reading.
     pub(crate) fn start_stalling<A: AsRef<OsStr>>(
         size: (u16, u16),
         speaks: Speaks,
@@ -116,12 +117,12 @@ impl Player {
         Self { child, pty, terminal, attributes_before, shared, data }
     }
 
-    /// Sends `bytes`, as the terminal would for keys.
+    /// Sends `bytes`, as the terminal would send them for keys.
     pub(crate) fn send(&self, bytes: impl AsRef<[u8]>) {
         (&*self.pty).write_all(bytes.as_ref()).unwrap();
     }
 
-    /// Waits until the program has read all that was sent.
+    /// Waits until the program has read everything that was sent.
     #[track_caller]
     pub(crate) fn wait_until_read(&self) {
         let deadline = Instant::now() + PATIENCE;
@@ -147,8 +148,8 @@ impl Player {
         self.pty.resize(Size::new_with_pixel(rows, columns, width, height)).unwrap();
     }
 
-    /// Waits until the screen between two frames satisfies `condition`. Fails with the screen if it
-    /// never does.
+    /// Waits until the screen satisfies `condition` between two frames. If it never does, fails and
+    /// shows the screen.
     #[track_caller]
     pub(crate) fn wait_until(&self, what: &str, condition: impl Fn(&Emulator) -> bool) {
         let unmet =
@@ -164,7 +165,7 @@ impl Player {
         self.wait_until(&format!("showed {text:?}"), |emulator| emulator.text().contains(text));
     }
 
-    /// Sets whether the terminal reads the program's output; a link that is down does not.
+    /// Sets whether the terminal reads the program's output. A link that is down does not read.
     pub(crate) fn set_reading(&self, reading: bool) {
         self.state().reading = reading;
         self.shared.changed.notify_all();
@@ -210,7 +211,7 @@ impl Player {
         tcsetattr(&self.terminal, OptionalActions::Now, &self.attributes_before).unwrap();
     }
 
-    /// Whether the program has ended.
+    /// Returns whether the program has ended.
     pub(crate) fn has_ended(&mut self) -> bool {
         self.child.try_wait().unwrap().is_some()
     }
@@ -221,7 +222,7 @@ impl Player {
         kill_process(id, signal).unwrap();
     }
 
-    /// Sends the program a signal that has a number only.
+    /// Sends the program a signal that has only a number.
     #[cfg(target_os = "linux")]
     pub(crate) fn signal_number(&self, number: i32) {
         let (number, id) = (format!("-{number}"), self.child.id().to_string());
@@ -229,8 +230,7 @@ impl Player {
         assert!(kill.unwrap().success());
     }
 
-    /// Waits until the program has ended and the terminal has read its output. Returns how it
-    /// ended.
+    /// Waits until the program has ended and the terminal has read its output. Returns the ending.
     pub(crate) fn wait_for_end(&mut self) -> Ending {
         let deadline = Instant::now() + PATIENCE;
         let status = loop {
@@ -253,7 +253,7 @@ impl Player {
         }
     }
 
-    /// Waits until nothing has been written for half a second.
+    /// Waits until the program has written nothing for half a second.
     #[track_caller]
     pub(crate) fn wait_for_rest(&self) {
         const REST: Duration = Duration::from_millis(500);
@@ -266,7 +266,7 @@ impl Player {
         }
     }
 
-    /// The process of the program.
+    /// The process id of the program.
     pub(crate) fn process(&self) -> u32 {
         self.child.id()
     }
@@ -296,7 +296,8 @@ impl Player {
         self.state().emulator.bytes().len()
     }
 
-    /// Whether the terminal's attributes, such as raw mode, are those from before the program.
+    /// Returns whether the terminal's attributes, such as raw mode, are the same as before the
+    /// program.
     pub(crate) fn attributes_restored(&self) -> bool {
         let now = tcgetattr(&*self.pty).unwrap();
         let before = &self.attributes_before;
@@ -306,7 +307,7 @@ impl Player {
             && now.local_modes == before.local_modes
     }
 
-    /// The unread input, which a shell would get.
+    /// The unread input, which a shell would receive.
     fn leftover_input(&self) -> Vec<u8> {
         let mut raw = tcgetattr(&self.terminal).unwrap();
         raw.make_raw();
@@ -327,8 +328,8 @@ impl Player {
 }
 
 impl State {
-    /// The answers to send now, of which `answers` are the newest, and whether the terminal stops
-    /// reading then.
+    /// The answers to send now, of which `answers` are the newest, and whether the terminal then
+    /// stops reading.
     fn answers_to_send(&mut self, answers: Vec<u8>) -> (Vec<u8>, bool) {
         let Some(stall) = &mut self.stall else { return (answers, false) };
         stall.answers.extend(answers);
@@ -341,13 +342,13 @@ impl State {
     }
 }
 
-/// A folder that no other player has; the program creates it with the first change.
+/// A folder that no other player has. The program creates it when it first stores something.
 fn new_data_folder() -> PathBuf {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = format!("player-{}-{number}", std::process::id());
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    // A process with the same number may have been ended early.
+    // A process with the same id may have been killed early.
     _ = fs::remove_dir_all(&folder);
     folder
 }

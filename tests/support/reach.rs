@@ -1,23 +1,23 @@
-//! The places in a level that a player may reach, and those that a player surely reaches.
+//! The places in a level that a player may reach, and the places that a player surely reaches.
 //!
 //! A place to stand is a cell and a height in it. The set of places that a player
-//! [may](Gait::Jumps) reach is too large: the player flies as far as speed and jump can carry them,
-//! over everything that leaves a gap. The set that a player [surely](Gait::IsSure) reaches is too
-//! small: only easy steps, ledges and jumps count. A search by random play was refused: finding no
-//! way would prove little.
+//! [may](Gait::Jumps) reach is too large: the player flies as far as speed and jump allow, over
+//! everything that leaves a gap. The set of places that a player [surely](Gait::IsSure) reaches is
+//! too small: only easy steps, ledges and jumps count. Rejected: a search by random play. If it
+//! found no way, that would prove little.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use cellcaster::world::{Cell, Driver, Gap, KeyId, MovingTile, ThingKind, TileId, TileKind, World};
 
-/// The player's greatest speed in cells per second, their acceleration in falling, and their speed
-/// at take-off.
+/// The player's greatest speed in cells per second, the acceleration in falling, and the speed at
+/// take-off.
 const RUN: f64 = 5.5;
 const GRAVITY: f64 = 12.0;
 const TAKE_OFF: f64 = 3.98;
 const RADIUS: f64 = 0.25;
-/// The player's least height, and the height of a step that needs no jump.
+/// The player's smallest height, and the height of a step that needs no jump.
 const DUCKING: f64 = 0.5;
 const STEP: f64 = 0.35;
 /// The height of a ledge that is easy to jump onto.
@@ -66,7 +66,7 @@ pub(crate) struct Reach<'a> {
     pub(crate) world: &'a World,
     pub(crate) gait: Gait,
     pub(crate) keys: Keys,
-    /// Whether the player picks up keys on the way.
+    /// `true` if the player picks up keys on the way.
     pub(crate) takes_keys: bool,
 }
 
@@ -77,19 +77,19 @@ impl Reach<'_> {
         Place { cell, height: self.world.floor_at(cell) }
     }
 
-    /// The places that the player reaches from a place. Picks up keys.
+    /// The places that the player reaches from `start`. Picks up keys.
     pub(crate) fn from(&mut self, start: Place) -> BTreeSet<Place> {
         self.until(start, |_| false)
     }
 
-    /// Whether the player gets from a place to one of the `goals` or to the exit.
+    /// Returns whether the player gets from `start` to one of the `goals` or to the exit.
     pub(crate) fn gets_out(&mut self, start: Place, goals: &BTreeSet<Place>) -> bool {
         let world = self.world;
         let is_goal = |place: &Place| goals.contains(place) || is_exit(world, place.cell);
         self.until(start, is_goal).iter().any(is_goal)
     }
 
-    /// The places that the player reaches from a place, up to the first goal.
+    /// The places that the player reaches from `start`, up to the first goal.
     fn until(&mut self, start: Place, is_goal: impl Fn(&Place) -> bool) -> BTreeSet<Place> {
         loop {
             let mut seen = BTreeSet::from([start]);
@@ -112,7 +112,7 @@ impl Reach<'_> {
         }
     }
 
-    /// Whether the exit is at one of `places`.
+    /// Returns whether the exit is at one of `places`.
     pub(crate) fn has_exit(&self, places: &BTreeSet<Place>) -> bool {
         places.iter().any(|place| is_exit(self.world, place.cell))
     }
@@ -124,7 +124,7 @@ impl Reach<'_> {
         })
     }
 
-    /// The places that the player may reach from a place by one flight or one step.
+    /// The places that the player may reach from `from` by one flight or one step.
     fn flights(&self, from: Place) -> Vec<Place> {
         let mut seen = BTreeSet::from([from.cell]);
         let mut waiting = vec![from.cell];
@@ -148,7 +148,8 @@ impl Reach<'_> {
         places
     }
 
-    /// The greatest height of the feet when a player from `from` first touches `cell`.
+    /// The greatest height of the feet at the moment when a player from `from` first touches
+    /// `cell`.
     fn highest(&self, from: Place, cell: Cell) -> f64 {
         let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
         let way = libm::hypot(apart(from.cell.column, cell.column), apart(from.cell.row, cell.row));
@@ -159,7 +160,7 @@ impl Reach<'_> {
         if way == 0.0 { flown.max(from.height + STEP) } else { flown }
     }
 
-    /// The places that the player surely reaches from a place.
+    /// The places that the player surely reaches from `from`.
     fn sure_steps(&self, from: Place) -> Vec<Place> {
         let mut places = Vec::new();
         for (leap, turn) in LEAPS.iter().flat_map(|leap| TURNS.map(|turn| (leap, turn))) {
@@ -178,14 +179,15 @@ impl Reach<'_> {
         places
     }
 
-    /// Whether a player who jumps from a place gets over `cell` without touching anything.
+    /// Returns whether a player who jumps from `from` gets over `cell` without touching anything.
     fn leaves_room(&self, from: Place, cell: Cell) -> bool {
         let is_open =
             |gap: Gap| gap.bottom <= from.height && gap.top - from.height >= DUCKING + LEDGE;
         self.gaps(cell).into_iter().any(is_open)
     }
 
-    /// The last state of a tile that a hand moves, as any player can open it; else the tile itself.
+    /// The last state of a tile that a player can open by hand; for any other tile, the tile
+    /// itself.
     fn opened(&self, tile: TileId) -> TileId {
         let by_hand = |moving: &&MovingTile| moving.driver == Driver::Hand;
         let moving = self.world.moving_tiles().iter().filter(by_hand);
@@ -238,7 +240,7 @@ struct Leap {
     to: (i64, i64),
     /// The offsets of the cells on the way.
     over: &'static [(i64, i64)],
-    /// The most by which the target may be higher.
+    /// The largest height by which the target may be higher.
     rise: f64,
 }
 
@@ -253,8 +255,7 @@ const LEAPS: [Leap; 5] = [
 /// The four directions, each as the offset of the cell ahead.
 const TURNS: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// Converts an offset ahead and to the right to columns and rows, for the direction of the second
-/// argument.
+/// Converts an offset ahead and to the right into columns and rows, given the direction ahead.
 fn turned((ahead, right): (i64, i64), (column, row): (i64, i64)) -> (i64, i64) {
     (ahead * column - right * row, ahead * row + right * column)
 }
@@ -262,7 +263,7 @@ fn turned((ahead, right): (i64, i64), (column, row): (i64, i64)) -> (i64, i64) {
 const AROUND: [(i64, i64); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The cell at that offset from `cell`, if its coordinates are not negative.
+/// The cell at this offset from `cell`, if its coordinates are not negative.
 fn moved(cell: Cell, (columns, rows): (i64, i64)) -> Option<Cell> {
     let column = u32::try_from(i64::from(cell.column) + columns).ok()?;
     let row = u32::try_from(i64::from(cell.row) + rows).ok()?;

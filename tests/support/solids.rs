@@ -1,8 +1,8 @@
-//! A world as a set of solids: blocks, pillars, thin walls, cubes of glass and pictures. A line hits the nearest of
-//! them.
+//! A world as a set of solids: blocks, pillars, thin walls, cubes of glass and pictures. A line
+//! hits the nearest of them.
 //!
 //! It uses no sectors, rows or cells: it tests every solid and takes the nearest hit. The colour of
-//! a hit depends on its position only. A mirror reflects the line, and with it the viewer.
+//! a hit depends only on its position. A mirror reflects the line, and the viewer with it.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 const FAR: f64 = 1e30;
 /// Things nearer than this are not drawn.
 const NEAREST: f64 = 0.2;
-/// The most mirrors that reflect a line.
+/// The largest number of mirrors that reflect a line.
 const MOST_BOUNCES: usize = 8;
 
 /// The solids of a world for one camera.
@@ -29,11 +29,12 @@ pub(crate) struct Solids<'a> {
 
 enum Solid<'a> {
     Block(Block),
-    /// A cube of glass or a mask: its front sides alone are seen, and none between cells of one tile.
+    /// A cube of glass or a mask. Only its front sides are visible, and no sides between cells with
+    /// the same tile.
     Cube {
         block: Block,
         tile: TileId,
-        /// The opacity of glass; `None` for a mask, whose texels have their own.
+        /// The opacity of glass; `None` for a mask, whose texels have their own opacity.
         opacity: Option<u8>,
     },
     Pillar {
@@ -63,9 +64,9 @@ struct Block {
     side: Paint,
     top: Paint,
     bottom: Paint,
-    /// The light of its sides, if it does not depend on the cells before them.
+    /// The light of its sides, if it does not depend on the cells in front of them.
     side_light: Option<Light>,
-    /// Whether it is ground outside of the map. Each cell before it lights its own part.
+    /// `true` for ground outside the map. Each cell in front of it lights its own part.
     is_off_map: bool,
     /// The light of its top and its bottom.
     flat_light: Light,
@@ -73,11 +74,11 @@ struct Block {
     mirror: Option<Glass>,
 }
 
-/// A line of sight, and the viewer: the camera, or its image in mirrors.
+/// A line of sight, and its viewer: the camera, or an image of the camera in mirrors.
 struct Sight {
     origin: DVec3,
     direction: DVec3,
-    /// The distance at which the line begins.
+    /// The distance at which the line starts.
     from: f64,
     forward: DVec2,
     right: DVec2,
@@ -89,7 +90,7 @@ impl Sight {
         self.origin + self.direction * t
     }
 
-    /// The sight from `t` on, where a side of `block` reflects it.
+    /// The sight from `t` on, after a side of `block` has reflected it.
     fn reflected(&self, block: &Block, face: Face, t: f64) -> Self {
         let axis = usize::from(face == Face::Y);
         let line = if self.direction[axis] > 0.0 { block.low[axis] } else { block.high[axis] };
@@ -102,18 +103,18 @@ impl Sight {
     }
 }
 
-/// The hits of a line, up to the first one that hides what is behind it.
+/// The hits of a line, up to the first opaque one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Met {
     /// The indices of the solids, from near to far, and their faces.
     faces: Vec<(usize, Face)>,
-    /// The colour that is seen.
+    /// The visible colour.
     pub(crate) color: Rgb,
-    /// Whether two pictures are equally far away, but for rounding.
+    /// `true` if two pictures are equally far away, except for rounding.
     pub(crate) is_tied: bool,
 }
 
-/// The face that a line enters by.
+/// The face by which a line enters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Face {
     X,
@@ -159,7 +160,7 @@ impl<'a> Solids<'a> {
         Self { world, camera, all }
     }
 
-    /// What a line from the camera along `direction` meets before the `sky`.
+    /// The hits of a line from the camera along `direction`, in front of the `sky`.
     pub(crate) fn meet(&self, direction: DVec3, sky: Rgb) -> Met {
         let mut sight = Sight {
             origin: self.camera.position().extend(self.camera.eye()),
@@ -181,7 +182,7 @@ impl<'a> Solids<'a> {
         met
     }
 
-    /// Adds what `sight` meets up to a mirror, and returns the sight from there on.
+    /// Adds the hits of `sight` up to a mirror, and returns the sight from there on.
     fn meet_in(
         &self,
         sight: &Sight,
@@ -214,7 +215,7 @@ impl<'a> Solids<'a> {
                 break;
             }
         }
-        // One more may be as near as the last one.
+        // One more hit may be as near as the last one.
         entries.truncate(seen + 1);
         let is_picture = |index: usize| matches!(self.all[index], Solid::Picture { .. });
         met.is_tied |= entries.windows(2).any(|pair| {
@@ -224,7 +225,7 @@ impl<'a> Solids<'a> {
         image
     }
 
-    /// Whether a position is inside of a pillar, from where nothing is seen.
+    /// Returns whether a position is inside a pillar, where nothing is visible.
     pub(crate) fn is_in_pillar(&self, place: DVec3) -> bool {
         self.all.iter().any(|solid| match *solid {
             Solid::Pillar { center, radius, heights, .. } => {
@@ -247,7 +248,7 @@ impl<'a> Solids<'a> {
                     _ => return None,
                 };
                 let id = self.world.grid().tile(before.x.floor() as i64, before.y.floor() as i64);
-                // A mirror beside the cube reflects the line into it, by no side.
+                // A mirror beside the cube reflects the line into it, through no side.
                 let is_reflected_here = from > 0.0 && t - from < 1e-9;
                 (id != Some(tile) && opacity != Some(0) && !is_reflected_here).then_some((t, face))
             }
@@ -272,11 +273,11 @@ impl<'a> Solids<'a> {
         entry.filter(|&(t, _)| t >= from)
     }
 
-    /// The colour and the opacity of a solid where `sight` meets it at `t`.
+    /// The colour and the opacity of a solid at the point where `sight` meets it, at `t`.
     fn color(&self, solid: &Solid, face: Face, sight: &Sight, t: f64) -> (Rgb, u8) {
         let (place, direction) = (sight.at(t), sight.direction);
         let light_in = |center: DVec2| self.light_in((center.x.floor(), center.y.floor()));
-        // Textures begin at whole heights.
+        // Textures start at whole heights.
         let upright = |paint, u: f64| self.texel(paint, u, -place.z);
         let flat = |paint| self.texel(paint, place.x, place.y);
         let ((texel, own_alpha), light, normal) = match *solid {
@@ -329,7 +330,7 @@ impl<'a> Solids<'a> {
         (self.lit(texel, light, normal, t), alpha)
     }
 
-    /// A colour in that light on a face with the normal `normal`, at distance `t`.
+    /// A colour in this light on a face with the normal `normal`, at distance `t`.
     fn lit(&self, color: Rgb, light: Light, normal: DVec2, t: f64) -> Rgb {
         let share = f64::midpoint(1.0, normal.x * normal.x);
         let light = (f64::from(light.in_256ths()) * share) as u32;
@@ -346,7 +347,7 @@ impl<'a> Solids<'a> {
         Rgb::new(red, green, blue)
     }
 
-    /// The tile of the cell with that corner.
+    /// The tile of the cell with this corner.
     fn tile_in(&self, (column, row): (f64, f64)) -> Option<Tile> {
         let id = self.world.grid().tile(column as i64, row as i64)?;
         Some(self.world.tile(id))
@@ -364,8 +365,8 @@ impl<'a> Solids<'a> {
         }
     }
 
-    /// The light of a face at `along`. `before` returns the cells before the face. Between the
-    /// middles of two cells that are open to each other, their light is interpolated.
+    /// The light of a face at `along`. `before` returns the cells in front of the face. If two of
+    /// them are open to each other, the light is interpolated between their middles.
     fn light_along(&self, along: f64, before: impl Fn(f64) -> (f64, f64)) -> Light {
         let first = (along - 0.5).floor();
         let share = along - 0.5 - first;
@@ -383,7 +384,8 @@ impl<'a> Solids<'a> {
         Light::new(mean.round() / 256.0).unwrap()
     }
 
-    /// The colour and the opacity of `paint` at a distance in cells from its left and its top.
+    /// The colour and the opacity of `paint` at a position, given as distances in cells from its
+    /// left and its top.
     fn texel(&self, paint: Paint, x: f64, y: f64) -> (Rgb, u8) {
         let Paint::Texture(id) = paint else { return (self.world.mean_color(paint), u8::MAX) };
         let texture = self.world.texture(id);
@@ -400,7 +402,7 @@ fn texel_of(sprite: &Sprite, shown: &Figure, place: DVec3, sight: &Sight) -> Opt
     let picture = picture_of(sprite, shown, sight);
     let beside = (place.truncate() - shown.position).dot(sight.right) / sprite.width();
     let up = place.z - shown.base;
-    // A mirror shows the mirror image of a picture that faces the viewer's image.
+    // A mirror shows the mirror image of a picture that faces the image of the viewer.
     let beside = if sight.is_mirrored { -beside } else { beside };
     let x = (beside + 0.5) * f64::from(picture.width());
     let y = (1.0 - up / sprite.height.cells()) * f64::from(picture.height());
@@ -414,8 +416,8 @@ fn picture_of<'s>(sprite: &'s Sprite, shown: &Figure, sight: &Sight) -> &'s Text
     sprite.picture_of(shown.frame, shown.heading, to_viewer)
 }
 
-/// Whether light passes between two tiles: both are open or see-through, and some of the other tile's open range
-/// is beside that above the lower ground of the two.
+/// Returns whether light passes between two tiles: both are open or see-through, and a gap of one
+/// overlaps the lowest gap of the other.
 fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
     let is_open =
         |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_));
@@ -530,7 +532,7 @@ fn ground_around(world: &World) -> impl Iterator<Item = Block> {
 }
 
 impl Block {
-    /// The point at which a line enters.
+    /// The distance at which a line enters, and the face.
     fn entry(&self, sight: &Sight) -> Option<Entry> {
         let &Sight { origin, direction, from, .. } = sight;
         let mut enters = (f64::NEG_INFINITY, Face::X);
@@ -559,7 +561,8 @@ impl Block {
     }
 }
 
-/// The point at which a line enters a pillar. Positions are relative to the pillar's axis.
+/// The distance at which a line enters a pillar, and the face. Positions are relative to the
+/// pillar's axis.
 fn pillar_entry(
     (origin, direction, from): (DVec3, DVec3, f64),
     radius: f64,
@@ -583,8 +586,8 @@ fn pillar_entry(
     }
 }
 
-/// The point at which a line crosses a thin wall along `way`. Positions are relative to the wall's
-/// start.
+/// The distance at which a line crosses a thin wall along `way`, and the face. Positions are
+/// relative to the wall's start.
 fn panel_entry(origin: DVec3, direction: DVec3, way: DVec2, heights: Gap) -> Option<Entry> {
     let (from, along) = (origin.truncate(), direction.truncate());
     let across = along.perp_dot(way);

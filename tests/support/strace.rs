@@ -1,8 +1,9 @@
-//! System calls that fail one after the other: `strace` counts those that touch certain files, and lets one
-//! of them fail.
+//! System calls that fail one after the other: `strace` counts the calls that touch certain files,
+//! and makes one of them fail.
 //!
-//! A call that fails is not made. So `close` is left alone, which on Linux closes a file even where it reports a
-//! failure, and `fcntl` with `F_GETFD`, which only debug builds of the standard library call.
+//! A call that fails is not executed. Two calls are therefore excluded. On Linux, `close` closes a
+//! file even if it reports a failure. Only debug builds of the standard library call `fcntl` with
+//! `F_GETFD`.
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ use rustix::process::{Pid, Signal, kill_process};
 /// The longest wait for the end of the log.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The `number`th call of that name, from 1, in each thread, and how it fails.
+/// The `number`th call with this name in each thread, counted from 1, and its error.
 #[derive(Clone, Debug)]
 pub(crate) struct Failure {
     pub(crate) call: String,
@@ -32,11 +33,12 @@ pub(crate) struct Traced {
     options: Vec<String>,
 }
 
-/// A program that is watched from a moment on until its end or this one's.
+/// A program that is watched from a certain moment until it ends or until this value is dropped.
 pub(crate) struct Attached(Child);
 
 impl Traced {
-    /// Watches the calls that touch `paths`, of which one may fail. The log is a new file beside `folder`.
+    /// Watches the calls that touch `paths`, one of which may fail. The log is a new file beside
+    /// `folder`.
     pub(crate) fn new(folder: &Path, paths: &[PathBuf], failure: Option<&Failure>) -> Self {
         let log = folder.with_extension("calls");
         _ = fs::remove_file(&log);
@@ -49,14 +51,14 @@ impl Traced {
         Self { log, options }
     }
 
-    /// What stands in front of the program's words, so that the program is watched.
+    /// The words to put in front of the program's words, so that the program is watched.
     pub(crate) fn words(&self) -> Vec<&str> {
-        // With `-D`, the process is that of the program.
+        // With `-D`, the process id belongs to the program.
         let first = ["strace", "-D", "-q"].into_iter();
         first.chain(self.options.iter().map(String::as_str)).collect()
     }
 
-    /// Watches a program that runs.
+    /// Watches a program that is already running.
     pub(crate) fn attach(&self, process: u32) -> Attached {
         let mut command = Command::new("strace");
         command.args(&self.options).args(["-p", &process.to_string()]);
@@ -64,7 +66,7 @@ impl Traced {
         let mut lines = BufReader::new(strace.stderr.take().unwrap()).lines();
         let said = lines.next().expect("strace attaches").unwrap();
         assert!(said.contains(" attached"), "{said}");
-        // Threads that begin later are announced, too.
+        // Threads that start later are announced, too.
         thread::spawn(move || lines.for_each(drop));
         Attached(strace)
     }
@@ -86,7 +88,8 @@ impl Traced {
         }
     }
 
-    /// How often each call was made that may fail, in the thread that made it most often.
+    /// The number of times that each call that may fail was made, in the thread that made it most
+    /// often.
     pub(crate) fn counts(&self, process: u32) -> BTreeMap<String, u32> {
         let mut counts = BTreeMap::<(&str, &str), u32>::new();
         let text = self.text(process);
@@ -106,13 +109,13 @@ impl Traced {
         most
     }
 
-    /// Whether a call has failed that would not have.
+    /// Returns whether an injected failure has happened.
     pub(crate) fn has_failed(&self, process: u32) -> bool {
         self.text(process).contains("(INJECTED)")
     }
 }
 
-/// The failures of `counts`: each call that was made, with each kind of error that it may have, in turn.
+/// The failures of `counts`: each call that was made, with each of its possible errors in turn.
 pub(crate) fn failures(counts: &BTreeMap<String, u32>) -> Vec<Failure> {
     let of_call = |(call, &count): (&String, &u32)| {
         let (call, errors) = (call.clone(), errors_of(call));
@@ -126,7 +129,7 @@ pub(crate) fn failures(counts: &BTreeMap<String, u32>) -> Vec<Failure> {
 
 impl Drop for Attached {
     fn drop(&mut self) {
-        // By this signal, the program goes on without it.
+        // On this signal, strace detaches and the program continues.
         let id = Pid::from_child(&self.0);
         _ = kill_process(id, Signal::TERM);
         _ = self.0.wait();

@@ -5,7 +5,7 @@ use cellcaster::map;
 use cellcaster::world::FieldOfView;
 use glam::DVec2;
 
-/// The line of a map for open sky.
+/// The line of a map that opens the sky.
 pub(crate) const SKY: &str = "ceiling = \"sky\"";
 
 /// A set of intents.
@@ -24,7 +24,7 @@ pub(crate) fn walk(game: &mut Game, steps: usize, wanted: &[Intent]) {
 }
 
 /// A corridor to the east, under the sky or below a ceiling. After the start come three cells of
-/// the map's own floor, and then one cell for each of `tiles`, the descriptions of tiles in a map.
+/// the map's own floor, and then one cell for each description in `tiles`.
 pub(crate) fn corridor(ceiling: &str, tiles: &[&str]) -> Game {
     let letters: String = ('a'..).take(tiles.len()).collect();
     let wall = "#".repeat(6 + tiles.len());

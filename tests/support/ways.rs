@@ -1,4 +1,4 @@
-//! The shortest ways over the cells of a level to one cell.
+//! The shortest ways over the cells of a level to a goal.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -7,13 +7,15 @@ use cellcaster::game::Game;
 use cellcaster::world::{Cell, ThingKind, TileEffect, World};
 use glam::DVec2;
 
-/// The height of a step that is climbed by walking, and of a fall that does no harm, in cells.
+/// The height of a step that the player climbs by walking, and of a fall that does no harm, in
+/// cells.
 const STEP: f64 = 0.35;
 const FALL: f64 = 2.2;
 /// The player's height, standing and ducking.
 const STANDING: f64 = 0.7;
 const DUCKING: f64 = 0.5;
-/// The cost of a cell to the side, of one at a corner, and what water, spikes and doors add.
+/// The cost of a neighbouring cell at a side and at a corner, and the surcharges of water, spikes
+/// and doors.
 const STRAIGHT: u32 = 10;
 const DIAGONAL: u32 = 14;
 const WATER: u32 = 30;
@@ -21,7 +23,7 @@ const SPIKES: u32 = 15;
 const DOOR: u32 = 10;
 /// The number of cells that the player looks ahead.
 const AHEAD: usize = 6;
-/// The room beside a straight line, in cells.
+/// The room needed on each side of a straight line, in cells.
 const ASIDE: f64 = 0.3;
 
 /// The cost of the cheapest way from each cell to a goal.
@@ -38,7 +40,7 @@ impl Ways {
         Self::to_any(&ground, &[goal], dread)
     }
 
-    /// The ways to the cells at a side of `goal` and on its height.
+    /// The ways to the cells beside `goal`, at its height.
     pub(crate) fn beside(game: &Game, goal: Cell, dread: impl Fn(Cell) -> u32) -> Self {
         let ground = Ground::new(game);
         let sides = ground.around(goal).filter(|&(cell, length)| {
@@ -99,7 +101,7 @@ impl Ways {
     }
 }
 
-/// The cells as the player walks on them.
+/// The cells as the player can walk on them.
 struct Ground<'a> {
     world: &'a World,
     keys: BTreeSet<&'a str>,
@@ -122,7 +124,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// Whether the player walks from a cell to one beside it.
+    /// Returns whether the player can walk from a cell to its neighbour.
     fn leads(&self, from: Cell, to: Cell) -> bool {
         let corners =
             [Cell { column: from.column, row: to.row }, Cell { column: to.column, row: from.row }];
@@ -172,8 +174,8 @@ impl<'a> Ground<'a> {
         u32::from(is_spiked) * SPIKES + u32::from(is_wet) * WATER + u32::from(is_door) * DOOR
     }
 
-    /// Whether the player can walk straight between two points, over level floor or the cells of
-    /// the path.
+    /// Returns whether the player can walk straight between two points, over level floor or the
+    /// cells of the path.
     fn is_straight(&self, from: DVec2, to: DVec2, path: &[Cell]) -> bool {
         let along = to - from;
         let aside = along.perp().normalize_or_zero() * ASIDE;

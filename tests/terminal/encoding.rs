@@ -1,4 +1,4 @@
-//! The encoder's bytes, read by two independent emulators. At fidelity exact they show the picture
+//! The encoder's bytes, read by two independent emulators. At exact fidelity they show the picture
 //! itself, otherwise a picture within the tolerance. The encoder uses only sequences that every
 //! terminal understands.
 #![cfg(feature = "terminal")]
@@ -24,9 +24,9 @@ type Rgb = [u8; 3];
 /// A colour that a terminal shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shade {
-    /// The terminal's own.
+    /// The terminal's own colour.
     Own,
-    /// One of the sixteen that users redefine.
+    /// One of the sixteen colours that users redefine.
     Named(u8),
     Rgb(Rgb),
 }
@@ -82,7 +82,7 @@ impl Shown {
         Self::new(cell.symbol().chars().next().unwrap(), [cell.fg, cell.bg].map(Shade::of))
     }
 
-    /// How far off it is: the largest ΔE of its colours.
+    /// The largest ΔE between its colours and the wanted ones.
     fn distance(self, wanted: Self) -> f64 {
         let (shown, wanted) = match (&self, &wanted) {
             (Self::Parts(shown), Self::Parts(wanted)) => (&shown[..], &wanted[..]),
@@ -96,7 +96,7 @@ impl Shown {
     }
 }
 
-/// The parts of a cell, row by row, in which each mosaic shows the text's colour.
+/// For each mosaic, the parts of a cell that it shows in the text's colour, row by row.
 static PARTS: LazyLock<BTreeMap<char, [bool; 24]>> = LazyLock::new(|| {
     let parts = |mask: u8, rows: usize| {
         std::array::from_fn(|part| mask >> (part / 2 / (12 / rows) * 2 + part % 2) & 1 == 1)
@@ -126,7 +126,7 @@ fn lab(color: Rgb) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// The error of the encoder's integers against the formulas.
+/// The error of the encoder's integers compared with the formulas.
 const ROUNDING: f64 = 0.1;
 
 /// The ways to pass pictures to the encoder.
@@ -144,7 +144,7 @@ struct Screens {
     terminal: Terminal<CellWriter<Vec<u8>>>,
     one: vt100::Parser<Palette>,
     other: avt::Terminal,
-    /// The kinds of all sequences so far.
+    /// The kinds of all sequences that have been sent.
     sequences: BTreeSet<String>,
 }
 
@@ -170,7 +170,7 @@ impl vt100::Callbacks for Palette {
     }
 }
 
-/// `text` with its repetitions (REP) expanded, for an emulator without them.
+/// `text` with its repetitions (REP) expanded, for an emulator that does not support them.
 fn written_out(text: &str) -> String {
     let mut parts = text.split("\x1b[");
     let mut whole = parts.next().unwrap().to_owned();
@@ -194,7 +194,7 @@ impl Screens {
         Self::shorter(way, size, fidelity, false)
     }
 
-    /// With repetitions and a palette if `is_shorter`.
+    /// Uses repetitions and a palette if `is_shorter`.
     fn shorter(way: Way, size: Size, fidelity: Fidelity, is_shorter: bool) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size);
         writer.set_fidelity(fidelity);
@@ -261,7 +261,7 @@ impl Screens {
     }
 }
 
-/// Draws `picture` row by row, by every method of a canvas.
+/// Draws `picture` row by row, with every method of a canvas.
 fn paint(picture: &Buffer, canvas: &mut impl Canvas) {
     for y in picture.area.rows().map(|row| row.y) {
         let cells = picture.area.positions().filter(|place| place.y == y);
@@ -293,7 +293,7 @@ impl Widget for One<'_> {
     }
 }
 
-/// For each control sequence in `text` its private mark and last byte, and each other control
+/// The private mark and the last byte of each control sequence in `text`, and each other control
 /// character.
 fn kinds(text: &str) -> Vec<String> {
     let mut kinds = Vec::new();
@@ -324,15 +324,15 @@ fn kinds(text: &str) -> Vec<String> {
     kinds
 }
 
-/// The sequences that every terminal understands: moving the cursor to a position, in a row and to
-/// the next one, erasing, deleting and inserting characters, colours, synchronized output, and the
-/// cursor's visibility.
+/// The sequences that every terminal understands: moving the cursor to a position, within a row and
+/// to the next row, erasing, deleting and inserting characters, colours, synchronized output, and
+/// the cursor's visibility.
 const SAFE: [&str; 15] = [
     "H", "C", "D", "'\\r'", "'\\n'", "'\\u{8}'", "J", "K", "P", "@", "m", "?2026h", "?2026l",
     "?25h", "?25l",
 ];
 
-/// A colour of that depth: of a smooth stretch, or of noise.
+/// A colour of this depth, either from a smooth range or from noise.
 fn any_color(depth: ColorDepth) -> BoxedStrategy<Color> {
     match depth {
         ColorDepth::True => prop_oneof![
@@ -348,7 +348,7 @@ fn any_color(depth: ColorDepth) -> BoxedStrategy<Color> {
     }
 }
 
-/// A mosaic of a set of glyphs.
+/// A mosaic of this glyph set.
 fn any_mosaic(glyphs: GlyphSet) -> BoxedStrategy<char> {
     let mosaic = match glyphs {
         GlyphSet::Octant => Mosaic::octants,
@@ -356,7 +356,7 @@ fn any_mosaic(glyphs: GlyphSet) -> BoxedStrategy<char> {
         GlyphSet::Quadrant => Mosaic::quadrants,
         _ => return Just('▀').boxed(),
     };
-    // Of few shapes, so that they meet in one place.
+    // There are only a few shapes, so that they coincide in places.
     prop::sample::select(vec![1, 3, 5, 6, 15, 21, 28, 63, 90, 128, 254])
         .prop_map(move |mask| mosaic(mask).character())
         .boxed()
@@ -469,8 +469,7 @@ proptest! {
 fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
     let size = Size::new(80, 24);
     let mut screens = Screens::new(Way::Backend, size, Fidelity::LOW);
-    // Two gradients that differ by less than the tolerance, so that nothing is sent for the second
-    // one.
+    // The two gradients differ by less than the tolerance, so nothing is sent for the second one.
     let gradient = |offset: u16| {
         let cells = (0..size.width * size.height).map(|index| {
             let value = (index % size.width + offset) as u8;

@@ -1,6 +1,6 @@
-//! The terminal's palette and repeated characters, in an emulator that has both (Alacritty's): its cells, in
-//! the colours of its palette, are those that the writer says are on the screen, and no cell ever changes
-//! colour because its entry was defined anew.
+//! The terminal's palette and repeated characters, in an emulator that supports both (Alacritty's).
+//! Its cells, in the colours of its palette, match the writer's record of the screen. No cell ever
+//! changes colour because its palette entry was defined again.
 
 use std::collections::HashMap;
 
@@ -26,19 +26,19 @@ enum Cell {
     Text(char, [Color; 2]),
 }
 
-/// Pictures of one size, one after the other.
+/// A sequence of pictures of one size.
 #[derive(Clone, Debug)]
 struct History {
     size: Size,
     frames: Vec<Vec<Cell>>,
 }
 
-/// A writer, and the terminal at its end.
+/// A writer and its terminal.
 struct Screen {
     writer: CellWriter<Vec<u8>>,
     terminal: Alacritty,
     size: Size,
-    /// Whether all colours are entries, so that a definition may change what a cell shows.
+    /// `true` if all colours are palette entries, so a definition may change the colour of a cell.
     is_own: bool,
 }
 
@@ -51,7 +51,7 @@ impl Screen {
         Self { writer, terminal: Alacritty::new(size.width, size.height), size, is_own: false }
     }
 
-    /// A terminal that shows all colours as entries.
+    /// A terminal that shows all colours as palette entries.
     fn with_own_palette(size: Size, fidelity: Fidelity) -> Self {
         let mut screen = Self::new(size, fidelity);
         screen.writer.set_own_palette();
@@ -59,7 +59,7 @@ impl Screen {
         screen
     }
 
-    /// Draws a frame, and returns what it took.
+    /// Draws a frame, and returns the bytes that it took.
     fn draw(&mut self, frame: &[Cell]) -> String {
         let width = usize::from(self.size.width);
         self.writer.draw_frame(|screen| {
@@ -73,7 +73,7 @@ impl Screen {
         });
         self.writer.flush().unwrap();
         let bytes = String::from_utf8(std::mem::take(self.writer.output_mut())).unwrap();
-        // Alacritty keeps what is between these marks, and takes it all at the second one.
+        // Alacritty buffers everything between these marks, and processes it at the second one.
         let text = bytes.replace("\x1b[?2026h", "").replace("\x1b[?2026l", "");
         if self.is_own {
             assert!(!text.contains("8;2;"), "a colour was sent in 24 bits");
@@ -84,7 +84,7 @@ impl Screen {
         bytes
     }
 
-    /// Hands `text` to the terminal, and fails where a definition changes an entry that is in use.
+    /// Sends `text` to the terminal. Fails if a definition changes an entry that is in use.
     fn show(&mut self, text: &str) {
         const DEFINE: &str = "\x1b]4;";
         let (first, definitions) = text.split_once(DEFINE).unwrap_or((text, ""));
@@ -102,8 +102,7 @@ impl Screen {
         }
     }
 
-    /// Fails where the terminal shows something else than the writer says, or, where `is_exact`, than
-    /// `frame`.
+    /// Fails if the terminal differs from the writer's record, or, if `is_exact`, from `frame`.
     fn check(&self, frame: &[Cell], is_exact: bool) {
         let width = usize::from(self.size.width);
         for (index, cell) in frame.iter().enumerate() {
@@ -128,7 +127,7 @@ impl Screen {
     }
 }
 
-/// A colour of 24 bits, or an entry as xterm has it.
+/// A 24-bit colour, or an entry as xterm defines it.
 fn rgb(color: Color) -> Rgb {
     match color {
         Color::Rgb(red, green, blue) => [red, green, blue],
@@ -137,7 +136,8 @@ fn rgb(color: Color) -> Rgb {
     }
 }
 
-/// Colours of which some are alike, some are entries that a program asks for, and many have no entry left.
+/// Colours of which some are similar, some are entries that a program requests, and many have no
+/// entry left.
 fn any_color() -> impl Strategy<Value = Color> {
     prop_oneof![
         8 => (0..30_u8).prop_map(|step| Color::Rgb(90 + 4 * step, 60 + step, 40)),
@@ -154,8 +154,8 @@ fn any_cell() -> impl Strategy<Value = Cell> {
     ]
 }
 
-/// Frames of runs of cells, in colours that come and go, so that entries are defined, used and defined
-/// anew.
+/// Frames of runs of cells, in colours that come and go, so that entries are defined, used and
+/// defined again.
 fn any_history() -> impl Strategy<Value = History> {
     let size = (1..60_u16, 1..13_u16).prop_map(Size::from);
     size.prop_flat_map(|size| {
@@ -229,8 +229,8 @@ fn oklab(color: Rgb) -> [f64; 3] {
     ]
 }
 
-/// The mean error of a tour, that of its first frame, and the bytes of a frame in relation to those in
-/// 24 bits.
+/// The mean error over a tour, the error of its first frame, and the bytes of a frame relative to
+/// its bytes in 24 bits.
 fn tour(world: World) -> [f64; 3] {
     let size = Size::new(80, 24);
     let script = Script::parse(TOUR, "tour").unwrap();
@@ -289,7 +289,7 @@ fn a_palette_of_ones_own_is_near_true_colour_in_every_level() {
     assert!(mean <= 0.8, "{bytes:?}");
 }
 
-/// More colours than the palette has entries, frame after frame.
+/// There are more colours than palette entries, frame after frame.
 #[test]
 fn entries_are_used_again_for_other_colours() {
     let size = Size::new(60, 20);

@@ -1,4 +1,4 @@
-//! The whole program in a pseudo-terminal: its screens, its keys, and its ends.
+//! The whole program in a pseudo-terminal: its screens, its keys, and the ways in which it ends.
 #![cfg(all(unix, feature = "cli"))]
 
 mod campaign;

@@ -1,7 +1,7 @@
-//! Properties of a session that no game shows: the end of a program that hangs, or that panics
-//! outside of its session.
+//! Properties of a session that no game can show: the end of a program that hangs, or that panics
+//! outside its session.
 //!
-//! The program under test is this test program: it starts itself again, in a pseudo-terminal, to
+//! The program under test is this test program. It starts itself again, in a pseudo-terminal, to
 //! run only [`program`].
 #![cfg(all(unix, feature = "terminal"))]
 
@@ -21,7 +21,7 @@ const ROLE: &str = "PROGRAM_UNDER_TEST";
 const ITSELF: [&str; 4] = ["--exact", "session::program", "--nocapture", "--test-threads=1"];
 
 /// Shows the events that arrive, and obeys keys. Does nothing unless the process was started for
-/// it.
+/// this purpose.
 #[test]
 fn program() {
     if env::var_os(ROLE).is_none() {
@@ -68,10 +68,10 @@ fn start(speaks: Speaks) -> Player {
     player
 }
 
-/// The entries of the palette that are probed, and reset at once.
+/// The palette entries that are probed, and reset at once.
 const PROBED: &str = "254;255";
 
-/// Asserts that exactly the entries of the palette that may be defined were reset.
+/// Asserts that exactly the palette entries that may be defined were reset.
 fn assert_palette_given_back(player: &Player) {
     let text = String::from_utf8(player.bytes()).unwrap();
     assert!(text.contains("\x1b]4;255;?\x07"), "the palette was not asked for");
@@ -86,7 +86,7 @@ fn assert_palette_given_back(player: &Player) {
 fn answers_are_never_seen_as_keys() {
     let mut player = start(Speaks::Plain);
     player.wait_for("KeyReleases(false)");
-    // The answers that report whether a half block was repeated, and that the palette was defined.
+    // The answers that report the repetition of a half block and the definition of the palette.
     player.send("\x1b[2;5R\x1b[2;2R\x1b]4;255;rgb:1212/abab/5656\x1b\\\x1b]4;255;rgb:0/0/0\x07");
     player.send("w");
     player.wait_for("Char('w')");
@@ -109,7 +109,7 @@ fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
     player.wait_for("x: 544, y: 1056, kind: Moved");
     player.resize_in_pixels((80, 24), (640, 384));
     player.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
-    // Events before the terminal has changed units are dropped.
+    // The program drops events that arrive before the terminal has changed units.
     for _ in 0..500 {
         player.send(cells);
         thread::sleep(Duration::from_millis(10));
@@ -121,7 +121,7 @@ fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
     panic!("no place was in pixels; the screen:\n{}", player.text());
 }
 
-/// Apple's Terminal prints the last character of a query that it does not understand (DECRQM).
+/// Apple's Terminal prints the last character of a query (DECRQM) that it does not understand.
 #[test]
 fn what_a_terminal_prints_of_a_query_is_erased() {
     const QUERY: &str = "\x1b[?1016$p";

@@ -1,7 +1,7 @@
-//! All methods on the same rays, in three ordinary scenes.
+//! Compares all methods on the same rays, in three ordinary scenes.
 //!
-//! `cargo bench -p cellcaster-lab --bench casters`. An element is a ray. The
-//! methods take turns within a scene, so that only figures of the same run are comparable.
+//! `cargo bench -p cellcaster-lab --bench casters`. An element is a ray. The methods take turns
+//! within a scene, so only figures of the same run are comparable.
 
 use std::hint::black_box;
 

@@ -1,7 +1,8 @@
-//! Cellcaster's encoder and ratatui's own for crossterm: the time from changed cells to bytes.
+//! Compares Cellcaster's encoder with ratatui's own for crossterm: the time from changed cells to
+//! bytes.
 //!
-//! `cargo bench -p cellcaster-lab --bench encode`. One iteration is a walk through the citadel at 120×40, and an
-//! element is a frame. The encoders take turns, so that only figures of the same run are
+//! `cargo bench -p cellcaster-lab --bench encode`. One iteration is a walk through the citadel at
+//! 120×40, and an element is a frame. The encoders take turns, so only figures of the same run are
 //! comparable.
 
 use std::convert::Infallible;
@@ -20,7 +21,7 @@ use ratatui::layout::Size;
 
 const SIZE: Size = Size::new(120, 40);
 
-/// The divisor of the length of each stretch of the script.
+/// Each stretch of the script is shortened to this fraction of its length.
 const SHARE: u32 = 4;
 
 /// The changed cells of a frame.

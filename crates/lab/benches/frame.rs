@@ -1,7 +1,7 @@
-//! A frame of every map of the gallery, and of the flat one by the baseline renderer.
+//! Times a frame of every map of the gallery, and a frame of the flat one by the baseline renderer.
 //!
-//! `cargo bench -p cellcaster-lab --bench frame`. An element is a pixel. For ratios between
-//! maps use `--bench prices`, where they take turns.
+//! `cargo bench -p cellcaster-lab --bench frame`. An element is a pixel. For ratios between maps,
+//! use `--bench prices`, in which they take turns.
 
 use std::hint::black_box;
 use std::time::Duration;

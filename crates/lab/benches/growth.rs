@@ -1,9 +1,10 @@
-//! Costs that grow with the map: a ray with the open distance, a frame and loading with the area.
+//! Costs that grow with the map: the cost of a ray with the open distance, and the costs of a frame
+//! and of loading with the area.
 //!
-//! `cargo bench -p cellcaster-lab --bench growth`, on the maps of `cellcaster-lab
-//! bench`. A hall is empty except for the walls around it; a plain also has a pillar in one cell of
-//! 4096. In a map of `n` × `n` cells, each ray crosses nearly `n` cells. An element is a ray. All
-//! maps take turns, so that only figures of the same run are comparable.
+//! `cargo bench -p cellcaster-lab --bench growth`, on the maps of `cellcaster-lab bench`. A hall is
+//! empty except for the walls around it; a plain also has a pillar in one cell of 4096. In a map of
+//! `n` × `n` cells, each ray crosses nearly `n` cells. An element is a ray. All maps take turns, so
+//! only figures of the same run are comparable.
 
 use std::hint::black_box;
 

@@ -1,8 +1,8 @@
 //! The cost of a step with guards, and of a copy of the game.
 //!
 //! `cargo bench -p cellcaster-lab --bench guards`, on maps of 160 × 90 cells. A quarter of the
-//! cells are walls. The player runs in circles, so that those who follow always have a new goal. An
-//! iteration is one step of the whole game; the one without guards is the price of the rest.
+//! cells are walls. The player runs in circles, so guards who follow always have a new goal. An
+//! iteration is one step of the whole game. The step without guards is the cost of everything else.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 const COLUMNS: u64 = 160;
 const ROWS: u64 = 90;
 
-/// What the guards of a map do.
+/// The behaviour of a map's guards.
 #[derive(Clone, Copy, PartialEq)]
 enum Deed {
     Chase,
@@ -23,7 +23,7 @@ enum Deed {
     FarPatrol,
 }
 
-/// A map with `count` guards. Those who chase are around the player, the others in the east.
+/// A map with `count` guards. Guards who chase are around the player, the others in the east.
 fn world(count: u64, deed: Deed) -> World {
     let middle = (COLUMNS / 4, ROWS / 2);
     let mut left = count;
@@ -96,7 +96,7 @@ fn steps(criterion: &mut Criterion) {
         }
         // A shout is heard one step later.
         game.step(circling());
-        // Those who chase soon kill the player: the game begins again, which is not measured.
+        // Guards who chase soon kill the player. Then the game begins again, which is not measured.
         let begun = game.clone();
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|steps| {
@@ -121,8 +121,8 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The same with eight players who run in circles from one place, and walk through each other or
-/// not.
+/// The same with eight players who run in circles from one place, and who collide or walk through
+/// each other.
 fn steps_of_several(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("a step of 8 players");
     for (name, count, collides) in [
@@ -155,7 +155,7 @@ fn steps_of_several(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A copy of the game, as a checkpoint is one, after half a minute in which guards find their ways.
+/// A copy of the game, as for a checkpoint, after half a minute in which guards search for paths.
 fn copies(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("a copy");
     let cells = |world: &World| world.grid().width() * world.grid().height();

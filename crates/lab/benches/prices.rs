@@ -1,9 +1,10 @@
-//! The price list: the time of a frame of each map of the gallery, as a multiple of the flat one's.
+//! The price list: the time of a frame of each map of the gallery, as a multiple of the flat map's
+//! time.
 //!
-//! `cargo bench -p cellcaster-lab --bench prices` writes the table of `docs/prices.md`. All
-//! maps take turns and are compared within a turn, and the result of a turn is its median frame. A
-//! busy machine slows all of them, or interrupts few of the frames. The table has the median turn,
-//! with the quartiles in brackets.
+//! `cargo bench -p cellcaster-lab --bench prices` writes the table of `docs/prices.md`. All maps
+//! take turns and are compared within a turn, and the result of a turn is its median frame. A busy
+//! machine slows all maps equally, or interrupts only a few of the frames. The table shows the
+//! median turn, with the quartiles in brackets.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -20,7 +21,7 @@ use gallery::{Drawing, Scene, flat, name_of, scenes, sizes};
 
 /// The number of turns.
 const TURNS: usize = 101;
-/// The least number of pixels drawn in a turn.
+/// The minimum number of pixels drawn in a turn.
 const PIXELS_IN_A_TURN: u32 = 1_000_000;
 
 /// A subject of the comparison: a scene, drawn by the renderer or by the baseline.
@@ -31,7 +32,7 @@ struct Row {
 }
 
 fn main() {
-    // A test of the bench needs one turn.
+    // A test of the bench needs only one turn.
     let turns = if std::env::args().any(|argument| argument == "--test") { 1 } else { TURNS };
     let scenes = scenes();
     let names = ["flat, before"].into_iter().chain(scenes.iter().map(|scene| scene.name.as_str()));
@@ -53,7 +54,8 @@ fn main() {
     print(rows, flat_nanoseconds);
 }
 
-/// Nanoseconds for a frame of the flat scene by the baseline, and for a frame of each scene.
+/// The times, in nanoseconds, of a frame of the flat scene by the baseline, and of a frame of each
+/// scene.
 fn turn(scenes: &[Scene], size: FrameSize) -> Vec<f64> {
     let frames = PIXELS_IN_A_TURN.div_ceil(size.width.get() * size.height.get());
     let (world, camera) = flat(&scenes[0]);
@@ -71,7 +73,7 @@ fn turn(scenes: &[Scene], size: FrameSize) -> Vec<f64> {
     times
 }
 
-/// The median of this number of `frames` in nanoseconds, after one that is not counted.
+/// The median time of this number of `frames` in nanoseconds, after one frame that is not counted.
 fn time(frames: u32, mut draw: impl FnMut()) -> f64 {
     draw();
     let times = (0..frames).map(|_| {

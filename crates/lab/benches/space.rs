@@ -1,4 +1,4 @@
-//! The 3-D caster: the time for a pixel, in the gallery's scene.
+//! Times the 3-D caster for a pixel, in the gallery's scene.
 //!
 //! `cargo bench -p cellcaster-lab --bench space`. An element is a pixel.
 

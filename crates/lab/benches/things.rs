@@ -1,8 +1,7 @@
-//! The same things in view, with few and with many things elsewhere.
+//! Compares frames of the same things in view, with few and with many things elsewhere.
 //!
-//! `cargo bench -p cellcaster-lab --bench things`, on the maps of `cellcaster-lab
-//! bench`. All numbers of things take turns within a hall, so that only figures of the same run are
-//! comparable.
+//! `cargo bench -p cellcaster-lab --bench things`, on the maps of `cellcaster-lab bench`. All
+//! numbers of things take turns within a hall, so only figures of the same run are comparable.
 
 use std::hint::black_box;
 

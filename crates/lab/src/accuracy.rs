@@ -1,9 +1,9 @@
-//! Accuracy: what is compared with a truth, and what each figure of a report costs.
+//! Accuracy: comparisons with a reference, and the cost of each figure in a report.
 //!
-//! [`cast`] computes in rational arithmetic, and shares only the rules in [`cellcaster::cast`] with the
-//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`]
-//! generates any number of other rays from a seed. [`report`] compares and times,
-//! and returns [tables](Table).
+//! [`cast`] computes in rational arithmetic, and shares only the rules in [`cellcaster::cast`] with
+//! the casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`] generates
+//! any number of other rays from a seed. [`report`] compares and times, and returns
+//! [tables](Table).
 
 mod areas;
 mod features;
@@ -72,7 +72,7 @@ pub enum Part {
     /// Damped motion.
     #[value(help = None)]
     Motion,
-    /// Everything else that has a truth.
+    /// Everything else that has a reference.
     #[value(help = None)]
     Features,
 }
@@ -93,8 +93,9 @@ fn steps_per_second(text: &str) -> Result<f64, Takes> {
     within(text, |steps| (0.1..=1e4).contains(steps), "a number from 0.1 to 10000")
 }
 
-/// The tables for `plan`; `None` if no set has the requested name. Rays and pictures are of `map`; without one, rays are of
-/// four ordinary scenes and of the stiff sets. `progress` is called with each part before it begins.
+/// The tables for `plan`; `None` if no set has the requested name. Rays and pictures use `map`.
+/// Without a map, rays use four ordinary scenes and the stiff sets. Calls `progress` with each part
+/// before it begins.
 pub fn report(
     plan: &Plan,
     map: Option<&World>,

@@ -1,22 +1,23 @@
-//! Casters to compare with the exact one, as tutorials and other programs have them.
+//! Casters to compare with the exact one, as found in tutorials and other programs.
 //!
 //! | method | finds the hit by | source |
 //! |---|---|---|
-//! | [`Exact`] | lines in their true order: integers, and longer integers where those cannot decide | [`cellcaster::cast`] |
+//! | [`Exact`] | lines in their true order: integers, or longer integers if these cannot decide | [`cellcaster::cast`] |
 //! | [`Dda`] | lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
 //! | [`Fixed`] | lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
 //! | [`Table`] | x and y lines separately, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
-//! | [`March`] | constant steps | the method that Lode Vandevenne warns of |
+//! | [`March`] | constant steps | the method against which Lode Vandevenne warns |
 //!
-//! All but the exact caster treat doors, glass, masks and shapes as walls, and only the exact
-//! caster keeps the rules of [`cellcaster::cast`] for every ray. Each method is one type
-//! that implements [`Caster`]; a [`Method`] is chosen by name.
+//! Except for the exact caster, all casters treat doors, glass, masks and shapes as walls, and none
+//! keeps the rules of [`cellcaster::cast`] for every ray. Each method is one type that implements
+//! [`Caster`]; a [`Method`] is chosen by name.
 //!
-//! A [`Method`] is not a caster. Code that needs no speed gets a caster from [`Method::caster`], which is called through a
-//! pointer. Code that measures times passes a [`Visitor`], whose loop is compiled for each caster: a pointer that is
-//! followed for each ray would be measured as well.
+//! A [`Method`] is not a caster. Code whose speed does not matter takes a caster from
+//! [`Method::caster`], which is called through a pointer. Code that measures times passes a
+//! [`Visitor`], whose loop is compiled for each caster. Otherwise the measurement would include
+//! following a pointer for each ray.
 
 mod clipped_ray;
 mod lines;
@@ -37,8 +38,8 @@ use cellcaster::render::DynCaster;
 /// A method of casting, with its parameter.
 ///
 /// It is written as a name, followed by a colon and a value if the method has a parameter: `exact`,
-/// `dda`, `dda32`, `accumulate`, `fixed:10`, `table:1920`, `march:0.01`. A parameter that is left
-/// out has the value shown here.
+/// `dda`, `dda32`, `accumulate`, `fixed:10`, `table:1920`, `march:0.01`. A missing parameter has
+/// the value shown here.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Method {
     /// [`Exact`].
@@ -133,7 +134,7 @@ impl FromStr for Method {
             "dda" => plain(Self::Dda),
             "dda32" => plain(Self::Dda32),
             "accumulate" => plain(Self::Accumulate),
-            // As in the source: 10 bits, and 1920 angles.
+            // The defaults of the sources: 10 bits, and 1920 angles.
             "fixed" => number(parameter, 10, 4..=26, "\"fixed\" takes 4 to 26 fraction bits")
                 .map(|fraction_bits| Self::Fixed(Fixed { fraction_bits })),
             "table" => number(parameter, 1920, 8..=65_536, "\"table\" takes 8 to 65536 angles")
@@ -150,7 +151,7 @@ impl FromStr for Method {
     }
 }
 
-/// A parameter within `range`, or the usual one. `takes` is the message for an invalid one.
+/// A parameter within `range`, or `usual` if there is none. `takes` is the error message.
 fn number<T: FromStr + PartialOrd>(
     parameter: Option<&str>,
     usual: T,

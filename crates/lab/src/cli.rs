@@ -40,7 +40,7 @@ enum Command {
     Play(Forwarded),
 }
 
-/// The arguments of a command that the game has, too.
+/// The arguments of a command that also exists in the game.
 #[derive(Args, Debug)]
 struct Forwarded {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -1,4 +1,4 @@
-//! Measurements of Cellcaster: playing and drawing need none of them.
+//! Measurements of Cellcaster. Playing and drawing need none of them.
 //!
 //! - [`casters`]: casters to compare with the exact one.
 //! - [`accuracy`]: rational arithmetic as the reference, and rays that are difficult for a caster.

@@ -1,26 +1,27 @@
-//! `cellcaster-lab load`: real SSH sessions that play on one server or on several, and what they cost.
+//! `cellcaster-lab load`: real SSH sessions that play on one or more servers, and their cost.
 //!
 //! ```text
 //! cargo build --release --workspace
 //! target/release/cellcaster-lab load --sessions 100 --seconds 20
 //! ```
 //!
-//! The server is a process of its own on processor 0, and all clients are in this process on
-//! processor 1. Each client walks about a room, answers the terminal's queries, counts frames and
-//! bytes, and measures the time from a key to the frame that answers it. `--silent N` adds connections that never
-//! read. `--server PATH` is the program, `cellcaster-server` beside this one otherwise. `--sshd` measures OpenSSH's
-//! server with one process of the game for each session in place of `cellcaster-server`.
+//! The server is a separate process on processor 0, and all clients are in this process on
+//! processor 1. Each client walks about in a room, answers the terminal's queries, counts frames
+//! and bytes, and measures the time from a key to the frame that answers it. `--silent N` adds
+//! connections that never read. `--server PATH` names the program; the default is
+//! `cellcaster-server` beside this one. `--sshd` measures OpenSSH's server, with one process of the
+//! game for each session, instead of `cellcaster-server`.
 //!
-//! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster, which take turns on the
-//! processors, while the clients are on all of them. Clients are spread over the hosts in turn, so that each
-//! room has members on all of them: no room costs more. `--beside PID` measures another process, such as that of
-//! the NATS server, and may be there several times.
+//! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster. They are assigned
+//! to the processors in turn, while the clients run on all processors. Clients are spread over the
+//! hosts in turn, so each room has members on all hosts, which is the most expensive case.
+//! `--beside PID` measures another process, such as the NATS server, and may be repeated.
 //!
-//! `--bus ROOMS --cluster NATS` writes the logs of rooms without hosts and players, and measures how long the bus takes
-//! for a message.
+//! `--bus ROOMS --cluster NATS` writes the logs of rooms without hosts and players, and measures
+//! how long the bus takes for a message.
 //!
-//! `--soak` lets clients come, walk, talk, resize their windows and leave in several ways, by `--seed`,
-//! and prints ten times what the server holds.
+//! `--soak` makes clients come, walk, talk, resize their windows and leave in several ways, chosen
+//! by `--seed`. It reports the server's resources ten times.
 
 mod bus;
 mod client;
@@ -48,10 +49,10 @@ use server::{ServerProcess, Usage, between, pin, start_sshd};
 
 /// The time between two connections.
 const PAUSE: Duration = Duration::from_millis(25);
-/// The time that the sessions have for entering their rooms.
+/// The time for the sessions to enter their rooms.
 const WARM_UP: Duration = Duration::from_secs(8);
 
-/// Measures what `plan` says.
+/// Makes the measurement that `plan` requests.
 ///
 /// # Errors
 /// If a server cannot be started, or a client cannot connect.

@@ -1,10 +1,11 @@
-//! Reports: tables of figures, which every format writes alike.
+//! Reports: tables of figures, which every format writes in the same way.
 //!
-//! Every measurement is a [`Table`] of the same shape, so one writer for each format serves all tables and leaves none
-//! out. A row has three keys: the problem, the method, and the method's parameter. A [`Diagram`] names two columns: it has
-//! a panel for each problem, and a line for each method, joined through the parameter, as the work-precision diagrams of
-//! `SciML` have (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five formats needed
-//! code for each of them, and CSV and the plots left most of them out.
+//! Every measurement is a [`Table`] of the same shape, so one writer for each format serves all
+//! tables and leaves none out. A row has three keys: the problem, the method, and the method's
+//! parameter. A [`Diagram`] names two columns. It has a panel for each problem, and a line for each
+//! method, joined through the parameter, like the work-precision diagrams of `SciML`
+//! (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five
+//! formats needed code for each of them, and CSV and the plots left most of them out.
 
 mod formats;
 mod plot;
@@ -23,8 +24,8 @@ pub struct Table {
     pub title: String,
     /// The headings of the keys. A key without a heading is empty in every row.
     pub keys: [&'static str; 3],
-    /// The headings of the values: a name, followed by a comma and the unit if there is one. A heading begins with `time`
-    /// exactly if the values differ from run to run.
+    /// The headings of the values: a name, followed by a comma and the unit if there is one. A
+    /// heading begins with `time` if and only if the values differ from run to run.
     pub columns: Vec<String>,
     /// The rows.
     pub rows: Vec<Row>,
@@ -61,7 +62,8 @@ pub enum Value {
 pub struct Diagram {
     /// The indices of the columns across and up.
     pub columns: [usize; 2],
-    /// The least and the largest error that matter. Others are drawn at the end of the axis.
+    /// The smallest and the largest error that matter. Errors outside the range are drawn at the
+    /// end of the axis.
     pub range: [f64; 2],
 }
 
@@ -90,7 +92,7 @@ impl Row {
 }
 
 impl Value {
-    /// The number; the median of a time.
+    /// The number, or the median of a time.
     pub fn number(self) -> Option<f64> {
         match self {
             Self::None => None,
@@ -105,7 +107,7 @@ impl Value {
         number.map_or(Self::None, Self::Number)
     }
 
-    /// The fraction of `all` that `part` is.
+    /// The fraction of `all` that `part` makes up.
     pub(crate) fn share(part: usize, all: usize) -> Self {
         Self::Share(part as f64 / all.max(1) as f64)
     }
@@ -115,7 +117,8 @@ impl Diagram {
     /// The range of diagrams that show every error.
     pub(crate) const ALL: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
 
-    /// The cost and the error of `row`, the error within the range; `None` if there is no such point.
+    /// The cost and the error of `row`, with the error clamped to the range; `None` if there is no
+    /// such point.
     fn point(&self, row: &Row) -> Option<(f64, f64)> {
         let [cost, error] = self.columns.map(|index| row.values.get(index)?.number());
         let (cost, error) = (cost?, error?);
@@ -148,7 +151,7 @@ impl Timing {
 /// The times of `count` candidates, as `time` returns them for each index.
 ///
 /// In each of `rounds` rounds, every candidate is timed once, so that a slow phase of the machine
-/// affects all of them. Without rounds, there are no times.
+/// affects all of them. If `rounds` is 0, there are no times.
 pub(crate) fn time_in_rounds(
     count: usize,
     rounds: usize,

@@ -1,10 +1,10 @@
 //! The speed of drawing: scenes, a walk through them, two loops for comparison, and the costs of
 //! large and crowded maps.
 //!
-//! A time means little on an unknown machine. Reports therefore have ratios: to the classic
-//! loop, as in tutorials, and to a fill of the same number of pixels, which no renderer can
+//! A time means little on an unknown machine. Reports therefore contain ratios: to the classic
+//! loop, as found in tutorials, and to a fill of the same number of pixels, which no renderer can
 //! beat. All three draw the same map with the same textures from the same cameras. `pixel_aspect`
-//! gives the renderer's picture the proportions of the classic one, so that both draw the same
+//! gives the renderer's picture the proportions of the classic picture, so that both draw the same
 //! pixels.
 
 mod classic;
@@ -48,7 +48,7 @@ fn scene(floor: &str, ceiling: &str) -> World {
 
 const ROOMS: &str = include_str!("speed/rooms.toml");
 
-/// `count` cameras along a walk through `world` that turns continually, and so looks in all
+/// `count` cameras along a walk through `world` that turns continually, and therefore looks in all
 /// directions.
 fn walk(world: &World, count: usize) -> Vec<Camera> {
     const STEPS_BETWEEN: usize = 6;
@@ -56,7 +56,7 @@ fn walk(world: &World, count: usize) -> Vec<Camera> {
     let turning: Intents = [Intent::Forward, Intent::TurnRight, Intent::Aim].into_iter().collect();
     let straight: Intents = [Intent::Forward].into_iter().collect();
     let mut view = |camera: usize| {
-        // The view while pushing into a wall shows little else; a turn leads away from the wall.
+        // A camera that pushes into a wall shows little else; a turn leads away from the wall.
         let intents = if camera % 16 < 10 { straight } else { turning };
         for _ in 0..STEPS_BETWEEN {
             game.step(intents);
@@ -66,8 +66,8 @@ fn walk(world: &World, count: usize) -> Vec<Camera> {
     (0..count).map(&mut view).collect()
 }
 
-/// The pixel shape for which a wall is as high as in the classic picture, where a cube at distance
-/// 1 in front of the camera fills the picture from top to bottom.
+/// The pixel shape for which a wall is as high as in the classic picture, in which a cube at
+/// distance 1 from the camera fills the picture from top to bottom.
 fn pixel_aspect(size: FrameSize) -> PixelAspect {
     let (width, height) = (f64::from(size.width.get()), f64::from(size.height.get()));
     let across = width / 2.0 / FieldOfView::default().half_width();
@@ -111,8 +111,8 @@ mod tests {
                     let apart = ours.channels().into_iter().zip(&theirs[1..]);
                     apart.into_iter().all(|(one, &other)| one.abs_diff(other) <= 48)
                 });
-                // The classic loop casts through the edges of pixels, the renderer through their
-                // centres.
+                // The classic loop casts through the edges of pixels, and the renderer through
+                // their centres.
                 let share = alike.count() as f64 / pixels.len() as f64;
                 assert!(share > 0.7, "{floor:?}: {share}");
             }

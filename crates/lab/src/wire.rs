@@ -4,9 +4,9 @@
 //! A script is played once, and each of its frames passes through every encoder: ratatui's own for
 //! crossterm, which most programs use, and Cellcaster's at several fidelities. The report counts
 //! bytes, before and after the compression of `ssh -C`, and compares the colours on the terminal
-//! with the game's own. The distance of two colours is ΔE of CIE76, the Euclidean
-//! distance in CIELAB, which published figures on terminal video use. Rejected: CIEDE2000, which is
-//! meant for colours closer than most of these, and whose hue sectors have discontinuities.
+//! with the game's own. The distance of two colours is ΔE of CIE76, the Euclidean distance in
+//! CIELAB, which published figures on terminal video use. Rejected: CIEDE2000. It is meant for
+//! colours that are closer than most of these, and its hue sectors have discontinuities.
 //!
 //! The first frame paints everything with any encoder, and is reported separately.
 
@@ -35,7 +35,7 @@ pub struct Plan<'a> {
     pub script: &'a Script,
     /// The size of the window in which `replay` plays.
     pub size: Size,
-    /// The colour depth in which `replay` draws. Only in true colour does an encoder define a palette.
+    /// The colour depth in which `replay` draws. An encoder defines a palette only in true colour.
     pub depth: ColorDepth,
     /// The number of frames sent per second.
     pub frames_per_second: NonZeroU32,
@@ -43,8 +43,9 @@ pub struct Plan<'a> {
     pub fidelities: &'a [Fidelity],
 }
 
-/// Plays the script of `plan`, and compares ratatui's encoder (`stock`), Cellcaster's at each fidelity, and Cellcaster's at
-/// each fidelity with repeated characters and a defined palette (`+`).
+/// Plays the script of `plan`, and compares ratatui's encoder (`stock`), Cellcaster's at each
+/// fidelity, and Cellcaster's at each fidelity with repeated characters and a defined palette
+/// (`+`).
 pub fn report(plan: &Plan, replay: &mut Replay) -> Table {
     let ours = [false, true].into_iter().flat_map(|extensions| {
         plan.fidelities.iter().map(move |&fidelity| {

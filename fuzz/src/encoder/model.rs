@@ -1,4 +1,4 @@
-//! What a terminal should show.
+//! The expected screen of a terminal.
 
 use ratatui::backend::ClearType;
 use ratatui::buffer::{Buffer, Cell, CellWidth};
@@ -7,7 +7,7 @@ use ratatui::style::{Color, Modifier};
 
 use crate::bytes::Bytes;
 
-/// Texts of cells: of no, one and two cells, and what a terminal would obey.
+/// Texts of cells: texts of zero, one and two cells, and texts that a terminal would obey.
 const SYMBOLS: [&str; 24] = [
     " ", "▀", "▄", "█", "a", "#", "é", "字", "語", "😀", "한", "e\u{301}", "", "\u{301}",
     "\u{200b}", "\t", "\x1b", "\u{9b}", "\x1b[31m", "\n", "▒", "─", "z", "~",
@@ -38,7 +38,7 @@ const NAMED: [Color; 17] = [
 const MODIFIERS: [Modifier; 5] =
     [Modifier::BOLD, Modifier::DIM, Modifier::ITALIC, Modifier::UNDERLINED, Modifier::REVERSED];
 
-/// A picture of cells; the cells behind a wide one are blank.
+/// A picture of cells. The cells behind a wide one are blank.
 pub(crate) struct Picture(Buffer);
 
 impl Picture {
@@ -113,7 +113,7 @@ impl Model {
         self.cells.fill(Cell::EMPTY);
     }
 
-    /// A cell, whose text is fit to be shown.
+    /// A cell, whose text can be shown.
     pub(crate) fn at(&self, x: u16, y: u16) -> &Cell {
         &self.cells[self.place(x, y)]
     }
@@ -140,7 +140,7 @@ impl Model {
         }
     }
 
-    /// Draws one character; returns `false` where it would be half over another one.
+    /// Draws one character. Returns `false` if it would cover half of another one.
     pub(crate) fn draw_character(
         &mut self,
         x: u16,
@@ -208,7 +208,7 @@ impl Model {
     }
 }
 
-/// The columns that the text of a cell takes; 0 if it is not fit to be shown.
+/// The number of columns that a cell's text takes; 0 if the text cannot be shown.
 pub(crate) fn width(cell: &Cell) -> u16 {
     if cell.symbol().contains(char::is_control) { 0 } else { cell.cell_width() }
 }
@@ -245,7 +245,7 @@ pub(crate) fn character(choices: &mut Bytes) -> char {
     choices.pick(&CHARACTERS)
 }
 
-/// A colour of half a cell, which is never the terminal's own.
+/// A colour for half a cell, which is never the terminal's own.
 pub(crate) fn pixel(choices: &mut Bytes) -> Color {
     match color(choices) {
         Color::Reset => Color::Rgb(1, 2, 3),
@@ -253,7 +253,7 @@ pub(crate) fn pixel(choices: &mut Bytes) -> Color {
     }
 }
 
-/// Colours, often the same.
+/// A colour, often the same one.
 pub(crate) fn color(choices: &mut Bytes) -> Color {
     let byte = choices.byte();
     match byte >> 6 {

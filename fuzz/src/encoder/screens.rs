@@ -1,4 +1,4 @@
-//! Two emulators, and what they show.
+//! Two emulators, and their screens.
 
 use std::num::NonZeroU16;
 
@@ -14,24 +14,24 @@ use ratatui::style::{Color, Modifier};
 
 use super::model::{Model, width};
 
-/// The emulators that read everything.
+/// The emulators that read all bytes.
 pub(crate) struct Screens {
     vt100: Option<vt100::Parser>,
     alacritty: Term<VoidListener>,
     parser: Processor,
 }
 
-/// A colour as a cell has it.
+/// A colour as a cell stores it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shade {
-    /// The terminal's own: of text if it is `true`, of the background otherwise.
+    /// The terminal's own colour: of text if `true`, of the background otherwise.
     Own(bool),
-    /// One of the sixteen that users define.
+    /// One of the sixteen colours that users define.
     Named(u8),
     Rgb([u8; 3]),
 }
 
-/// What is seen of a cell.
+/// The visible content of a cell.
 #[derive(Debug, PartialEq)]
 enum Look {
     /// An upper and a lower half.
@@ -46,7 +46,7 @@ impl Screens {
         let config = Config { scrolling_history: 0, ..Config::default() };
         let alacritty = Term::new(config, &Window(size), VoidListener);
         let mut screens = Self { vt100, alacritty, parser: Processor::new() };
-        // The main screen wraps its lines anew in another size.
+        // The main screen would wrap its lines again at another size.
         screens.process(b"\x1b[?1049h");
         screens
     }
@@ -65,7 +65,7 @@ impl Screens {
         self.alacritty.resize(Window(size));
     }
 
-    /// Checks that both emulators show what the model says.
+    /// Checks that both emulators match the model.
     pub(crate) fn check(&self, model: &Model) {
         let Size { width: columns, height } = model.size();
         for y in 0..height {
@@ -91,7 +91,7 @@ impl Screens {
         }
     }
 
-    /// Checks that both cursors are where the writer says.
+    /// Checks that both cursors are at the writer's position.
     pub(crate) fn check_cursor(&self, expected: Position) {
         let point = self.alacritty.grid().cursor.point;
         let at = Position::new(point.column.0 as u16, point.line.0 as u16);

@@ -10,7 +10,7 @@ use crate::bytes::Bytes;
 
 const MOST_STEPS: usize = 400;
 
-/// The least distance of the player to a body, less what rounding takes.
+/// The smallest distance from the player to a body, less a margin for rounding.
 fn least_clearance(scale: f64) -> f64 {
     cellcaster::space::EYE_CLEARANCE - 1e-12 * scale.max(1.0)
 }
@@ -36,7 +36,7 @@ pub(crate) fn check(scene: Scene, choices: &mut Bytes) {
     check_pictures(&mut old, &flight, &Format::new(choices));
 }
 
-/// Takes one step, and checks that the player is in no body.
+/// Takes one step, and checks that the player is not in any body.
 fn fly(flight: &mut Flight, intents: cellcaster::game::Intents) {
     let mut waiting = flight.clone();
     let rests = flight.is_at_rest(intents);
@@ -53,7 +53,7 @@ fn fly(flight: &mut Flight, intents: cellcaster::game::Intents) {
     }
 }
 
-/// Draws a picture in every way, and checks that all of them are equal.
+/// Draws a picture in every way, and checks that all results are equal.
 fn check_pictures(old: &mut (Renderer, Frame), flight: &Flight, format: &Format) {
     let camera: Camera = flight.camera(format.field_of_view);
     old.1.resize(format.size, format.pixel_aspect);

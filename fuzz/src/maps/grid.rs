@@ -8,16 +8,16 @@ use super::views::{self, Format, Old};
 use crate::bytes::Bytes;
 use crate::open::is_in_the_open;
 
-/// The most steps of a game.
+/// The largest number of steps of a game.
 const MOST_STEPS: u64 = 600;
-/// The steps that a wait is compared with.
+/// The number of steps that a wait is compared with.
 const STEPS_AT_REST: u64 = 40;
-/// The most pictures, of a map of up to that many cells.
+/// The largest number of pictures.
 const MOST_PICTURES: usize = 4;
 
 /// Plays in `world`, and draws it before, meanwhile and afterwards.
 pub(crate) fn check(world: World, choices: &mut Bytes) {
-    // Bounded work, whatever it finds.
+    // This takes bounded work, whatever it finds.
     is_exit_out_of_reach(&world);
     let script = if choices.is_empty() { usual() } else { Vec::new() };
     let format = Format::new(choices);

@@ -4,7 +4,7 @@ use cellcaster::game::{Intent, Intents, Look};
 
 use crate::bytes::Bytes;
 
-/// Intents for that many steps.
+/// Intents that are held for a number of steps.
 pub(crate) struct Stretch {
     pub(crate) steps: u64,
     pub(crate) intents: Intents,
@@ -15,7 +15,7 @@ pub(crate) fn stretch(choices: &mut Bytes) -> Stretch {
     let bits = choices.double_word();
     let held = Intent::ALL.into_iter().zip(0..).filter(|(_, bit)| bits >> bit & 1 == 1);
     let intents: Intents = held.map(|(intent, _)| intent).collect();
-    // Bits beyond the last intent.
+    // This bit is beyond the last intent.
     let looks = bits >> 31 == 1;
     let look = if looks {
         Look { turn: choices.word().cast_signed(), tilt: choices.word().cast_signed() }
@@ -25,7 +25,7 @@ pub(crate) fn stretch(choices: &mut Bytes) -> Stretch {
     Stretch { steps: 1 + choices.below(64) as u64, intents: intents.with_look(look) }
 }
 
-/// What the player wants in a map without choices: walk around, jump, and use everything.
+/// The player's intents in a map without choices: walk around, jump, and use everything.
 pub(crate) fn usual() -> Vec<Stretch> {
     use Intent::{
         Duck, FineRight, Forward, Jump, Run, Shoot, Smoke, StrafeLeft, Strike, Throw, TurnRight,

@@ -1,7 +1,7 @@
-//! A mutator that knows what a map is: a grid between `'''`, and lines of definitions.
+//! A mutator that knows the structure of a map: a grid between `'''`, and lines of definitions.
 //!
-//! Bytes that are flipped anywhere are nearly always refused by the TOML parser, and rows of unequal
-//! length by the map. Most mutations here leave a map that can be read.
+//! The TOML parser rejects nearly all inputs with randomly flipped bytes, and the map reader
+//! rejects rows of unequal length. Most mutations here produce a readable map.
 
 use cellcaster::rng::SplitMix64;
 
@@ -12,17 +12,17 @@ const QUOTES: &str = "'''\n";
 
 /// The parts of a map.
 struct Parts {
-    /// Up to the grid, with its opening quotes.
+    /// The lines up to the grid, with its opening quotes.
     head: Vec<String>,
     rows: Vec<Vec<char>>,
-    /// From the closing quotes on.
+    /// The lines from the closing quotes on.
     tail: Vec<String>,
     /// The bytes behind the text.
     rest: Vec<u8>,
 }
 
-/// Changes the map in `data[..size]` in place, and returns its new size; `None` to have the bytes
-/// changed by somebody who does not know maps.
+/// Changes the map in `data[..size]` in place, and returns its new size. Returns `None` if a
+/// general mutator should change the bytes instead.
 pub fn mutate(data: &mut [u8], size: usize, max_size: usize, seed: u32) -> Option<usize> {
     let mut rng = SplitMix64::new(seed.into());
     if rng.one_in(6) {
@@ -88,7 +88,7 @@ impl Parts {
         Some((row, some_index(&self.rows[row], rng)?))
     }
 
-    /// A character of the grid, of a definition, or a usual one.
+    /// A character of the grid or of a definition, or a usual character.
     fn any_character(&self, rng: &mut SplitMix64) -> char {
         let usual = || USUAL.chars();
         match rng.below(3) {
@@ -243,7 +243,7 @@ impl Parts {
         let (pair, has_grid) = (PAIRS[rng.below(PAIRS.len())], !self.rows.is_empty());
         let Some(line) = self.any_line(rng) else { return };
         if rng.one_in(4) {
-            // Without its last pair.
+            // Removes the last pair.
             if let Some((kept, _)) = line.rsplit_once(", ") {
                 *line = format!("{kept} }}");
             }
@@ -255,7 +255,7 @@ impl Parts {
         }
     }
 
-    /// Takes the value of another line.
+    /// Replaces the value of a line by the value of another line.
     fn move_value(&mut self, rng: &mut SplitMix64) {
         let Some(other) = self.any_line(rng) else { return };
         let Some((_, value)) = other.split_once(" = ") else { return };

@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use crate::bytes::Bytes;
 
-/// Degrees, up to the ends of what is allowed.
+/// Fields of view in degrees, up to the ends of the allowed range.
 const FIELDS: [f64; 8] = [66.0, 90.0, 30.0, 5.0, 120.0, 179.0, 1e-3, 5e-324];
 const ASPECTS: [f64; 8] = [1.0, 1.0, 0.5, 2.0, 0.1, 10.0, 1e-300, 1e300];
 const COORDINATES: [f64; 8] = [0.0, 0.5, 1.0, -1.0, 1e-300, 1e9, -1e300, f64::MAX];
@@ -50,7 +50,7 @@ pub(crate) fn camera(world: &World, format: &Format, choices: &mut Bytes) -> Cam
     camera.with_eye(eye).unwrap_or(camera).with_pitch(pitch)
 }
 
-/// A renderer and a frame that have drawn all pictures before.
+/// A renderer and a frame that have drawn all previous pictures.
 pub(crate) struct Old {
     renderer: Renderer,
     frame: Frame,
@@ -61,7 +61,7 @@ impl Old {
         Self { renderer: Renderer::new(), frame: format.frame() }
     }
 
-    /// Draws a picture in every way, and checks that all of them are equal.
+    /// Draws a picture in every way, and checks that all results are equal.
     pub(crate) fn check(
         &mut self,
         world: &World,

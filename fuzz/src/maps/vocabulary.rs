@@ -1,6 +1,6 @@
-//! What the mutator adds to maps.
+//! Words and lines that the mutator adds to maps.
 
-/// Maps whose lines define something of every kind.
+/// Maps whose lines define at least one thing of every kind.
 pub(crate) const DONORS: [&str; 20] = [
     include_str!("../../../maps/cistern.toml"),
     include_str!("../../../maps/citadel.toml"),
@@ -108,5 +108,5 @@ pub(crate) const NUMBERS: [&str; 32] = [
     "0.999999999",
 ];
 
-/// The characters that a grid gets most often.
+/// The characters that a grid receives most often.
 pub(crate) const USUAL: &str = "#.@ Xab+%~o^lkt|-/w=\u{e9}\u{4e00}";

@@ -1,4 +1,4 @@
-//! The traversal compared with the walk.
+//! Compares the traversal with the walk.
 
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ proptest! {
 }
 
 proptest! {
-    /// On maps so empty that the traversal leaps by blocks, too.
+    /// The same on maps so empty that the traversal also leaps by blocks.
     #[test]
     fn it_hits_the_same_cells_as_the_walk_far_from_walls(
         (width, height) in (30_u32..140, 30_u32..140),
@@ -102,14 +102,14 @@ fn an_empty_hall_is_crossed_in_few_leaps() {
     }
 }
 
-/// A hall with things that move in some cells: floors that begin level or do not, and walls.
+/// A hall with moving tiles in some cells: walls, and floors that start level or uneven.
 fn hall(moving: &[(u32, u32, char)]) -> World {
     let mut rows = vec![vec!['.'; HALL as usize]; HALL as usize];
     for &(column, row, character) in moving {
         rows[row as usize][column as usize] = character;
     }
     rows[0][..2].copy_from_slice(&['@', 'l']);
-    // Each moves somewhere, so that the lever sets something.
+    // One tile of each kind is always there, so the lever sets something.
     rows[1][..5].copy_from_slice(&['s', 'w', 'd', 'u', 'c']);
     let rows: Vec<String> = rows.into_iter().map(|row| row.into_iter().collect()).collect();
     let text = format!(
@@ -126,7 +126,7 @@ fn hall(moving: &[(u32, u32, char)]) -> World {
 const HALL: u32 = 120;
 
 proptest! {
-    /// However tiles have moved, rays that leap hit the same cells as those that do not.
+    /// However tiles have moved, rays that leap hit the same cells as rays that do not.
     #[test]
     fn it_hits_the_same_cells_as_the_walk_where_tiles_move(
         moving in prop::collection::vec(
@@ -174,7 +174,8 @@ mod along_beams {
     const DOORWAY: TileId = TileId(1);
     const WALL: TileId = TileId(2);
 
-    /// Positions on a map of that size, many of them on a line where a strip begins, or an ulp beside it.
+    /// Positions on a map of this size, many of them on a line where a strip begins, or an ulp
+    /// beside it.
     fn position(size: u32) -> impl Strategy<Value = f64> {
         let line = prop_oneof![(0..size), (0..=size / 64).prop_map(|index| index * 64)];
         let beside = |(line, ulps): (u32, i64)| {
@@ -187,7 +188,8 @@ mod along_beams {
         ]
     }
 
-    /// Directions to all sides: along the axes and diagonals, at the bounds of slopes, and close to those.
+    /// Directions to all sides: along the axes and diagonals, at the bounds of slopes, and close to
+    /// these.
     fn direction() -> impl Strategy<Value = DVec2> {
         let slope = prop_oneof![
             -1.0..1.0_f64,
@@ -201,7 +203,8 @@ mod along_beams {
         })
     }
 
-    /// A solid block on an open map, from a cell to the south and to the east.
+    /// A solid block on an open map: its tile, its first cell, and its extent to the east and to
+    /// the south.
     type Block = (TileId, (u32, u32), (u32, u32));
 
     fn block() -> impl Strategy<Value = Block> {
@@ -246,7 +249,7 @@ mod along_beams {
     }
 
     proptest! {
-        /// Through every solid cell, up to the end of the map.
+        /// Both go on behind every solid cell, up to the end of the map.
         #[test]
         fn it_hits_the_same_cells_as_the_walk((size, blocks, origin, direction) in scene()) {
             let mut grid = grid(size, &blocks);
@@ -258,7 +261,7 @@ mod along_beams {
         }
     }
 
-    /// One position for each strip, and a few more where the beam has a solid cell.
+    /// It computes one position for each strip, and a few more where the beam has a solid cell.
     #[test]
     fn it_computes_few_positions_where_it_passes_a_pillar() {
         let mut grid = grid([1024, 100], &[(WALL, (700, 50), (1, 1))]);

@@ -1,4 +1,4 @@
-//! Shapes against rational arithmetic, for origins and directions of all sizes.
+//! Compares shapes with rational arithmetic, for origins and directions of all sizes.
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -131,7 +131,7 @@ proptest! {
         let far = 10_f64.powi(exponent);
         let toward = DVec2::new(libm::cos(angle), libm::sin(angle));
         let [x, y] = (CELL.center() - toward * far).to_array();
-        // The direction to a point beside the axis, from the origin as it was rounded.
+        // The direction to a point beside the axis, from the rounded origin.
         let lever = BigRational::from_float(far).unwrap();
         let to_axis = [exact(1.5) - exact(x), exact(1.5) - exact(y)].map(|it| (it / &lever).to_f64().unwrap());
         let direction = (to_axis[0] - toward.y * aside / far, to_axis[1] + toward.x * aside / far);

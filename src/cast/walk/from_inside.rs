@@ -1,16 +1,16 @@
 //! The walk of a camera's ray from a place on the map.
 //!
-//! It enters the cells of [`Walk`](super::Walk) in the same order, in a third of the instructions: such a ray
-//! is on the map until it leaves for good, and crossing a line changes the state of both axes by sums
-//! without a branch on the side.
+//! It enters the cells of [`Walk`](super::Walk) in the same order, in a third of the instructions.
+//! Such a ray stays on the map until it leaves for good, and crossing a line changes the state of
+//! both axes by sums, without a branch on the side.
 
 use super::{Axis, Crossing, Order};
 use crate::cast::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 
-/// The cells that a ray enters after the one it begins in, with its distance from its origin to each.
+/// The cells that a ray enters after its first cell, with the distance from its origin to each.
 ///
-/// Distances are rounded, and in a unit of their own, of which [`WalkFromInside::unit`] are one `t`.
+/// Distances are rounded, and have a unit of their own: [`WalkFromInside::unit`] units are one `t`.
 pub(crate) struct WalkFromInside<'grid> {
     tiles: &'grid [TileId],
     width: u32,
@@ -25,7 +25,7 @@ pub(crate) struct WalkFromInside<'grid> {
 struct Position {
     /// The column or row.
     index: u32,
-    /// The step to the next one, modulo 2³²; 0 if the ray does not move on this axis.
+    /// The step to the next column or row, modulo 2³²; 0 if the ray does not move on this axis.
     step: u32,
     /// The position of the next line; infinite if there is none.
     line: f64,
@@ -34,7 +34,7 @@ struct Position {
 }
 
 impl<'grid> WalkFromInside<'grid> {
-    /// The walk of `ray`, and the cell and the tile that it begins in; `None` if it begins off the map.
+    /// The walk of `ray`, and its first cell with the tile; `None` if it starts off the map.
     #[inline]
     pub(crate) fn new(grid: &'grid Grid, ray: &Ray) -> Option<(Self, Cell, TileId)> {
         let (origin, direction) = (ray.origin(), ray.direction());
@@ -75,7 +75,7 @@ impl Iterator for WalkFromInside<'_> {
 }
 
 impl Position {
-    /// The same as `axis`; `None` off the map.
+    /// The position of a ray at the start of `axis`; `None` off the map.
     #[inline]
     fn new(axis: &Axis) -> Option<Self> {
         let &Axis { index, line, step, stride, .. } = axis;

@@ -15,9 +15,10 @@ use crate::cast::ray::meeting;
 use crate::cast::{ExactOrder, Passage, Ray, Side};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
-/// The place of rays from one origin that have crossed the same lines, reflections included.
+/// The place of all rays from one origin that have crossed the same lines, reflections included.
 ///
-/// Which line they cross next is up to the caller: it depends on the direction of each ray.
+/// The caller decides which line they cross next, because that depends on the direction of each
+/// ray.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     x: Axis,
@@ -39,7 +40,7 @@ pub(crate) struct RayWalk {
 #[derive(Clone, Copy, Debug)]
 struct OnMap {
     index: i64,
-    /// The step to the next one on the map.
+    /// The step to the next column or row on the map.
     step: i64,
 }
 
@@ -76,21 +77,22 @@ impl RayWalk {
         }
     }
 
-    /// The distance along the ray of a line that it has just crossed, as in
+    /// The distance along the ray to a line that it has just crossed, as in
     /// [`Hit`](crate::cast::Hit).
     #[inline]
     pub(crate) fn distance(&self, crossed: &Crossed) -> f64 {
         meeting(&self.ray, crossed.side, self.course.corner(crossed)).0
     }
 
-    /// The passage of the ray by an object that stands in `cell`, where the ray is now.
+    /// The intersection of the ray with the object in `cell`, where the ray is now.
     pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
         Passage::of_tile(&self.course.on_map(&self.ray), world, cell, kind)
     }
 }
 
 impl Course {
-    /// The course of `ray`, and of all rays from its origin on the same side of both axes, at the start.
+    /// The course of `ray` at the start, and of all rays from its origin that move towards the same
+    /// sides.
     pub(crate) fn new(grid: &Grid, ray: &Ray) -> Self {
         let (origin, direction) = (ray.origin(), ray.direction());
         let x = Axis::new(origin.x, direction.x, grid.width());
@@ -122,8 +124,8 @@ impl Course {
         (course, Crossed { side, into, line })
     }
 
-    /// The course of a ray along `direction` in the cell that is at `place`, column and row, along the straight
-    /// ray in the image of `transform`.
+    /// The course of a ray along `direction` in the cell at `place`, a column and a row along the
+    /// straight ray, in the image of `transform`.
     pub(crate) fn resumed(
         grid: &Grid,
         direction: DVec2,
@@ -179,7 +181,7 @@ impl Course {
         (into.is_some() || !self.is_on_map_along(side)).then_some(Crossed { side, into, line })
     }
 
-    /// Whether the rays are on the map along the axis that crosses lines of kind `side`.
+    /// Returns whether the rays are on the map along the axis that crosses lines of kind `side`.
     fn is_on_map_along(&self, side: Side) -> bool {
         match side {
             Side::X => (0..self.x.count).contains(&self.column.index),
@@ -196,7 +198,7 @@ impl Course {
         }
     }
 
-    /// `ray` on the map after all reflections, as if it had come straight.
+    /// `ray` on the map after all reflections, as if it had been straight.
     pub(crate) fn on_map(&self, ray: &Ray) -> Ray {
         let Self { transform, .. } = self;
         Ray::moved(transform.to_map(ray.origin()), transform.direction_to_map(ray.direction()))
@@ -228,7 +230,7 @@ impl MirrorTransform {
         DVec2::new(self.x.in_image(point.x), self.y.in_image(point.y))
     }
 
-    /// Whether lines of kind `side` are mirrored along themselves.
+    /// Returns whether lines of kind `side` are mirrored along themselves.
     pub(crate) fn is_mirrored_along(self, side: Side) -> bool {
         match side {
             Side::X => self.y.is_mirrored,
@@ -236,8 +238,8 @@ impl MirrorTransform {
         }
     }
 
-    /// Adds a mirror at `line`, of kind `side`. Returns the column or row on the map behind it for the one at
-    /// `index` along the straight ray.
+    /// Adds a mirror at `line`, of kind `side`. Returns the column or row of the map behind it for
+    /// column or row `index` along the straight ray.
     pub(crate) fn reflect(&mut self, side: Side, line: i64, index: i64) -> i64 {
         let along = match side {
             Side::X => &mut self.x,
@@ -247,13 +249,13 @@ impl MirrorTransform {
         along.index_on_map(index)
     }
 
-    /// The column and the row on the map for those along the straight ray.
+    /// The column and the row on the map for a column and a row along the straight ray.
     #[inline]
     pub(crate) fn cell_to_map(self, [column, row]: [i64; 2]) -> [i64; 2] {
         [self.x.index_on_map(column), self.y.index_on_map(row)]
     }
 
-    /// Whether left and right are exchanged.
+    /// Returns whether left and right are exchanged.
     pub(crate) fn swaps_sides(self) -> bool {
         self.x.is_mirrored != self.y.is_mirrored
     }
@@ -277,7 +279,7 @@ impl AxisTransform {
         if self.is_mirrored { offset - place } else { place - offset }
     }
 
-    /// The column or row of the map for the one at `index` along the straight ray.
+    /// The column or row of the map for column or row `index` along the straight ray.
     fn index_on_map(self, index: i64) -> i64 {
         if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
     }

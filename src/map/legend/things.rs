@@ -25,7 +25,7 @@ const MAX_PATROL: usize = 64;
 /// The longest note, in characters.
 const MAX_NOTE: usize = 240;
 
-/// The keys that make an item which refers to nothing else.
+/// The keys of items that refer to nothing else.
 pub(crate) const ITEMS: &[&str] =
     &["exit", "treasure", "healing", "pebbles", "darts", "flasks", "checkpoint", "spikes"];
 
@@ -87,14 +87,14 @@ pub(crate) struct SpriteText<'a> {
     place: Range<usize>,
     anchor: Option<Anchor>,
     blocks: Option<bool>,
-    /// Whether the player can put it out.
+    /// `true` if the player can put it out.
     pub(crate) is_doused: bool,
     height: Option<SpriteHeight>,
     heading: Option<Heading>,
     light: Option<Light>,
     reach: Option<Reach>,
     frame_time: Option<FrameTime>,
-    /// How its sheet is divided, with the places where the map says so.
+    /// The division of its sheet into frames and facings, with their places in the map.
     frames: Option<(u32, Range<usize>)>,
     facings: Option<(Facings, Range<usize>)>,
 }
@@ -158,8 +158,8 @@ impl<'a> SpriteText<'a> {
         }
     }
 
-    /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided, once for
-    /// all sprites that divide the sheet alike.
+    /// The sprite itself. Reports a fault if its sheet is missing or cannot be divided, once for
+    /// all sprites that divide the sheet in the same way.
     pub(crate) fn sprite(&self, textures: &mut Textures<'_>) -> Option<Sprite> {
         let mut sprite = if let Some(sprite) = builtin::named(self.name) {
             textures.faults.extend(self.cut_of_built_in());
@@ -184,7 +184,7 @@ impl<'a> SpriteText<'a> {
         })
     }
 
-    /// The fault that a built-in sprite is given frames or facings.
+    /// The fault of frames or facings on a built-in sprite.
     fn cut_of_built_in(&self) -> Option<Fault> {
         let frames = self.frames.as_ref().map(|(_, place)| ("frames", place));
         let facings = self.facings.as_ref().map(|(_, place)| ("facings", place));

@@ -1,5 +1,5 @@
-//! Tiles, as the legend defines them: walls, doors, glass and shapes, and the surroundings that a tile
-//! of any kind may have of its own.
+//! Tiles, as the legend defines them: walls, doors, glass and shapes, and the surroundings that a
+//! tile of any kind may define for itself.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ const DEFAULT_RADIUS: PillarRadius = PillarRadius::new(0.3).expect("it fits a ce
 const GLASS_OPACITY: f64 = 0.3;
 const MIRROR_OPACITY: f64 = 0.1;
 const SILVER: Rgb = Rgb::new(0xb8, 0xc8, 0xd0);
-/// The colour of water, where a map names none.
+/// The colour of water for which the map names no floor.
 const WATER: Rgb = Rgb::new(0x1c, 0x48, 0x68);
 
 /// The places of a thin wall in its cell.
@@ -45,7 +45,7 @@ pub(crate) struct WallText<'a> {
     pub(crate) surface: Surface<'a>,
     /// Its height, if it has one of its own.
     pub(crate) height: Option<f64>,
-    /// Whether it is a secret, which the player opens.
+    /// `true` for a secret wall, which the player opens.
     pub(crate) is_secret: bool,
     /// The switch that moves it.
     pub(crate) switch: Option<Name<'a>>,
@@ -62,7 +62,7 @@ impl<'a> WallText<'a> {
         Some(Self { surface: surface?, height, is_secret, switch })
     }
 
-    /// Whether it sinks into the floor.
+    /// Returns whether the wall sinks into the floor.
     pub(crate) fn moves(&self) -> bool {
         self.is_secret || self.switch.is_some()
     }
@@ -108,7 +108,7 @@ pub(crate) fn mirror(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass
     tinted(entry, table, color, MIRROR_OPACITY)
 }
 
-/// Glass of that color, with the opacity in the table or else `usual_opacity`.
+/// Glass of this colour, with the opacity in `table`, or else `usual_opacity`.
 fn tinted(
     entry: &Entry<'_, '_>,
     table: &DeTable<'_>,
@@ -168,7 +168,7 @@ impl<'a> ShapeText<'a> {
     }
 }
 
-/// Reads the line that `entry` names: one of `lines`, each of which is a `what`.
+/// Reads the line that `entry` names. It must be in `lines`; the fault calls their kind `what`.
 fn line(entry: &Entry<'_, '_>, what: &str, lines: &[(&str, Line)], example: &str) -> Option<Line> {
     let name = entry.string(example)?;
     let line = lines.iter().find(|(known, _)| *known == name).map(|&(_, line)| line);
@@ -191,7 +191,7 @@ impl Height {
     }
 }
 
-/// A tile's own surfaces, heights and mechanism. The map has the others.
+/// A tile's own surfaces, heights and mechanism. The map supplies the missing ones.
 #[derive(Default)]
 pub(crate) struct Surroundings<'a> {
     pub(crate) floor: Option<CoveringText<'a>>,
@@ -246,7 +246,7 @@ impl<'a> Surroundings<'a> {
         !self.has_extent() && self.light.is_none() && self.mechanism.is_none()
     }
 
-    /// Returns whether it has a covering or a height.
+    /// Returns whether it has a covering, a height, a riser or a lintel.
     pub(crate) fn has_extent(&self) -> bool {
         let Self { floor_height, ceiling_height, roof_height, .. } = self;
         let heights = [floor_height, ceiling_height, roof_height];
@@ -257,7 +257,7 @@ impl<'a> Surroundings<'a> {
             || self.lintel.is_some()
     }
 
-    /// The fault of a floor whose mechanism contradicts itself, if it does.
+    /// The fault of a floor whose mechanism contradicts itself; `None` if it does not.
     pub(crate) fn contradiction(&self) -> Option<Fault> {
         let fault = |place: &Range<usize>, message: &str| Fault::new(place.clone(), message);
         match (&self.water, &self.plate, &self.moves_to, &self.crumbles) {
@@ -282,7 +282,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// The floor of a plate or of water, where the map does not name one: what may harm or help shows.
+    /// The floor of a plate or of water if the map names none. It makes a mechanism visible.
     pub(crate) fn usual_floor(&self) -> Option<CoveringText<'static>> {
         let plate = self.plate.as_ref().map(|_| Surface::built_in("metal"));
         plate

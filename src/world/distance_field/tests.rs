@@ -45,7 +45,7 @@ fn halls_are_worth_measuring_and_rooms_are_not() {
 }
 
 proptest! {
-    /// It is the distance of the nearest solid cell, by brute force.
+    /// The distance is the distance to the nearest solid cell, found by brute force.
     #[test]
     fn it_is_as_far_as_a_king_walks(
         rows in prop::collection::vec("[.......#]{9}", 1..9_usize),

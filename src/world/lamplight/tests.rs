@@ -33,7 +33,7 @@ fn world(mut cells: Vec<char>) -> World {
     world
 }
 
-/// What a lamp adds in a cell, by the line between the two alone.
+/// The light that a lamp adds in a cell, computed from the line between the two alone.
 fn share(world: &World, (place, lamp): (Cell, Lamp), cell: Cell, carrier: Carrier) -> u32 {
     let way = cell.center() - place.center();
     let passes = |tile: TileId| match world.tile(tile).kind {
@@ -57,7 +57,7 @@ fn sum(world: &World, moving: &[(Cell, Lamp)], cell: Cell) -> u32 {
     of_things.chain(of_movers).sum::<u32>().min(256)
 }
 
-/// Something that happens to the light.
+/// An event that changes the light.
 #[derive(Clone, Debug)]
 enum Event {
     Move(Vec<(Cell, Lamp)>),
@@ -215,7 +215,8 @@ mod lines {
         assert_eq!(lights[5..], [Light::NONE; 2]);
     }
 
-    /// Whether the line from the middle of one cell to that of another leads through open floor.
+    /// Returns whether the line from the middle of one cell to the middle of another leads through
+    /// open floor.
     fn is_seen(grid: &Grid, from: Cell, to: Cell) -> bool {
         let Ok(ray) = Ray::new(from.center(), to.center() - from.center()) else { return true };
         let mut open = Walk::new(grid, &ray).take_while(|it| !grid.is_solid_tile(it.tile));

@@ -1,7 +1,7 @@
 //! The built-in sprites: sheets of `maps/art`.
 //!
-//! They have few texels, a dark outline, and light from the upper left, so that they can be told apart at a
-//! height of ten pixels.
+//! They have few texels, a dark outline, and light from the upper left, so that players can tell
+//! them apart at a height of ten pixels.
 
 mod frame;
 mod player;
@@ -14,8 +14,8 @@ pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, PlayerFrame, SpikesFram
 pub use player::PlayerColor;
 pub(crate) use player::player;
 
-/// The names that maps may use for ornaments. Games also use sprites of guards, of finds and of what
-/// flies, which [`named`] knows.
+/// The names that maps may use for ornaments. Games also use the sprites of guards, items and
+/// projectiles, which [`named`] knows.
 pub const NAMES: &[&str] = &[
     "banner", "barrel", "bones", "books", "brazier", "chest", "column", "crate", "lamp", "plant",
     "statue", "table", "torch",
@@ -27,15 +27,15 @@ pub const EXIT: &str = "portal";
 pub const KEY: &str = "key";
 /// The sprite of the player, seen in mirrors.
 pub const PLAYER: &str = "player";
-/// Its height, in cells.
+/// The height of the player's sprite, in cells.
 pub(crate) const PLAYER_HEIGHT: f64 = 0.68;
 
-/// The built-in sprite of that name; `None` if there is none.
+/// The built-in sprite with this name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {
     DESIGNS.iter().find(|design| design.art.name == name)?.recolored(|color| color)
 }
 
-/// All of them but the players.
+/// All built-in sprites except the players.
 const DESIGNS: &[Design] = &[
     Design::figure(art!("archer"), 0.82, 8),
     Design { anchor: Anchor::Ceiling, ..Design::standing(art!("banner"), 0.7) },
@@ -103,20 +103,20 @@ const DESIGNS: &[Design] = &[
     Design::figure(art!("warden"), 1.0, 8),
 ];
 
-/// A player as others see them, in the colour of the dye.
+/// A player as others see them, with cloth in the dye's colour.
 const TRAVELLER: Design = Design::figure(art!("traveller"), 0.76, 6);
 
-/// A sheet, and how a world shows it.
+/// A sheet, and the way in which a world shows it.
 struct Design {
     art: Art,
     frames: u32,
     facings: Facings,
     /// The time of each frame.
     seconds: f64,
-    /// The number of frames that time goes through.
+    /// The number of frames in the animation.
     animated: usize,
     anchor: Anchor,
-    /// In cells.
+    /// The height, in cells.
     height: f64,
     blocks: bool,
     /// The light that it adds in its cell, from 0 to 1.
@@ -139,12 +139,12 @@ impl Design {
         }
     }
 
-    /// A sheet of a body from eight sides, with that number of poses.
+    /// A sheet of a body from eight sides, with this number of poses.
     const fn figure(art: Art, height: f64, poses: u32) -> Self {
         Self { frames: poses, facings: Facings::Eight, ..Self::standing(art, height) }
     }
 
-    /// The sprite, with each colour replaced by `color` of it.
+    /// The sprite with recoloured pictures. `color` returns the replacement for each colour.
     fn recolored(
         &self,
         color: impl Fn(Rgb) -> Rgb + Copy + Send + Sync + 'static,

@@ -1,12 +1,14 @@
 //! Area levels: the means of a texture over boxes of many widths and heights.
 //!
-//! A pixel covers a box of a wall's texture, as wide as the ray's step and as high as the row's, and these
-//! two may differ much. Each level holds the means over boxes of one width and one height, in linear light,
-//! centred at points a fraction of a box apart. So a pixel that reads one texel of a level has the mean over
-//! nearly its own box, at the cost of any other lookup. A level is made when it is first read.
+//! A pixel covers a box of a wall's texture. The box is as wide as the ray's step and as high as
+//! the row's step, and these two may differ much. Each level holds the means over boxes of one
+//! width and one height, in linear light, centred at points a fraction of a box apart. A pixel that
+//! reads one texel of a level therefore has the mean over nearly its own box, at the cost of any
+//! other lookup. A level is made when it is first read.
 //!
-//! Rejected: a summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984), which gives the mean over
-//! any box. It takes four lookups in 64 bits, three divisions and three roots for each pixel.
+//! Rejected: a summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984), which
+//! contains the mean over any box. It takes four lookups in 64 bits, three divisions and three
+//! roots for each pixel.
 
 use std::f64::consts::SQRT_2;
 use std::num::NonZeroU32;
@@ -31,7 +33,7 @@ pub(crate) enum Repeat {
     Both,
 }
 
-/// The area levels of a texture that were made so far.
+/// The area levels of a texture that have been made.
 #[derive(Clone)]
 pub(crate) struct AreaLevels {
     /// The number of steps along both axes.
@@ -43,9 +45,9 @@ pub(crate) struct AreaLevels {
 /// The boxes of a level along one axis.
 #[derive(Clone, Copy, Debug)]
 struct Boxes {
-    /// The extent of each, in texels.
+    /// The extent of each box, in texels.
     extent: f64,
-    /// Their number.
+    /// The number of boxes.
     count: u32,
 }
 
@@ -53,7 +55,7 @@ impl AreaLod {
     /// The texture itself.
     pub(crate) const TEXTURE: Self = Self { across: 0, down: 0 };
 
-    /// The extent whose squares along both axes are nearest to these, in square texels.
+    /// The extent closest to one with these squares along both axes, in square texels.
     #[inline]
     pub(crate) fn of_squares(across: f64, down: f64) -> Self {
         Self { across: step_of(across), down: step_of(down) }
@@ -83,7 +85,7 @@ impl AreaLevels {
 }
 
 impl Boxes {
-    /// The boxes of a step along an axis of `texels` texels.
+    /// The boxes of a step along an axis with `texels` texels.
     fn new(step: u8, texels: u32) -> Self {
         let all = f64::from(texels);
         let Some(half_octaves) = step.checked_sub(1) else {
@@ -101,14 +103,16 @@ impl Boxes {
     }
 }
 
-/// The extent of the first step, in texels. A pixel that covers less of a texel is drawn from the texture.
+/// The extent of the first step, in texels. A pixel that covers less than this is drawn from the
+/// texture.
 const LEAST: f64 = 0.25;
 const LEAST_HALF_OCTAVES: i64 = -4;
 /// The number of boxes that begin within one of them.
 const BOXES_IN_AN_EXTENT: f64 = 4.0;
-/// The most boxes along an axis.
+/// The largest number of boxes along an axis.
 const MAX: u32 = 256;
-/// The most boxes of a level for planes, as a power of two. It is even, as the loops for planes require.
+/// The largest number of boxes in a level for planes, as a power of two. It is even, as the loops
+/// for planes require.
 const MAX_BITS_OF_PLANES: u32 = 14;
 
 /// The step for an extent with this square, in square texels.
@@ -121,7 +125,7 @@ fn step_of(square: f64) -> u8 {
     (half_octaves - LEAST_HALF_OCTAVES + 1).clamp(0, i64::from(u8::MAX)) as u8
 }
 
-/// The number of steps for an axis of `texels` texels: up to the extent of all of it.
+/// The number of steps for an axis of `texels` texels, up to the extent of the whole axis.
 fn steps_for(texels: u32) -> u8 {
     let squares = f64::from(texels) * f64::from(texels);
     step_of(squares) + 2
@@ -153,7 +157,7 @@ fn means(picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> MipLevel {
     MipLevel::new(side(across.count), side(down.count), texels, Vec::new())
 }
 
-/// Makes the product of two powers of two a power of four that is not too large.
+/// Changes two powers of two so that their product is a power of four within the limit.
 fn suit_planes(across: &mut u32, down: &mut u32) {
     let bits = |across: u32, down: u32| across.trailing_zeros() + down.trailing_zeros();
     while bits(*across, *down) > MAX_BITS_OF_PLANES {
@@ -214,7 +218,8 @@ mod tests {
         MipLevel::new(side(width), side(height), texels.collect(), Vec::new())
     }
 
-    /// The mean light of many samples of a box, which repeats where `repeats` says so.
+    /// The mean light of many samples of a box, which repeats along the axes for which `repeats` is
+    /// true.
     fn sampled(
         picture: &MipLevel,
         centre: [f64; 2],
@@ -290,7 +295,7 @@ mod tests {
             let expected = sampled(&picture, centre, extent, [true, repeats_down]);
             let shown = linear_16(level.texel(x, y).0);
             for channel in 0..3 {
-                // A channel's value is up to a hundredth of the light from the next one.
+                // A channel's values are up to a hundredth of full light apart.
                 let off = (f64::from(shown[channel]) - expected[channel]).abs() / f64::from(u16::MAX);
                 prop_assert!(off < 0.06, "{off}");
             }

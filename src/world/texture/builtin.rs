@@ -1,11 +1,11 @@
 //! The built-in textures: sheets of `maps/art`.
 //!
-//! All are 64 texels square and lit from the upper left. They tile horizontally without a seam, and
-//! vertically except for `plaster`, which has a rail and a skirting board, and `fence`, which stands on the
-//! ground. `grate` and `fence` have holes.
+//! All textures are 64 texels square and lit from the upper left. They tile horizontally without a
+//! seam. They also tile vertically, except for `plaster`, which has a rail and a skirting board,
+//! and `fence`, which stands on the ground. `grate` and `fence` have holes.
 //!
-//! Features are large and noise is faint: a wall is rarely more than thirty pixels high in a terminal, where
-//! noise shimmers and costs bytes.
+//! Features are large and noise is faint: a wall in a terminal is rarely more than thirty pixels
+//! high, and at that size noise shimmers and costs bytes.
 
 use super::Texture;
 use crate::world::art::{Art, art};
@@ -48,7 +48,7 @@ const TEXTURES: [Art; 16] = [
 
 const WITH_HOLES: [&str; 2] = ["grate", "fence"];
 
-/// Three ranges of hills under a morning sky, 512 texels around and 64 from the horizon up.
+/// Three ranges of hills under a morning sky, 512 texels around and 64 texels up from the horizon.
 const HILLS: Art = art!("hills");
 
 const fn names() -> [&'static str; TEXTURES.len()] {
@@ -90,8 +90,8 @@ mod tests {
         one.iter().zip(other).map(|(&one, other)| u32::from(one.abs_diff(other))).sum()
     }
 
-    /// Whether the last of `lines` and the first differ at most twice as much as neighbours do on
-    /// average.
+    /// Returns whether the last of `lines` and the first differ at most twice as much as neighbours
+    /// do on average.
     fn wraps(lines: &[Vec<Rgb>]) -> bool {
         let between: u32 = lines.windows(2).map(|pair| difference(&pair[0], &pair[1])).sum();
         let seam = difference(&lines[lines.len() - 1], &lines[0]);

@@ -1,10 +1,10 @@
 //! Mip levels: a texture at half its size, a quarter, and so on.
 //!
-//! Each level is the one before, halved. A texel of the half is the mean of the texels that it covers,
-//! weighted by area, so that sides which are not even lose nothing. The mean is taken in linear light, as
-//! the eye does at a distance; the mean of stored values would make a black and white chessboard too dark.
-//! Texels are also weighted by their alpha, so that transparent ones have no influence on the colour. Mip
-//! mapping is that of Lance Williams, "Pyramidal Parametrics", SIGGRAPH 1983.
+//! Each level is the level before, halved. A texel of the half is the mean of the texels that it
+//! covers, weighted by area, so odd sides lose nothing. The mean is taken in linear light, as the
+//! eye does at a distance. The mean of stored values would make a black and white chessboard too
+//! dark. Texels are also weighted by their alpha, so transparent texels have no influence on the
+//! colour. Mip mapping is by Lance Williams, "Pyramidal Parametrics", SIGGRAPH 1983.
 
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub struct MipLevel {
     height: NonZeroU32,
     /// The columns from the left, each from top to bottom.
     texels: Vec<Rgb>,
-    /// The same at half brightness.
+    /// The same texels at half brightness.
     halved: Vec<Rgb>,
     /// The alpha of the texels in the same order, 0 for transparent, 255 for opaque; empty if all
     /// texels are opaque.
@@ -78,7 +78,7 @@ impl MipLevel {
         &self.texels
     }
 
-    /// The same at [half brightness](Rgb::halved), as a y-side shows them.
+    /// All texels at [half brightness](Rgb::halved), as a y-side shows them.
     pub(crate) fn halved_texels(&self) -> &[Rgb] {
         &self.halved
     }
@@ -127,7 +127,7 @@ impl MipLevel {
     }
 }
 
-/// A mip level whose width and height are powers of two, so that the index of a texel consists of
+/// A mip level whose width and height are powers of two. The index of a texel therefore consists of
 /// bits of its position along both axes.
 #[derive(Clone, Copy)]
 pub(crate) struct MipLevelByShifts<'a> {
@@ -159,7 +159,7 @@ impl<'a> MipLevelByShifts<'a> {
         [self.mask_x, self.mask_y]
     }
 
-    /// The number of those bits, along each axis.
+    /// The number of index bits that depend on the position along each axis.
     pub(crate) fn bits(self) -> [u32; 2] {
         self.bits
     }
@@ -171,8 +171,8 @@ impl<'a> MipLevelByShifts<'a> {
     }
 }
 
-/// The index, of `count`, of the texel at `coordinate`, from 0 to 1; the nearest one for
-/// coordinates outside.
+/// The index, below `count`, of the texel at `coordinate`, a number from 0 to 1. Outside that
+/// range, returns the nearest texel.
 #[inline]
 fn texel_index(coordinate: f64, count: u32) -> usize {
     let index = (coordinate * f64::from(count)) as u32;
@@ -198,7 +198,7 @@ pub(crate) struct Light {
     pub(crate) width: NonZeroU32,
     pub(crate) height: NonZeroU32,
     pub(crate) texels: Vec<[u16; 3]>,
-    /// As in a [`MipLevel`](MipLevel).
+    /// The alpha, stored as in a [`MipLevel`](MipLevel).
     pub(crate) alpha: Vec<u8>,
 }
 
@@ -215,7 +215,7 @@ impl Light {
         }
     }
 
-    /// The means of squares of four opaque texels, for even sides.
+    /// The means of squares of four opaque texels. Both sides must be even.
     fn means_of_four(&self) -> Vec<[u16; 3]> {
         let height = self.height.get() as usize;
         let pairs = self.texels.chunks_exact(2 * height).flat_map(|columns| {
@@ -273,14 +273,15 @@ impl Light {
     }
 }
 
-/// The texels, of `from` in a row, that texel `index` of `to` covers, with their weights.
+/// The texels that texel `index` covers, with their weights, if a row of `from` texels is resized
+/// to `to`.
 fn covered(
     index: u32,
     from: NonZeroU32,
     to: NonZeroU32,
 ) -> impl Iterator<Item = (u32, u64)> + Clone {
     let (from, to) = (u64::from(from.get()), u64::from(to.get()));
-    // In units in which both kinds of texel have integer sizes.
+    // Lengths are in units in which both kinds of texel have integer sizes.
     let (start, end) = (u64::from(index) * from, (u64::from(index) + 1) * from);
     (start / to..end.div_ceil(to)).map(move |texel| {
         let covered = end.min((texel + 1) * to) - start.max(texel * to);
@@ -304,7 +305,7 @@ mod tests {
         let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
         let levels = smaller(&MipLevel::new(size(4), size(4), texels, vec![]));
         assert_eq!(levels.len(), 2);
-        // Half the light, which is far more than half the value.
+        // Half of the light is much more than half of the value.
         assert!(
             levels
                 .iter()

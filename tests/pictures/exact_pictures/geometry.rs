@@ -1,4 +1,4 @@
-//! The colours of the pixels of a map of plain colours, in rational arithmetic.
+//! The colours of the pixels of a map with plain colours, in rational arithmetic.
 
 use cellcaster::color::Rgb;
 use cellcaster::render::Frame;
@@ -83,7 +83,7 @@ impl<'a> Geometry<'a> {
         }
     }
 
-    /// As [`Geometry::color`], for a wall with light; `None` for anything else.
+    /// The same as [`Geometry::color`], for a wall with light; `None` for anything else.
     pub(crate) fn lit_color(&self, x: u32, y: u32) -> Option<Rgb> {
         let color = self.color(x, y)?;
         let across = f64::from(x) + 0.5;
@@ -121,7 +121,7 @@ impl<'a> Geometry<'a> {
         };
         let before = |along: &BigRational| if along.is_positive() { -1 } else { 1 };
         let t = self.cast(across).distance;
-        // The cell before the face, the direction along the face, and the position along it.
+        // The cell in front of the face, the direction along the face, and the position along it.
         let (here, way, along) = match face {
             Face::X => {
                 ((column + before(&direction.x), row), (0, 1), &self.origin.y + &t * &direction.y)
@@ -137,7 +137,8 @@ impl<'a> Geometry<'a> {
         let light = |tile: Tile| exact(f64::from(tile.light.unwrap().in_256ths()));
         let tile_here = tile_in(here.0, here.1).unwrap();
         let light_here = light(tile_here);
-        // A camera inside a wall sees the next wall in the light of its own, which nothing passes.
+        // A camera inside a wall sees the next wall in the light of its own cell, into which no
+        // light passes.
         let is_open = |tile: &Tile| tile.kind == TileKind::Open;
         let light_next = match next {
             Some(next) if is_open(&next) && is_open(&tile_here) => light(next),

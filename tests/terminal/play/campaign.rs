@@ -1,9 +1,10 @@
 //! The campaign in a plain terminal of 80 by 24 cells, without key releases, by bytes: the first
-//! three levels from the title to the summary of each, and what is kept of them.
+//! three levels from the title to the summary of each, and the records that the program stores
+//! about them.
 //!
-//! The way through each level is a script of taps, which `tests/campaign/taps.rs` finds. It is typed
-//! step by step, and the run that the program keeps must be that script: then every byte was decoded,
-//! and every key was held for its steps.
+//! The way through each level is a script of taps, which `tests/campaign/taps.rs` finds. It is
+//! typed step by step, and the run that the program stores must be that script. This proves that
+//! every byte was decoded, and that every key was held for its steps.
 
 use std::fs;
 use std::path::Path;
@@ -17,10 +18,10 @@ use crate::support::cellcaster;
 
 /// The steps for which a tap walks.
 const TAP: u32 = 5;
-/// The steps in which a panel that has just appeared takes no key, and a few more.
+/// The number of steps in which a new panel accepts no key, plus a few more.
 const PANEL: u32 = 64;
 
-/// A level: its name, its goal, what its summary shows, and what is kept of it.
+/// A level: its name, its goal, and parts of its summary.
 struct Level {
     name: &'static str,
     goal: &'static str,
@@ -45,14 +46,14 @@ const LEVELS: [Level; 3] = [
     },
 ];
 
-/// The program, which keeps what was won in `data`.
+/// Starts the program, which stores results in `data`.
 fn start(data: &Path) -> Typist {
     let data = data.to_str().unwrap();
     let environment = [("HOME", env!("CARGO_TARGET_TMPDIR")), ("CELLCASTER_DATA", data), CLOCK];
     Typist::start(PROGRAM, &[], &environment)
 }
 
-/// The first level of the easiest game, begun from the title.
+/// Starts the first level of the easiest game from the title.
 fn begin(data: &Path) -> Typist {
     let typist = start(data);
     typist.wait_to_see("> New game");
@@ -71,7 +72,7 @@ fn script(name: &str) -> Script {
     Script::parse(&text, name).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// The key that wants `intents`; `None` if nothing is wanted.
+/// The key for `intents`; `None` if there are no intents.
 fn key(intents: Intents) -> Option<&'static str> {
     intents.iter().next().map(|intent| match intent {
         Intent::Forward => "w",
@@ -82,7 +83,8 @@ fn key(intents: Intents) -> Option<&'static str> {
     })
 }
 
-/// Types a script of taps, whose first `passed` steps, in which the player stands, are over.
+/// Types a script of taps. Its first `passed` steps, in which the player stands, have already
+/// passed.
 fn play(typist: &Typist, script: &Script, mut passed: u32) {
     for Stretch { steps, intents } in script.sections().iter().flat_map(|it| &it.stretches) {
         let Some(key) = key(*intents) else {
@@ -90,13 +92,13 @@ fn play(typist: &Typist, script: &Script, mut passed: u32) {
             passed = 0;
             continue;
         };
-        // The last tap of a script is cut short by the exit.
+        // The exit cuts the last tap of a script short.
         assert!(*steps <= TAP, "{steps} steps are no tap");
         typist.tap(key, *steps);
     }
 }
 
-/// Leaves the game, and confirms that.
+/// Leaves the game, and confirms it.
 fn leave(typist: &mut Typist) {
     typist.tap("q", PANEL);
     typist.wait_to_see("q or Enter leaves");
@@ -106,8 +108,8 @@ fn leave(typist: &mut Typist) {
     assert!(ending.status.success());
 }
 
-/// Asserts that the run which the program has kept of a level has the steps of `script`, and that it
-/// wins.
+/// Asserts that the run which the program has stored for a level has the steps of `script`, and
+/// that it wins.
 fn assert_kept(data: &Path, name: &str, script: &Script) {
     let steps = script.steps();
     let path = data.join(format!("runs/{name}.easy.{steps}.script"));
@@ -160,8 +162,8 @@ fn a_held_key_walks_for_as_long_as_it_repeats() {
     let aside: Intents = [Intent::StrafeRight].into_iter().collect();
     let stretches: Vec<_> = saved.sections()[0].stretches.iter().skip(1).collect();
     let walks: Vec<_> = stretches.iter().map(|it| (it.intents == aside, it.steps)).collect();
-    // A tap; a pause up to the first repetition; and the repetitions, up to the time after which the
-    // next one would have come.
+    // A tap, a pause up to the first repetition, and the repetitions, up to the time at which the
+    // next repetition would have come.
     let [(true, TAP), (false, 25), (true, held), (false, _)] = walks[..] else {
         panic!("{walks:?}");
     };

@@ -1,4 +1,4 @@
-//! Every end of the program restores the terminal.
+//! However the program ends, it restores the terminal.
 
 use std::fs;
 use std::thread;
@@ -30,7 +30,7 @@ const TAKEN: Modes = Modes {
     key_flags: [0, 1],
 };
 
-/// A key release arrives whenever the game ends; the shell does not get it.
+/// A key release arrives whenever the game ends, and must not reach the shell.
 #[test]
 fn q_and_escape_ask_and_leave_and_control_c_leaves() {
     let (q, escape, enter) = (Key::Char('q').event(1), Key::Escape.event(1), Key::Enter.event(1));
@@ -83,7 +83,7 @@ fn signals_end_it_in_the_middle_of_a_walk() {
     }
 }
 
-/// A shell would print the answer to the last request.
+/// Otherwise a shell would print the answer to the last request.
 #[test]
 fn a_terminal_that_answers_late_is_waited_for() {
     for signal in [None, Some(Signal::TERM), Some(Signal::USR1)] {
@@ -186,7 +186,7 @@ fn with_mouse() -> Game {
     game
 }
 
-/// Mouse motions arrive whenever the game ends; the shell does not get them.
+/// Mouse motions arrive whenever the game ends, and must not reach the shell.
 #[test]
 fn the_mouse_is_given_back_however_it_ends() {
     type End = fn(&Game);

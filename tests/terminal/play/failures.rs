@@ -1,5 +1,5 @@
-//! Each system call that loading and saving make in the folder of what is kept fails once, in a game that a
-//! player wins, and in one that a player goes on with and leaves.
+//! Each system call that loading and saving make in the data folder fails once, in a game that a
+//! player wins, and in a game that a player continues and leaves.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,22 +10,22 @@ use super::game::{ENVIRONMENT, PROGRAM, test_map};
 use super::titles::folder;
 use crate::strace::{Failure, Traced, failures};
 
-/// What a player does from the start of the program to its end.
+/// The actions of a player from the start of the program to its end.
 struct Visit {
     arguments: Vec<String>,
     play: fn(&Typist),
 }
 
-/// What is kept: the progress, and the scripts by the names of their files.
+/// The stored data: the progress, and the scripts by their file names.
 #[derive(Debug, PartialEq)]
 struct Kept {
     progress: Option<String>,
     scripts: BTreeMap<String, String>,
 }
 
-/// What became of a visit.
+/// The result of a visit.
 struct Visited {
-    /// What the program said when it had given the terminal back.
+    /// The program's output after it has restored the terminal.
     said: String,
     process: u32,
 }
@@ -48,7 +48,7 @@ fn walk_and_leave(typist: &Typist) {
     typist.send("\x03");
 }
 
-/// Goes on with the saved game, if it can be read.
+/// Continues the saved game, if the program can read it.
 fn go_on(typist: &Typist) {
     typist.wait_to_see("> ");
     if typist.text().contains("> Continue") {
@@ -64,7 +64,7 @@ fn go_on(typist: &Typist) {
 }
 
 impl Visit {
-    /// Plays with what is kept in `folder`, and leaves.
+    /// Plays with the data stored in `folder`, and leaves.
     #[track_caller]
     fn run(&self, folder: &Path, traced: Option<&Traced>) -> Visited {
         let data = ("CELLCASTER_DATA", folder.to_str().unwrap());
@@ -82,7 +82,7 @@ impl Visit {
         Visited { said, process }
     }
 
-    /// Lets each call fail that the visit makes in a folder that `fill` has filled.
+    /// Makes each call fail that the visit makes in a folder that `fill` has filled.
     fn assert_keeps_all(&self, name: &str, fill: impl Fn(&Path)) {
         let filled = folder(&format!("{name}-before"));
         fill(&filled);
@@ -114,7 +114,7 @@ impl Visit {
     }
 }
 
-/// All is kept, or a sentence says why not, and all from before is kept.
+/// Either everything is stored, or a sentence gives the reason and all earlier data is still there.
 #[track_caller]
 fn assert_kept(folder: &Path, said: &str, (before, after): (&Kept, &Kept), failure: &Failure) {
     let sentences = said.matches("cellcaster: ").count();
@@ -149,7 +149,7 @@ impl Kept {
         }
     }
 
-    /// Whether it is in the folder. A script too many does no harm.
+    /// Returns whether the folder contains this data. An additional script does no harm.
     fn is_in(&self, folder: &Path) -> bool {
         let other = Self::read(folder);
         let has_script = |(name, script)| other.scripts.get(name) == Some(script);
@@ -157,7 +157,7 @@ impl Kept {
     }
 }
 
-/// All that is opened in the folder from one state to another.
+/// All files that are opened in the folder on the way from one state to another.
 fn paths(folder: &Path, states: &[&Kept]) -> Vec<PathBuf> {
     let runs = folder.join("runs");
     let scripts = states.iter().flat_map(|state| state.scripts.keys());

@@ -47,17 +47,19 @@ pub(crate) struct Arrow {
 }
 
 impl Game {
-    /// Starts the test map `cellar`, where nobody moves but the player, in a terminal that reports key releases.
+    /// Starts the test map `cellar`, in which only the player moves, in a terminal that reports key
+    /// releases.
     pub(crate) fn start() -> Self {
         Self::with(Speaks::Kitty, SIZE, None, &[], &[])
     }
 
-    /// Starts the test map `map` in such a terminal.
+    /// Starts the test map `map` in a terminal that reports key releases.
     pub(crate) fn start_map(map: &str) -> Self {
         Self::with(Speaks::Kitty, SIZE, Some(map), &[], &[])
     }
 
-    /// Starts a game on a test map, or on the test map `cellar`, and waits until it shows a picture.
+    /// Starts a game on the test map `map`, or else on `cellar`, and waits until it shows a
+    /// picture.
     pub(crate) fn with(
         speaks: Speaks,
         size: (u16, u16),
@@ -75,7 +77,7 @@ impl Game {
         Self { player, speaks, map }
     }
 
-    /// The player without the game's map.
+    /// The player, without the game's map.
     pub(crate) fn into_player(self) -> Player {
         self.player
     }
@@ -98,7 +100,7 @@ impl Game {
         }
     }
 
-    /// Releases `key`; the program learns of it only if the terminal reports releases.
+    /// Releases `key`. The program notices this only if the terminal reports releases.
     pub(crate) fn release(&self, key: Key) {
         if matches!(self.speaks, Speaks::Kitty | Speaks::Alacritty) {
             self.send(key.event(3));
@@ -111,7 +113,7 @@ impl Game {
         self.release(key);
     }
 
-    /// Leaves the game, and confirms that.
+    /// Leaves the game, and confirms it.
     pub(crate) fn leave(&self) {
         self.press(Key::Char('q'));
         self.press(Key::Enter);
@@ -130,7 +132,7 @@ impl Game {
         self.wait_until(what, |emulator| arrow(emulator).is_some_and(&condition));
     }
 
-    /// Waits until the screen shows the status line and, where no panel hides it, the picture that
+    /// Waits until the screen shows the status line and, except under panels, the picture that
     /// `snapshot` draws with `options`.
     #[track_caller]
     pub(crate) fn wait_for_picture(&self, options: &[&str]) {
@@ -145,7 +147,7 @@ impl Game {
         self.wait_until(&what, |emulator| shows(emulator, rows));
     }
 
-    /// Waits until the screen shows that picture and only the status line besides.
+    /// Waits until the screen shows only that picture and the status line.
     #[track_caller]
     pub(crate) fn wait_for_bare_picture(&self, options: &[&str]) {
         self.wait_until("hid the panels", |emulator| panel(emulator).is_none());
@@ -233,7 +235,7 @@ fn panel(emulator: &Emulator) -> Option<(u16, u16)> {
     Some((left, bottom))
 }
 
-/// Whether the screen shows the cells of `rows` and a status line below them.
+/// Returns whether the screen shows the cells of `rows` and a status line below them.
 fn shows(emulator: &Emulator, rows: &[Value]) -> bool {
     let hidden = panel(emulator).unwrap_or((u16::MAX, 0));
     let is_hidden = |column, row| column >= hidden.0 && row <= hidden.1;
@@ -264,7 +266,7 @@ pub(crate) fn looks(emulator: &Emulator) -> Vec<String> {
         .collect()
 }
 
-/// The colours of the halves of each cell, in any emulator; `None` where there is a character.
+/// The colours of the halves of each cell, in any emulator; `None` for a cell with a character.
 pub(crate) fn halves_shown(emulator: &Emulator) -> Vec<Option<[[u8; 3]; 2]>> {
     let (columns, rows) = size(emulator);
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -280,8 +282,8 @@ fn shows_cell(emulator: &Emulator, column: u16, row: u16, cell: &Value) -> bool 
     })
 }
 
-/// The colours of the upper and the lower half of a block character; several such characters look
-/// the same. `None` for any other character.
+/// The colours of the upper and the lower half of a block character, because several such
+/// characters look the same. `None` for any other character.
 fn halves<'a>(symbol: &str, text: &'a str, ground: &'a str) -> Option<(&'a str, &'a str)> {
     match symbol {
         "▀" => Some((text, ground)),

@@ -3,7 +3,7 @@
 use super::game::{Game, Key};
 use crate::emulator::{Emulator, Speaks};
 
-/// The level and the player's position, by the status line.
+/// The level and the player's position, read from the status line.
 fn whereabouts(emulator: &Emulator) -> String {
     let text = emulator.text();
     let line = text.lines().last().unwrap_or_default();

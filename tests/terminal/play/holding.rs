@@ -1,4 +1,4 @@
-//! How long a key counts as held, with and without key releases.
+//! The time for which a key counts as held, with and without key releases.
 
 use std::cell::Cell;
 use std::fs;
@@ -35,7 +35,7 @@ fn a_key_is_held_without_repetition_until_its_release() {
     assert!(game.arrow().column < before.column + 32, "it walked to the end");
 }
 
-/// Without releases, in a plain terminal and in a multiplexer that claims to report them.
+/// In a plain terminal without releases, and in a multiplexer that claims to report them.
 #[test]
 fn without_releases_a_tap_walks_a_little_and_stops() {
     let multiplexers: [&[_]; 4] = [
@@ -91,7 +91,7 @@ fn without_releases_repetition_walks_on_and_an_opposing_key_turns_back_at_once()
 const DELAY: Duration = Duration::from_millis(500);
 const INTERVAL: Duration = Duration::from_millis(33);
 
-/// Holds a key at a terminal without releases until `condition` holds. Returns the longest time
+/// Holds a key at a terminal without releases until `condition` is true. Returns the longest time
 /// between two of its repetitions.
 fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) -> Duration {
     game.send(bytes);
@@ -109,10 +109,10 @@ fn hold(game: &Game, bytes: &str, condition: impl Fn() -> bool) -> Duration {
     panic!("holding {bytes:?} did not help; the screen:\n{}", game.text());
 }
 
-/// The player's intents in each step of a game in which `plays` sent bytes.
+/// The player's intents in each step of a game to which `plays` has sent bytes.
 fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    // The file of an earlier run.
+    // An earlier run may have left this file.
     _ = fs::remove_file(&path);
     let options = ["--record", path.to_str().unwrap()];
     let mut game = Game::with(Speaks::Plain, LARGE, Some(map), &options, &[]);
@@ -123,7 +123,7 @@ fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
     script.unwrap_or_else(|faults| panic!("{faults}")).iter().map(|(_, intents)| intents).collect()
 }
 
-/// Five steps of walking are a quarter of a cell, ten of aiming are 5 degrees.
+/// Five steps of walking are a quarter of a cell, and ten steps of aiming are 5 degrees.
 #[test]
 fn two_taps_are_twice_one_tap() {
     let names =
@@ -141,14 +141,14 @@ fn two_taps_are_twice_one_tap() {
     }
 }
 
-/// A turn is tapped, and a key to walk is held 80 to 140 ms later.
+/// A turn key is tapped, and a walking key is held 80 to 140 ms later.
 #[test]
 fn to_adjust_and_then_go_turns_by_one_tap() {
     let map = test_map("floor");
     for steps_apart in 5..=8 {
         let name = format!("adjust_{steps_apart}.script");
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name);
-        // The file of an earlier run.
+        // An earlier run may have left this file.
         _ = fs::remove_file(&path);
         let arguments = ["play", "--record", path.to_str().unwrap(), map.to_str().unwrap()];
         let environment = [&ENVIRONMENT[..], &[CLOCK]].concat();
@@ -179,10 +179,10 @@ fn the_keys_for_exact_turns_turn_exactly() {
 
 #[test]
 fn without_releases_one_walks_and_turns_in_a_circle() {
-    // A machine that is too busy types too late, which releases a key.
+    // A machine that is too busy types too late, which counts as a release of the key.
     let places = (0..5).map(|_| circle()).find(|places| places.len() > 30 + HALF_TURN);
     let places = places.expect("this machine is too busy to type");
-    // After half a second it is a circle with a radius of 3 cells by 2.4 radians per second.
+    // After half a second, the path is a circle with a radius of 3 cells at 2.4 radians per second.
     for (one, other) in places[30..].iter().zip(&places[30 + HALF_TURN..]) {
         assert!((one.distance(*other) - 2.5).abs() < 0.05, "{one} {other}");
     }
@@ -191,7 +191,7 @@ fn without_releases_one_walks_and_turns_in_a_circle() {
 /// The number of steps of half a turn at 2.4 radians per second.
 const HALF_TURN: usize = 79;
 
-/// The positions of a player who walks and turns, for as long as both last.
+/// The positions of a player who walks and turns, for as long as both intents last.
 fn circle() -> Vec<DVec2> {
     let steps = wanted("circle.script", "floor", |game| {
         let start = game.arrow();
@@ -217,18 +217,18 @@ fn circle() -> Vec<DVec2> {
     longest
 }
 
-/// Space ends the repetition of W, which stays held until the player lands.
+/// The space key ends the repetition of W, which stays held until the player lands.
 #[test]
 fn without_releases_six_of_six_running_jumps_succeed() {
-    // A cell has three columns on the map, and the pit begins at 6: the jumps begin between 5 and
-    // 5.7 cells.
+    // A cell has three columns on the map, and the pit begins at 6, so the jumps begin between 5
+    // and 5.7 cells.
     for columns in [11, 11, 12, 12, 13, 13] {
         let jumped = (0..10).any(|_| running_jump(columns));
         assert!(jumped, "this machine is too busy to type");
     }
 }
 
-/// Jumps when the player is that many columns from the start, and checks that the player lands
+/// Jumps when the player is `columns` columns from the start, and checks that the player lands
 /// behind the pit. Returns `false` without a jump if this machine was too slow to act as a
 /// keyboard.
 fn running_jump(columns: u16) -> bool {

@@ -1,4 +1,4 @@
-//! What is kept of a game: in a folder that cannot be written, and in the script of a descent.
+//! The stored data of a game: in a folder that cannot be written, and in the script of a descent.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ fn play_daily(data: &Path, options: &[&str]) -> String {
     play_daily_by(&[PROGRAM], data, options)
 }
 
-/// As [`play_daily`], with `program` in front of the arguments.
+/// The same as [`play_daily`], with `program` in front of the arguments.
 fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     let environment = [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data.to_str().unwrap())]].concat();
     let arguments = [&program[1..], &["play", "--daily"], options].concat();
@@ -28,8 +28,8 @@ fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     player.wait_for("> Begin the try that counts");
     player.send("\r");
     player.wait_for("? help");
-    // The floor is another one each day: whether the player can walk, or is seen, is not known. Turning takes its steps
-    // on all of them.
+    // The floor differs each day, so the test cannot know whether the player can walk or is seen.
+    // Turning takes its steps on all floors.
     player.send("\x1b[C".repeat(12));
     player.wait_for("0:01");
     player.send("\x03");
@@ -39,7 +39,7 @@ fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     player.text()
 }
 
-/// Runs the program where no file can have any content.
+/// Runs the program under a limit at which no file can have any content.
 const WITHOUT_ROOM: [&str; 4] = ["/bin/sh", "-c", "ulimit -f 0; exec \"$0\" \"$@\"", PROGRAM];
 
 #[test]
@@ -59,7 +59,7 @@ fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {
     let names = fs::read_dir(&folder).unwrap().chain(fs::read_dir(folder.join("runs")).unwrap());
     let names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
     assert!(!names.iter().any(|name| name.to_string_lossy().ends_with(".new")), "{names:?}");
-    // With room again, both days are kept.
+    // Once there is room again, both days are stored.
     play_daily(&folder, &[]);
     let both = fs::read_to_string(&progress).unwrap();
     assert!(both.contains("[daily.20200101]") && both.contains(date), "{both}");
@@ -68,7 +68,7 @@ fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {
 #[test]
 fn a_folder_that_cannot_be_written_costs_a_sentence_and_no_game() {
     let blocked = empty("blocked");
-    // Where the user is root, permissions stop nobody: a file stands in the way.
+    // If the user is root, permissions stop nothing, so a file stands in the way.
     fs::write(blocked.join("runs"), "").unwrap();
     for (data, reason) in
         [(blocked, "can't be written"), (empty("file").join("progress.toml"), "can't be")]

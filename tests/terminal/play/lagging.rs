@@ -17,7 +17,7 @@ fn turning() -> Game {
 fn few_frames_are_on_their_way_and_lost_answers_do_not_end_the_game() {
     let game = turning();
     game.lose_statuses(true);
-    // Answers count as lost only later.
+    // Answers count as lost only after a while.
     thread::sleep(Duration::from_millis(800));
     let unanswered = game.lost_statuses();
     assert!((1..=4).contains(&unanswered), "{unanswered} frames are unanswered");
@@ -51,8 +51,8 @@ fn after_a_stuck_link_the_newest_frame_comes_next() {
     thread::sleep(Duration::from_millis(200));
     game.set_reading(true);
     game.wait_for_rest();
-    // The frames that were stuck, a few coarse ones after the stall, and those that make the newest
-    // one exact; none of the 36 frames in between.
+    // The frames are the ones that were stuck, a few coarse frames after the stall, and the frames
+    // that make the newest one exact. None of the 36 frames in between is sent.
     let frames = game.look(|emulator| {
         emulator.bytes()[before..].windows(8).filter(|bytes| bytes == b"\x1b[?2026l").count()
     });

@@ -40,7 +40,7 @@ fn control_c_leaves_in_every_layout() {
     game.wait_for_end().assert_given_back();
 }
 
-/// The terminal gets only the sentence.
+/// The terminal receives only the sentence.
 #[test]
 fn a_terminal_that_cannot_move_its_cursor_is_refused_with_a_sentence() {
     for term in ["dumb", "unknown"] {

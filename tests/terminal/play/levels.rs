@@ -7,7 +7,7 @@ use super::clock::{CLOCK, Typist};
 use super::game::{ENVIRONMENT, Game, Key, PROGRAM};
 use super::titles::folder;
 
-/// A result is shown for half a second before Enter confirms it.
+/// The pause before Enter, which confirms a result only after half a second.
 const RESULT: Duration = Duration::from_millis(700);
 
 #[test]
@@ -23,7 +23,7 @@ fn the_exit_shows_the_time_and_a_single_map_is_followed_by_the_end() {
     game.wait_for("all levels");
     game.wait_for(" in 0:");
     thread::sleep(RESULT);
-    // It ends the game, long before the key is released.
+    // Enter ends the game, long before the key is released.
     game.press(Key::Enter);
     let ending = game.wait_for_end();
     ending.assert_given_back();
@@ -44,7 +44,8 @@ grid = '''
 "^" = { spikes = 1.0 }
 "##;
 
-/// In a terminal without releases, by a player who dies while walking and goes on pressing keys of the game.
+/// The terminal reports no releases, and the player dies while walking and continues to press keys
+/// of the game.
 #[test]
 fn after_a_death_only_enter_and_the_arrows_act() {
     let path = folder("deadly").join("deadly.toml");

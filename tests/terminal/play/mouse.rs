@@ -1,4 +1,4 @@
-//! Turning, tilting and opening by the mouse, and the loss of the focus.
+//! Turning, tilting and opening with the mouse, and the loss of the focus.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::asciicast::Asciicast;
 use crate::emulator::{Emulator, Speaks};
 use crate::support::output_of;
 
-/// A motion of the pointer to that cell, or pixel, counted from 1.
+/// A motion of the pointer to this cell or pixel, counted from 1.
 fn motion(column: u16, row: u16) -> String {
     format!("\x1b[<35;{column};{row}M")
 }
@@ -66,7 +66,7 @@ fn a_terminal_that_tells_pixels_turns_by_less_than_a_cell() {
     game.wait_until("asked for pixels", |emulator| emulator.modes().mouse_pixels);
     game.send(motion(320, 200));
     game.send(motion(346, 200));
-    // A cell is 8 pixels wide, and turns by 2°.
+    // A cell is 8 pixels wide, and corresponds to a turn of 2°.
     game.wait_for_picture(&["--camera", "1.5,1.5,6.5"]);
 }
 

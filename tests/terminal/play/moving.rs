@@ -2,8 +2,8 @@
 
 use super::game::{Game, Key};
 
-/// The positions at the wall ahead of the start, and at the wall to its right: a quarter of a cell
-/// from each, which is the least distance.
+/// The positions at the wall ahead of the start, at the wall to its right, and at the wall behind:
+/// a quarter of a cell from each, which is the smallest distance.
 const AT_THE_WALL_AHEAD: [&str; 2] = ["--camera", "6.75,1.5,0"];
 const AT_THE_WALL_TO_THE_RIGHT: [&str; 2] = ["--camera", "1.5,3.75,0"];
 const AT_THE_WALL_BEHIND: [&str; 2] = ["--camera", "1.25,1.5,0"];

@@ -1,5 +1,5 @@
-//! The terminal's palette and repeated characters: used where the terminal proves that they work, and given
-//! back however the game ends.
+//! The terminal's palette and repeated characters: used if the terminal proves that they work, and
+//! restored however the game ends.
 
 use rustix::process::Signal;
 
@@ -9,7 +9,7 @@ use crate::player::Player;
 
 const DEFINITION: &str = "\x1b]4;";
 
-/// A game that turns in a terminal whose palette it uses.
+/// A game that turns, in a terminal whose palette it uses.
 fn turning() -> Game {
     let demand = [("CELLCASTER_PANIC", "1")];
     let game = Game::with(Speaks::Alacritty, (80, 24), None, &[], &demand);
@@ -18,7 +18,7 @@ fn turning() -> Game {
     game
 }
 
-/// Whether the screen shows entries of the palette that were defined.
+/// Returns whether the screen shows palette entries that were defined.
 fn uses_palette(emulator: &Emulator) -> bool {
     let terminal = emulator.alacritty();
     terminal.entries_in_use().intersection(&terminal.entries_defined()).count() > 10
@@ -34,7 +34,7 @@ fn text(player: &Player) -> String {
     String::from_utf8(player.bytes()).unwrap()
 }
 
-/// Whether a control sequence repeats a character (`CSI n b`) after the probe for it.
+/// Returns whether a control sequence repeats a character (`CSI n b`) after the probe for it.
 fn repeats(text: &str) -> bool {
     let mut sequences = text.split("\x1b[").skip(1);
     let is_repetition =
@@ -42,7 +42,7 @@ fn repeats(text: &str) -> bool {
     sequences.by_ref().filter(|rest| is_repetition(rest)).nth(1).is_some()
 }
 
-/// Whether an entry was defined after the probe, which is the only definition of entry 254 alone.
+/// Returns whether an entry was defined after the probe. Only the probe defines entry 254 alone.
 fn defines(text: &str) -> bool {
     text.split(DEFINITION).skip(1).filter(|rest| !rest.starts_with("255;?")).count() > 1
 }
@@ -52,7 +52,7 @@ fn where_the_terminal_has_a_palette_the_picture_is_the_same_and_takes_fewer_byte
     let games = [Speaks::Kitty, Speaks::Alacritty].map(|speaks| {
         let game = Game::with(speaks, (80, 24), None, &[], &[]);
         game.wait_for_releases();
-        // By then, all queries have been answered; this picture is painted from nothing.
+        // By then, all queries have been answered, and the resized picture is painted from nothing.
         let before = game.bytes_written();
         game.resize(100, 30);
         game.wait_until("repainted", |emulator| emulator.bytes().len() > before + 1000);
@@ -116,7 +116,7 @@ fn a_multiplexer_is_not_probed() {
         ("STY", "1.pts-0.host"),
     ] {
         let game = Game::with(Speaks::Alacritty, (80, 24), None, &[], &[variable]);
-        // Releases are not asked for either: the key is repeated, as terminals do.
+        // The program does not request releases either, so the key is repeated as terminals do.
         for _ in 0..10 {
             game.send("\x1b[C");
             std::thread::sleep(std::time::Duration::from_millis(30));
@@ -129,7 +129,7 @@ fn a_multiplexer_is_not_probed() {
     }
 }
 
-/// Some terminals define entries and do not know how to reset them.
+/// Some terminals define entries but cannot reset them.
 #[test]
 fn a_palette_that_cannot_be_given_back_is_not_used() {
     const OWN: &str = "\x1b]4;255;rgb:eeee/eeee/eeee\x07";

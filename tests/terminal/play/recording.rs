@@ -12,7 +12,7 @@ use crate::emulator::Speaks;
 use crate::looks::looks;
 use crate::support::output_of;
 
-/// A game that is recorded in a new file with that name.
+/// A game that is recorded in a new file with this name.
 fn recorded(name: &str) -> (Game, PathBuf) {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let options = ["--force", "--record", path.to_str().unwrap()];

@@ -1,4 +1,4 @@
-//! The program's load on the machine and the link.
+//! The load that the program puts on the machine and the link.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -43,7 +43,7 @@ fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
     game.wait_for_releases();
     let (begun, before) = (Instant::now(), count(&game.bytes(), BEGIN));
     game.wait_until("flickered", |emulator| count(emulator.bytes(), BEGIN) >= before + FLICKERS);
-    // Each takes a quarter of a second; the first may come earlier.
+    // Each frame takes a quarter of a second; the first may come earlier.
     let elapsed = begun.elapsed();
     assert!(elapsed >= Duration::from_millis(700), "{FLICKERS} frames in {elapsed:?}");
     // Walk past it, to the wall behind.
@@ -54,7 +54,7 @@ fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
     assert_eq!(game.bytes_written(), written, "the torch is behind the player");
 }
 
-/// The processor time in hundredths of a second, if the system has a file with it.
+/// The processor time in hundredths of a second, if the system reports it in a file.
 fn processor_time(game: &Game) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{}/stat", game.process())).ok()?;
     let (_, fields) = status.rsplit_once(')')?;
@@ -62,7 +62,8 @@ fn processor_time(game: &Game) -> Option<u64> {
     Some(user?.parse::<u64>().ok()? + system?.parse::<u64>().ok()?)
 }
 
-/// How often the program has waited for something, if the system has a file with it.
+/// The number of times that the program has waited for something, if the system reports it in a
+/// file.
 fn waits(game: &Game) -> Option<usize> {
     let status = std::fs::read_to_string(format!("/proc/{}/status", game.process())).ok()?;
     let count = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"))?;
@@ -72,7 +73,7 @@ fn waits(game: &Game) -> Option<usize> {
 #[test]
 fn a_frame_takes_two_waits() {
     const FRAMES: usize = 20;
-    // The terminal takes a frame of a small window at once.
+    // The terminal accepts a frame of a small window at once.
     let game = Game::with(Speaks::Kitty, (40, 12), None, &["--fps", "10"], &[]);
     let frames = || count(&game.bytes(), END);
     let still = frames();
@@ -82,7 +83,8 @@ fn a_frame_takes_two_waits() {
     game.wait_until("went on turning", |emulator| count(emulator.bytes(), END) >= before + FRAMES);
     let waited = waits(&game).unwrap_or_default() - waited;
     let drawn = frames() - before;
-    // One until the frame is due, and one for the terminal's answer, which may come in two parts.
+    // One wait until the frame is due, and one for the terminal's answer, which may come in two
+    // parts.
     assert!(waited <= 2 * drawn + FRAMES / 2, "{waited} waits for {drawn} frames");
 }
 
@@ -123,7 +125,7 @@ fn every_frame_is_shown_at_once() {
     let first = bytes.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();
     let mut rest = &bytes[first..];
     let mut frames = 0;
-    // After the first frame come only frames with their status requests, and the request for
+    // After the first frame, there are only frames with their status requests, and the request for
     // releases.
     while let Some(end) = rest.windows(END.len()).position(|window| window == END) {
         let before = rest.windows(BEGIN.len()).position(|window| window == BEGIN).unwrap();

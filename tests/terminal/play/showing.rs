@@ -78,7 +78,7 @@ fn m_and_tab_hide_the_minimap_and_show_it_again() {
 #[test]
 fn help_names_the_keys_until_it_is_closed() {
     let game = Game::start();
-    // The key with the slash gives it with Shift.
+    // The key with the slash produces the question mark with Shift.
     for close in ["\x1b[47:63;2u", "\x1b[27u"] {
         game.press(Key::Char('?'));
         game.wait_for("strafe left");

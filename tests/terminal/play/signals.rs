@@ -1,4 +1,4 @@
-//! Every signal at every moment, and terminals that stop reading or change their size all the time.
+//! Every signal at every moment, and terminals that stop reading or constantly change their size.
 
 use std::thread;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use super::game::{ENVIRONMENT, Game, Key, PROGRAM};
 use crate::emulator::{Modes, Speaks};
 use crate::player::Player;
 
-/// The signals that ask the program to end. It keeps what was played, and then ends by itself.
+/// The signals that ask the program to end. It stores the game, and then ends by itself.
 const REQUESTS: [Signal; 3] = [Signal::TERM, Signal::HUP, Signal::INT];
 
 /// Signals that end the program at once.
@@ -18,7 +18,8 @@ const ENDS: [Signal; 6] =
 
 const ENTERED: &[u8] = b"\x1b[?1049h";
 
-/// Starts a program for each signal, which must give the terminal back and then have its effect.
+/// Starts a program for each signal. It must restore the terminal, and then the signal must take
+/// effect.
 #[track_caller]
 fn end_by_each_signal(start: impl Fn() -> Player) {
     for signal in REQUESTS.into_iter().chain(ENDS) {
@@ -82,8 +83,8 @@ fn signals_end_it_in_a_terminal_that_answers_nothing() {
     end_by_each_signal(|| Game::with(Speaks::Nothing, (80, 24), None, &[], &[]).into_player());
 }
 
-/// SIGSTKFLT, SIGIO, SIGPWR and the real-time signals end it with the status that a shell reports for
-/// them.
+/// SIGSTKFLT, SIGIO, SIGPWR and the real-time signals end the program with the status that a shell
+/// reports for them.
 #[cfg(target_os = "linux")]
 #[test]
 fn signals_without_a_name_end_it_with_their_number() {
@@ -98,7 +99,7 @@ fn signals_without_a_name_end_it_with_their_number() {
     }
 }
 
-/// The key of SIGQUIT, pressed in a moment in which the terminal interprets keys.
+/// The key for SIGQUIT is pressed while the terminal interprets keys.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_key_does_not_end_it_while_the_terminal_interprets_keys() {
@@ -109,7 +110,7 @@ fn a_key_does_not_end_it_while_the_terminal_interprets_keys() {
     game.send("\x1c");
     thread::sleep(Duration::from_millis(300));
     assert!(!game.has_ended());
-    // As after a stop.
+    // This is the state after a stop.
     game.signal(Signal::CONT);
     game.press(Key::Right);
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
@@ -119,8 +120,8 @@ fn a_key_does_not_end_it_while_the_terminal_interprets_keys() {
     assert!(ending.status.success(), "{ending:?}");
 }
 
-/// The terminal answers while the first frame is too long for it: the program wants to push keyboard
-/// flags, and cannot.
+/// The terminal answers while the first frame is too long for it, so the program wants to push
+/// keyboard flags but cannot.
 #[test]
 fn flags_that_were_not_pushed_are_not_popped() {
     const FRAME: &[u8] = b"\x1b[?2026h";

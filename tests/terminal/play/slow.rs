@@ -1,4 +1,4 @@
-//! Maps whose pictures take seconds.
+//! Maps whose pictures take seconds to draw.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::player::Player;
 /// The largest window: 200,000 cells.
 const WINDOW: (u16, u16) = (1000, 200);
 
-/// A game among a thousand spheres, of which as many are in one place as a map can have.
+/// A game among a thousand spheres. As many of them as a map allows are in one place.
 fn among_spheres(name: &str) -> Player {
     let sphere =
         |x, radius| format!("{{ center = [{x}, 0, 0], radius = {radius}, color = '#ff8000' }},");
@@ -27,7 +27,7 @@ fn among_spheres(name: &str) -> Player {
     player
 }
 
-/// Whether the last row of the picture is black, as before the picture is complete.
+/// Returns whether the last row of the picture is black, as it is before the picture is complete.
 fn is_incomplete(emulator: &Emulator) -> bool {
     let (columns, rows) = (usize::from(WINDOW.0), usize::from(WINDOW.1));
     let halves = halves_shown(emulator);

@@ -12,7 +12,8 @@ use crate::player::Player;
 /// The byte that rings a terminal's bell.
 const BELL: u8 = 7;
 
-/// Whether a terminal that gets `bytes` rings: a bell within an operating system command ends it.
+/// Returns whether a terminal that receives `bytes` rings. A bell inside an operating system
+/// command only ends the command.
 fn rings(bytes: &[u8]) -> bool {
     let mut is_command = false;
     bytes.windows(2).any(|pair| match pair {
@@ -29,7 +30,7 @@ fn rings(bytes: &[u8]) -> bool {
     })
 }
 
-/// An empty folder for a test with that name.
+/// An empty folder for the test with this name.
 pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = fs::remove_dir_all(&folder);
@@ -37,7 +38,7 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The program without arguments, with `data` as the folder for what it keeps.
+/// Starts the program without arguments, with `data` as its data folder.
 fn start(data: &Path, size: (u16, u16)) -> Player {
     let data = data.to_str().unwrap();
     let environment = [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data)]].concat();
@@ -47,7 +48,7 @@ fn start(data: &Path, size: (u16, u16)) -> Player {
     player
 }
 
-/// Selects the entry `label` by the arrow down, and chooses it.
+/// Selects the entry `label` with the down arrow, and chooses it.
 #[track_caller]
 fn choose(player: &Player, label: &str) {
     let wanted = format!("> {label}");
@@ -155,7 +156,7 @@ fn a_map_that_is_started_by_its_path_is_saved_and_asked_about() {
     player.wait_for("> Continue");
     player.send("\x1b");
     player.wait_for_end().assert_given_back();
-    // The title goes on with it, although its folder is not among those of own maps.
+    // The title continues it, although its folder is not in the list of own maps.
     let mut player = start(&data, (80, 24));
     choose(&player, "Continue");
     player.wait_for("? help");

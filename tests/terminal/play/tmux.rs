@@ -1,4 +1,4 @@
-//! The offer to tell tmux about its terminal's colours, in a tmux with a server of its own.
+//! The offer to tell tmux about its terminal's colours, in a tmux with its own server.
 
 use std::env;
 use std::fs;
@@ -14,14 +14,15 @@ const VERSION_QUERY: &str = "\x1b[>q";
 const VERSION: &str = "\x1bP>|kitty(0.42.1)\x1b\\";
 const DOWN: &str = "\x1b[B";
 const DETACH: &str = "\x02d";
-/// A key after this pause may come from a client that has just attached.
+/// The pause after which a key may come from a client that has just attached.
 const PAUSE: Duration = Duration::from_millis(1200);
 
-/// A server of tmux, which ends with the test, by its socket. The path of a socket must be short.
+/// A tmux server, identified by its socket, which ends with the test. The path of a socket must be
+/// short.
 struct Server(String);
 
 impl Server {
-    /// `None` if there is no tmux, which is a failure where all programs must be installed.
+    /// `None` if tmux is not installed, which is a failure if all programs must be installed.
     fn new() -> Option<Self> {
         let is_installed = Command::new("tmux").arg("-V").output().is_ok();
         assert!(
@@ -42,7 +43,7 @@ impl Server {
         command
     }
 
-    /// A client whose terminal says that it is kitty. tmux repeats characters there.
+    /// A client whose terminal claims to be kitty. tmux repeats characters in such a terminal.
     fn client(&self, arguments: &[&str]) -> Player {
         let words = [&["-u", "-S", &self.0, "-f", "/dev/null"], arguments].concat();
         let path = env::var("PATH").unwrap_or_default();

@@ -1,9 +1,9 @@
-//! The baseline renderer: it draws a flat scene as the program did before it had textured floors, a
+//! The baseline renderer. It draws a flat scene as the program did before it had textured floors, a
 //! sky, fog and things.
 //!
 //! Each column is a ray, each half of the picture is a fill, and each pixel of a wall is the
-//! nearest texel of the full-size texture. It is kept unchanged to measure the cost of all later
-//! features for a scene without them.
+//! nearest texel of the full-size texture. It is kept unchanged to measure how much all later
+//! features cost a scene without them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The measured scenes: the maps of the gallery, as seen from their starts.
+//! The measured scenes: the maps of the gallery, seen from their starts.
 
 use cellcaster::map::{self, Level};
 use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
@@ -10,7 +10,7 @@ const GALLERY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/gallery")
 /// The map with which all others are compared.
 pub(crate) const FLAT: &str = "flat";
 
-/// The sizes of the pictures in pixels: those of half blocks at 160x45 and 400x120 cells.
+/// The sizes of the pictures in pixels, for half blocks in 160x45 and 400x120 cells.
 pub(crate) fn sizes() -> [FrameSize; 2] {
     [(160, 90), (400, 240)]
         .map(|(width, height)| FrameSize::new(width, height).expect("none of these is zero"))
@@ -58,7 +58,7 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// For pictures of this size, on square pixels.
+    /// Creates a frame of this size, with square pixels.
     pub(crate) fn new(size: FrameSize) -> Self {
         Self {
             of_grids: Renderer::default(),

@@ -1,17 +1,17 @@
 //! Pictures compared with the mean over the area of each pixel.
 //!
-//! A picture has one sample in each pixel, and the truth is what a perfect camera sees: the mean
-//! light over the pixel. It is computed from the renderer's own picture, eight times as wide and
-//! high and without filtering: 64 samples of a pixel, averaged in linear light and not rounded. The
-//! renderer's samples are verified elsewhere, against an independent tracer. Rejected: an oracle in
-//! rational arithmetic. 64 samples of it take seconds for each picture.
+//! A picture has one sample in each pixel. The reference is the picture of a perfect camera: the
+//! mean light over the pixel. It is computed from the renderer's own picture, eight times as wide
+//! and high and without filtering. The 64 samples of each pixel are averaged in linear light and
+//! not rounded. The renderer's samples are verified elsewhere, against an independent tracer.
+//! Rejected: an oracle in rational arithmetic. 64 samples of it take seconds for each picture.
 //!
-//! Each half of a cell is compared, as the glyphs of the window light it. The coverage of a glyph is taken from an 8×8
-//! bitmap font.
+//! Each half of a cell is compared, as the glyphs of the window light it. The coverage of a glyph
+//! comes from an 8×8 bitmap font.
 //!
 //! A half is at an edge if its samples show more than one surface: floor, ceiling, sky, a thing, or
-//! one plane of walls. *Crawl* is the change from frame to frame that the truth does not have: the
-//! mean of |change shown − true change| while the camera turns and walks slowly.
+//! one plane of walls. *Crawl* is the change from frame to frame that the reference does not have:
+//! the mean of |change shown − true change| while the camera turns and walks slowly.
 
 use std::num::NonZeroU32;
 
@@ -30,7 +30,7 @@ use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surfac
 use cellcaster::tui::{FirstPerson, GlyphSet, View, rgb_of};
 use cellcaster::world::{Camera, World};
 
-/// The glyphs and colours by which a window shows a picture.
+/// The glyphs and colours with which a window shows a picture.
 #[derive(Clone, Copy, Debug)]
 struct Display {
     name: &'static str,
@@ -59,13 +59,13 @@ const TYPICAL: Size = WINDOWS[2];
 
 /// The number of cameras: the start, and random places.
 const CAMERAS: usize = 4;
-/// The number of steps of each camera. Before each, it turns and walks.
+/// The number of steps of each camera. It turns and walks before each step.
 const STEPS: usize = 3;
-/// A ninth of a degree.
+/// The angle between frames, in radians: a ninth of a degree.
 const TURN: f64 = 0.002;
-/// In cells.
+/// The distance between frames, in cells.
 const STRIDE: f64 = 0.01;
-/// The errors on the diagrams.
+/// The range of errors on the diagrams.
 const RANGE: [f64; 2] = [0.1, 255.0];
 
 /// The errors of each filter and each glyph set, in pictures of `world`. Each is timed in `rounds`
@@ -125,8 +125,8 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     }
 }
 
-/// The order of convergence from the next smaller window with the same display and filter: the power of the
-/// width of a pixel with which the mean error falls.
+/// The order of convergence, compared with the next smaller window with the same display and
+/// filter: the power of a pixel's width with which the mean error falls.
 fn order(smaller: &[Row], row: &Row) -> Value {
     /// The column of the mean error.
     const MEAN_ERROR: usize = 1;
@@ -141,7 +141,7 @@ fn order(smaller: &[Row], row: &Row) -> Value {
     Value::maybe(order().filter(|order| order.is_finite()))
 }
 
-/// The cameras of a way that begins at `first`.
+/// The cameras of a walk that begins at `first`.
 fn way(first: Camera) -> Vec<Camera> {
     std::iter::successors(Some(first), |camera| {
         let mut next = *camera;
@@ -154,7 +154,7 @@ fn way(first: Camera) -> Vec<Camera> {
     .collect()
 }
 
-/// Adds the differences of each of `shown` along `way`.
+/// Adds the differences of each entry of `shown` along `way`.
 fn compare(
     world: &World,
     way: &[Camera],
@@ -211,7 +211,7 @@ impl Window {
     }
 }
 
-/// The mean light of the upper half of a cell, which is 0, or of the lower half.
+/// The mean light of the upper half of a cell (0) or the lower half (1).
 fn light(cell: &Cell, half: usize) -> [f64; 3] {
     const DOTS: f64 = 32.0;
     let character = cell.symbol().chars().next().unwrap_or(' ');
@@ -240,11 +240,11 @@ const SCALE: u32 = 8;
 struct Half {
     /// The mean light in sRGB, not rounded, from 0 to 255.
     color: [f64; 3],
-    /// Whether its samples show more than one surface.
+    /// `true` if its samples show more than one surface.
     is_at_edge: bool,
 }
 
-/// The content of a sample: a surface, and for walls the line of the grid that they stand on.
+/// The content of a sample: a surface, and for a wall the grid line on which it stands.
 type Shown = (Option<Surface>, Option<(Side, u32)>);
 
 /// The halves of the cells of a window of `size`, row by row, in the view of `camera`.
@@ -290,12 +290,12 @@ fn shown(renderer: &Renderer, x: u32, y: u32) -> Shown {
     (surface, line)
 }
 
-// How far pictures are from the truth, summed over the halves of their cells.
+// The distance between pictures and the reference, summed over the halves of their cells.
 
-/// A difference that is easily seen, of 255.
+/// A difference that is easily visible, out of 255.
 const FAR: f64 = 24.0;
 
-/// Sums over halves of cells; where there are two, of textures and of edges.
+/// Sums over halves of cells. Pairs are for textures and for edges, in this order.
 #[derive(Clone, Debug, Default)]
 struct Differences {
     pixels: [u64; 2],
@@ -378,8 +378,8 @@ mod tests {
         map::parse_str(&text).unwrap()
     }
 
-    /// The values of the first display in a small window: mean error, of edges and of textures, and
-    /// crawl.
+    /// The values of the first display in a small window: mean error, errors of edges and of
+    /// textures, and crawl.
     fn values(world: &World, filter: Filter) -> [f64; 4] {
         let ways = cameras(world, 5).take(2).map(way);
         let mut all = [Differences::default()];

@@ -1,8 +1,9 @@
-//! Everything else that has a truth: one row for each feature.
+//! Every other feature that has a reference: one row for each feature.
 //!
-//! Each truth is computed another way than the feature: in [fixed point](super::fixed_point) where a
-//! ray meets a shape, by another caster where a picture has heights, by a copy of the room where it
-//! has mirrors, from the definition where a colour has light.
+//! The reference is computed in another way than the feature. If a ray meets a shape, it is
+//! computed in [fixed point](super::fixed_point). If a picture has heights, it comes from another
+//! caster. If a picture has mirrors, it comes from a copy of the room. If a colour has light, it
+//! comes from the definition.
 
 mod pictures;
 mod rays;
@@ -35,7 +36,7 @@ struct Feature {
     work: Box<dyn FnMut()>,
 }
 
-/// Whether a case is another thing than it should be, and its error if it has one.
+/// Whether the result of a case is wrong, and its error if it has one.
 type Outcome = (bool, Option<f64>);
 
 /// The errors of all features. Each is timed in `rounds` rounds.
@@ -78,13 +79,14 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     }
 }
 
-// Palettes: the distance of the nearest colour, and whether it is the nearest.
+// Palettes: the distance of the nearest colour, and whether it is really the nearest.
 
 /// Every fifteenth value of each channel.
 const STEP: usize = 15;
 
-/// A colour is wrong if another index is nearer in Oklab, in which the palette is searched. The
-/// errors of the shown colours are in ΔE of CIE76; a difference of 2.3 is just seen.
+/// Compares the nearest colours of a palette. A colour is wrong if another index is nearer in
+/// Oklab, in which the palette is searched. The errors of the shown colours are in ΔE of CIE76, in
+/// which a difference of 2.3 is just visible.
 fn palette(
     name: &'static str,
     indices: std::ops::RangeInclusive<u8>,
@@ -115,12 +117,13 @@ fn palette(
 
 const WINDOW: Size = Size::new(80, 24);
 const FRAMES: usize = 24;
-/// Between frames, in radians: a turn of a player at 30 frames a second.
+/// The turn between frames, in radians: a player's turn at 30 frames a second.
 const TURN: f64 = 0.05;
-/// The difference that is just seen, in ΔE.
+/// The smallest visible difference, in ΔE.
 const SEEN: f64 = 2.3;
 
-/// A colour is wrong if its difference is seen. The errors are of all colours.
+/// Compares colours at a fidelity. A colour is wrong if its difference is visible. The errors
+/// include all colours.
 fn fidelity(name: &'static str, fidelity: Fidelity, world: &World) -> Feature {
     let mut camera = world.start_camera(FieldOfView::default());
     let mut view = View::default();
@@ -167,7 +170,8 @@ fn show(world: &World, camera: &Camera, view: &mut View, writer: &mut CellWriter
     writer.output_mut().clear();
 }
 
-/// The colours of the upper and the lower half of a cell with a half block or a space.
+/// The colours of the upper and the lower half of a cell that contains a half block, a full block
+/// or a space.
 fn halves(symbol: &str, text: Color, ground: Color) -> [Color; 2] {
     match symbol {
         "▀" => [text, ground],

@@ -1,8 +1,8 @@
-//! Numbers in fixed point, for truths that are no fractions.
+//! Numbers in fixed point, for references that are not fractions.
 //!
-//! A number is an integer in units of 2⁻⁵¹². Every double is one of them whose last place is no
+//! A number is an integer in units of 2⁻⁵¹². Every double is such a number if its last place is not
 //! smaller, which holds for all coordinates and times of the report. Products, quotients and roots
-//! are cut off there, so that a result of common size has some 150 digits.
+//! are cut off at this unit, so a result of common size has some 150 digits.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -17,14 +17,14 @@ const BITS: u32 = 512;
 pub(crate) struct Fixed(BigInt);
 
 impl Fixed {
-    /// A finite double; what is below 2⁻⁵¹² is cut off.
+    /// Converts a finite double. Digits below 2⁻⁵¹² are cut off.
     pub(crate) fn new(value: f64) -> Self {
         let (integer, exponent) = integer(value);
         let shift = exponent + i64::from(BITS);
         Self(if shift >= 0 { integer << shift } else { integer >> -shift })
     }
 
-    /// The nearest double or the next one to it.
+    /// The nearest double, or the next one to it.
     pub(crate) fn to_f64(&self) -> f64 {
         let excess = self.0.bits().saturating_sub(64);
         let digits = (self.0.magnitude() >> excess).iter_u64_digits().next().unwrap_or(0);
@@ -46,15 +46,15 @@ impl Fixed {
         Self((&self.0 << BITS).sqrt())
     }
 
-    /// The relative error of a finite `value`, or the absolute one where this number is 0.
+    /// The relative error of a finite `value`, or the absolute error if this number is 0.
     pub(crate) fn relative_error(&self, value: f64) -> f64 {
         let difference = &Self::new(value) - self;
         let share = if self.is_zero() { difference } else { &difference / self };
         share.to_f64().abs()
     }
 
-    /// e to the power of minus this number, which is not negative: the sum of the series at a number
-    /// below 2⁻⁸, squared as often as that was halved.
+    /// e to the power of minus this number, which must not be negative. Sums the series at a number
+    /// below 2⁻⁸, and squares the sum once for each halving of the number.
     pub(crate) fn exponential_of_minus(&self) -> Self {
         const TERMS: u32 = 60;
         // e^−355 is below 2⁻⁵¹².
@@ -139,8 +139,8 @@ mod tests {
         }
     }
 
-    /// ln 2 is not a double; e to the power of minus its double is a half, but for the difference,
-    /// which is 2.319e-17.
+    /// ln 2 is not a double. e to the power of minus the nearest double is therefore not exactly a
+    /// half; the exponents differ by 2.319e-17.
     #[test]
     fn the_exponential_is_more_than_a_double() {
         let half = Fixed::new(std::f64::consts::LN_2).exponential_of_minus();

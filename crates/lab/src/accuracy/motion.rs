@@ -1,14 +1,15 @@
 //! Damped motion: five integrators, and the error of each.
 //!
 //! A velocity v approaches a target w by dv/dt = rate · (w − v), from rest to [`SPEED`]. Each
-//! integrator moves for [`SECONDS`] by steps of several lengths, and is compared with the analytic
-//! solution after 1, 2, 4, 8 and so on steps and after the last. The errors are the largest of
-//! these, relative to the speed and to the way at it: at the end alone, a motion that has come to
-//! rest would show no error. The solution is computed in [fixed point](super::fixed_point) of 512 bits, from the
-//! very doubles that the integrators take, and subtracted before anything is rounded.
+//! integrator moves for [`SECONDS`] in steps of several lengths. It is compared with the analytic
+//! solution after 1, 2, 4, 8 and so on steps, and after the last. The reported errors are the
+//! largest of these, relative to the speed and to the distance at that speed. At the end alone, a
+//! motion that has come to rest would show no error. The solution is computed in [fixed
+//! point](super::fixed_point) of 512 bits, from the same doubles that the integrators take, and
+//! subtracted before anything is rounded.
 //!
-//! A method of order p has an error that falls by the factor 10^p where steps are a tenth as long.
-//! An explicit method is unstable where rate · step is above its limit.
+//! The error of a method of order p falls by a factor of 10^p if steps are a tenth as long. An
+//! explicit method is unstable if rate · step is above its limit.
 
 use std::hint::black_box;
 
@@ -18,7 +19,7 @@ use cellcaster::numeric::damped_motion::approach;
 
 /// The time of a motion, in seconds.
 const SECONDS: f64 = 10.0;
-/// The target: the speed of a player who walks, in cells per second.
+/// The target: the walking speed of a player, in cells per second.
 const SPEED: f64 = 3.0;
 /// The lengths of steps, in seconds.
 const STEPS: [f64; 6] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
@@ -26,7 +27,7 @@ const STEPS: [f64; 6] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
 const RATES: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// The errors of each integrator at the player's `friction` and at other rates, with the step of a
-/// game with `steps_per_second` and with other steps. Each is timed in `rounds` rounds.
+/// game that takes `steps_per_second` and with other steps. Each is timed in `rounds` rounds.
 pub(crate) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Table {
     let mut steps = STEPS.to_vec();
     steps.push(1.0 / steps_per_second);
@@ -87,7 +88,7 @@ pub(crate) fn orders() -> Table {
     }
 }
 
-/// The number of steps of this length in the time of a motion.
+/// The number of steps of this length in the duration of a motion.
 fn count(step: f64) -> u64 {
     (SECONDS / step).round().max(1.0) as u64
 }
@@ -123,7 +124,7 @@ fn errors(integrator: Integrator, motion: &Motion) -> [f64; 2] {
     errors
 }
 
-/// The time of a step, in nanoseconds, measured by whole motions with many steps in all.
+/// The time of a step, in nanoseconds, measured over whole motions with many steps in total.
 fn nanoseconds((integrator, motion): (Integrator, Motion)) -> f64 {
     const MANY: u64 = 20_000;
     let steps = count(motion.step).min(MANY);
@@ -139,7 +140,8 @@ fn nanoseconds((integrator, motion): (Integrator, Motion)) -> f64 {
 }
 
 /// The slopes of the errors of velocity and place over the step in logarithms, by least squares, at
-/// the rate 1; `None` if fewer than two errors are neither mostly rounding nor of steps that are too long.
+/// the rate 1. Errors that are mostly rounding, or that come from steps that are too long, are left
+/// out. `None` if fewer than two remain.
 fn slopes(integrator: Integrator) -> [Option<f64>; 2] {
     const LINEAR: std::ops::Range<f64> = 1e-12..0.1;
     const SLOPE_STEPS: [f64; 6] = [0.2, 0.1, 0.05, 0.02, 0.01, 0.005];
@@ -176,7 +178,7 @@ enum Integrator {
     Heun,
     /// The classic method of Runge and Kutta, of order 4.
     RungeKutta,
-    /// Implicit Euler. The equation is linear, so that a division solves it.
+    /// Implicit Euler. The equation is linear, so a division solves it.
     ImplicitEuler,
     /// The exact solution over each step, as in the game.
     ClosedForm,
@@ -189,7 +191,7 @@ struct Motion {
     rate: f64,
     /// The length of a step in seconds.
     step: f64,
-    /// The velocity that is approached.
+    /// The velocity that the motion approaches.
     target: f64,
 }
 
@@ -198,7 +200,7 @@ impl Integrator {
     const ALL: [Self; 5] =
         [Self::Euler, Self::Heun, Self::RungeKutta, Self::ImplicitEuler, Self::ClosedForm];
 
-    /// The name, and how often a step evaluates the right-hand side, or the solution.
+    /// The name, and the number of times that a step evaluates the right-hand side or the solution.
     const fn description(self) -> (&'static str, u64) {
         match self {
             Self::Euler => ("Euler", 1),
@@ -248,8 +250,8 @@ impl Integrator {
         }
     }
 
-    /// The largest rate · step at which a step takes the velocity no farther from the target than
-    /// it was, found by bisection; infinite if there is none up to 10¹².
+    /// The largest rate · step at which a step does not move the velocity away from the target,
+    /// found by bisection; infinite if there is no limit up to 10¹².
     fn limit_of_stability(self) -> f64 {
         const BISECTIONS: u32 = 60;
         let is_stable = |step: f64| {
@@ -270,14 +272,14 @@ impl Integrator {
 
 // The analytic solution of a damped motion in fixed point.
 
-/// Where a motion should be.
+/// The exact state of a motion.
 struct Truth {
     velocity: Fixed,
     place: Fixed,
 }
 
 impl Truth {
-    /// The truth after `steps` steps: `v = w·(1 − e^(−rate·t))`, and
+    /// The state after `steps` steps: `v = w·(1 − e^(−rate·t))`, and
     /// `x = w·(t − (1 − e^(−rate·t)) / rate)`.
     fn new(motion: &Motion, steps: u64) -> Self {
         let [rate, step, target] = [motion.rate, motion.step, motion.target].map(Fixed::new);

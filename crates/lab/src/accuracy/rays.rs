@@ -11,7 +11,7 @@ use cellcaster::render::{DynCaster, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
 
-/// The methods of a report that names none.
+/// The methods of a report whose options name none.
 const METHODS: &str = "exact dda dda32 accumulate fixed:6 fixed:10 fixed:16 fixed:24 table:480 \
                        table:1920 table:7680 table:65536 march:0.1 march:0.01 march:0.001";
 
@@ -20,14 +20,14 @@ pub fn all_methods() -> Vec<Method> {
     METHODS.split(' ').filter_map(|name| name.parse().ok()).collect()
 }
 
-/// Whether `method` ends soon enough among the cells of the scene with that name to be measured
-/// there: a small step across a large plain does not.
+/// Returns whether `method` takes little enough time in the scene with this name to be measured
+/// there. A small step across a large plain takes too long.
 pub fn is_measured(scene: &str, method: &Method) -> bool {
     const LEAST_STEP: f64 = 0.01;
     scene != "plain-4096" || !matches!(method, Method::March(march) if march.step < LEAST_STEP)
 }
 
-/// The largest error of a distance that a double has without any fault, relative: 2⁻⁵³.
+/// The largest relative error of a distance that is correctly rounded to a double: 2⁻⁵³.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// The table of `trials`, each timed in `rounds` rounds.
@@ -100,21 +100,21 @@ pub(crate) fn stiff(trials: impl Iterator<Item = Trial>) -> Table {
     }
 }
 
-// The instructions of each method for a ray, as Callgrind has counted them.
+// The number of instructions that each method takes for a ray, counted by Callgrind.
 //
-// A program cannot count its own instructions without the help of the system, and a time differs
-// from run to run. Therefore the counts of the ordinary scenes are kept in a file, which
-// `.ci/accuracy count` writes. They are for [`SEED`] and [`RAYS`] rays, or a tenth as many on the plain.
+// A program cannot count its own instructions without help from the system, and a time differs from
+// run to run. Therefore a file stores the counts of the ordinary scenes, and `.ci/accuracy count`
+// writes it. The counts are for [`SEED`] and [`RAYS`] rays, or a tenth of that number on the plain.
 
 /// The seed of the counted rays.
 pub const SEED: u64 = 1;
 /// The number of counted rays in a scene.
 pub const RAYS: usize = 2000;
 
-/// A line for each scene and method: their names, and the instructions for a ray.
+/// A line for each scene and method: their names, and the number of instructions for a ray.
 const COUNTS: &str = include_str!("instructions/counts");
 
-/// The instructions for a ray of the scene with that name, if they are kept.
+/// The number of instructions for a ray in the scene with this name, if it is stored.
 fn instructions(scene: &str, method: &Method) -> Option<f64> {
     let counted = format!("{scene} {method} ");
     COUNTS.lines().find_map(|line| line.strip_prefix(&counted)?.parse().ok())
@@ -131,23 +131,22 @@ pub(crate) struct Trial {
 
 /// The errors of a method over some rays.
 ///
-/// A ray is wrong if it hits another cell or side than it should, or if it escapes instead of
-/// hitting or hits instead of escaping. Errors of distances are differences from the rational
-/// number, not from the double next to it: half a unit in the last place is the least that a method
-/// can have in general. They include all rays: if only one of the two results is a hit, the
-/// relative error is 1. Errors in units of the last place, and of texture coordinates, are of right
-/// rays only.
+/// A ray is wrong if it hits another cell or side than the exact hit, or if only one of the two
+/// escapes. Errors of distances are differences from the rational number, not from the nearest
+/// double: half a unit in the last place is generally the least error that a method can have. They
+/// include all rays: if only one of the two results is a hit, the relative error is 1. Errors in
+/// units of the last place, and of texture coordinates, include only correct rays.
 #[derive(Debug, Default)]
 struct Errors {
     rays: usize,
     wrong: usize,
-    /// Relative errors of the distance: the root mean square, and the largest.
+    /// Relative errors of the distance: the root mean square and the largest.
     mean_distance: f64,
     worst_distance: f64,
     /// Errors of the distance in units of its last place.
     median_ulps: f64,
     worst_ulps: f64,
-    /// Errors of the texture coordinate, in texels of a wall with 64 of them.
+    /// Errors of the texture coordinate, in texels of a wall with 64 texels.
     mean_texel: f64,
     worst_texel: f64,
 }
@@ -168,8 +167,8 @@ impl Errors {
 }
 
 impl Trial {
-    /// The trial of the rays of `set`. The exact hits take about ten microseconds for each ray, and
-    /// a microsecond for each line of the map.
+    /// Creates the trial of the rays of `set`. The exact hits take about ten microseconds for each
+    /// ray, and a microsecond for each line of the map.
     pub(crate) fn new(set: Set) -> Self {
         let truths = set.rays.iter().map(|ray| cast(&set.grid, ray)).collect();
         Self { set, truths }
@@ -227,11 +226,12 @@ fn distance_error(truth: Option<&Truth>, hit: Option<Hit>) -> f64 {
         (Some(truth), Some(hit)) => {
             let distance = truth.t.to_f64();
             if distance.is_infinite() {
-                // Beyond the largest double, infinity is right.
+                // Beyond the largest double, infinity is correct.
                 return if hit.t.is_infinite() { 0.0 } else { 1.0 };
             }
             let error = truth.t.error(hit.t.min(f64::MAX));
-            // At a distance of zero, the quotient is infinite; the largest double stands for it.
+            // At a distance of zero the quotient would be infinite. The largest double stands for
+            // it.
             if error == 0.0 { 0.0 } else { (error / distance).min(f64::MAX) }
         }
         _ => 1.0,
@@ -281,7 +281,8 @@ const fn picture(width: u32, height: u32) -> FrameSize {
 /// The number of pictures of each size.
 const PICTURES_OF_A_SIZE: usize = 4;
 
-/// The wrong pixels in pictures of `world`: one from its start, the others from random positions.
+/// The number of wrong pixels in pictures of `world`: one from its start, the others from random
+/// positions.
 pub(crate) fn pixels(world: &World, methods: &[Method], seed: u64) -> Table {
     let cameras: Vec<Camera> = cameras(world, seed).take(PICTURES_OF_A_SIZE).collect();
     let rows = PICTURES.iter().flat_map(|&size| {
@@ -315,7 +316,7 @@ fn different(one: &Frame, other: &Frame) -> usize {
     one.rows().flatten().zip(other.rows().flatten()).filter(|(one, other)| one != other).count()
 }
 
-/// Casts in rational arithmetic: never wrong, and thousands of times slower than the casters.
+/// Casts in rational arithmetic. It is never wrong, and thousands of times slower than the casters.
 #[derive(Debug)]
 struct Reference;
 
@@ -342,7 +343,7 @@ fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
         let cell = Cell { column: column as u32, row: row as u32 };
         (!grid.is_solid(column as i64, row as i64)).then_some(cell)
     };
-    // Open floor exists: the start is on it.
+    // There is open floor, because the start is on it.
     let cell = std::iter::repeat_with(|| on_floor(random)).flatten().next();
     let heading = Heading::default().turned(random.between(0.0, std::f64::consts::TAU));
     Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
@@ -356,7 +357,7 @@ fn draw(world: &World, camera: &Camera, size: FrameSize, caster: &DynCaster) -> 
 }
 
 /// Treats doors and transparent cubes as walls, as most methods do. The pictures then differ only
-/// by where rays end.
+/// where rays end differently.
 #[derive(Debug)]
 struct OnlyWalls(DynCaster);
 
@@ -387,8 +388,8 @@ mod tests {
         }
     }
 
-    /// A double that is nearest to a number in general position is a quarter of a unit away in the
-    /// mean, and a relative error below 2⁻⁵⁶ in the mean cannot be.
+    /// The double nearest to a number in general position is a quarter of a unit away on average. A
+    /// mean relative error below 2⁻⁵⁶ is impossible.
     #[test]
     fn rounding_is_an_error() {
         for trial in trials() {

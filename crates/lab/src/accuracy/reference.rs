@@ -3,11 +3,11 @@
 //! A double is an integer times a power of two. Origin and direction are each converted to integers
 //! with one common power. Crossings are computed from their definition: for each x line of the map,
 //! the exact point where the ray meets it, and from that the row; for each y line, the column. The
-//! hit is the nearer one of the first solid cell behind an x line and the first behind a y line. No
-//! state is carried from one crossing to the next, and nothing is rounded.
+//! hit is the nearer of two cells: the first solid cell behind an x line, and the first behind a y
+//! line. No state is carried from one crossing to the next, and nothing is rounded.
 //!
-//! Rejected: fractions in lowest terms. Greatest common divisors would take most of the time,
-//! and are not needed.
+//! Rejected: fractions in lowest terms. Greatest common divisors would take most of the time, and
+//! nothing needs them.
 
 use std::cmp::Ordering;
 
@@ -31,7 +31,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Whether `hit` has the same cell and side.
+    /// Returns whether `hit` has the same cell and side.
     pub fn is_met_by(&self, hit: &Hit) -> bool {
         (self.cell, self.side) == (hit.cell, hit.side)
     }
@@ -107,7 +107,8 @@ impl Rational {
     }
 }
 
-/// A finite double as an integer times a power of two: the value of its last place.
+/// A finite double as an integer times a power of two. The power is the value of its last place;
+/// its exponent is returned.
 pub(crate) fn integer(value: f64) -> (BigInt, i64) {
     const LEADING_ONE: u64 = 1 << 52;
     let biased_exponent = value.abs().to_bits() / LEADING_ONE;
@@ -169,8 +170,8 @@ fn compare_positive(a: &Rational, b: &Rational) -> Ordering {
     (&a.numerator * &b.denominator).cmp(&(&b.numerator * &a.denominator))
 }
 
-/// The lines of one kind. Positions are integers in a fraction of a cell; directions have their own
-/// unit.
+/// The lines of one kind. Positions are integers in units of a fraction of a cell; directions have
+/// their own unit.
 struct Lines {
     side: Side,
     /// The number of cells across the lines.
@@ -183,7 +184,7 @@ struct Lines {
     across: (BigInt, BigInt),
     /// The origin and the direction along the lines.
     along: (BigInt, BigInt),
-    /// The exponent that makes a `t` from a position divided by a direction.
+    /// The exponent that turns a position divided by a direction into a `t`.
     t_exponent: i64,
 }
 
@@ -242,7 +243,7 @@ impl Lines {
     }
 
     /// The row or column of the ray at `place` on one of these lines. At a corner, the ray has
-    /// crossed the y line, and has not crossed the x line.
+    /// crossed the y line, but not the x line.
     fn cell_along(&self, place: &Rational) -> BigInt {
         let Rational { numerator, denominator, .. } = place;
         let mut floor = numerator / denominator;
@@ -257,7 +258,7 @@ impl Lines {
         if is_corner && comes_from_below { floor - 1 } else { floor }
     }
 
-    /// Whether the ray cannot return to the map once it is in this row or column.
+    /// Returns whether the ray cannot return to the map from this row or column.
     fn has_left(&self, cell: &BigInt) -> bool {
         match self.along.1.sign() {
             Sign::Plus => *cell >= BigInt::from(self.breadth),

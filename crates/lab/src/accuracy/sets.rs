@@ -19,8 +19,8 @@ pub struct Set {
     pub rays: Vec<Ray>,
 }
 
-/// All stiff and extreme sets. The largest has some thousands of rays; sets on maps of a million
-/// cells have few.
+/// All stiff and extreme sets. The largest set has some thousands of rays; sets on maps of a
+/// million cells have few.
 pub fn sets(seed: u64) -> Vec<Set> {
     let mut random = SplitMix64::new(seed);
     let mut sets = directions(&mut random);
@@ -53,7 +53,8 @@ fn drawn(rows: &[&str]) -> Grid {
     Grid::sketch(rows).expect("the drawings in this module are rectangles")
 }
 
-/// A grid of this size, which is solid where `is_solid` is true for the column and the row.
+/// A grid of this size. Cells for which `is_solid` is true, given the column and the row, are
+/// solid.
 fn made(width: u32, height: u32, is_solid: impl Fn(u32, u32) -> bool) -> Grid {
     let cell = |row| {
         let is_solid = &is_solid;
@@ -110,7 +111,7 @@ pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
 /// sixty-fourth column of every sixty-fourth row.
 pub fn plain(seed: u64, count: usize) -> Set {
     let mut grid = walled(4096, |column, row| column % 64 == 32 && row % 64 == 32);
-    // As a world has it.
+    // A world computes the distance field, too.
     grid.clear(|_| false);
     let rays = rays_from_floor(&grid, count.div_ceil(10), &mut SplitMix64::new(seed));
     Set { name: "plain-4096", grid, rays }
@@ -184,7 +185,7 @@ fn negative_zeros() -> Vec<DVec2> {
     turned(1.0, -0.0).into_iter().chain(turned(-1.0, -0.0)).collect()
 }
 
-/// Images of directions whose other component is 1.
+/// Images of directions that have one component of these `sizes` and another of 1.
 fn beside_one(sizes: impl IntoIterator<Item = f64>) -> Vec<DVec2> {
     all_turned(sizes.into_iter().map(|size| (1.0, size)))
 }
@@ -194,7 +195,7 @@ fn all_turned(directions: impl IntoIterator<Item = (f64, f64)>) -> Vec<DVec2> {
     directions.into_iter().flat_map(|(x, y)| turned(x, y)).collect()
 }
 
-/// From random points to every corner of the grid, and an ulp beside it.
+/// Rays from random points to every corner of the grid, and an ulp beside it.
 fn through_corners(random: &mut SplitMix64) -> Vec<Ray> {
     let anywhere = DVec2::new(random.between(1.0, 3.0), random.between(8.0, 10.0));
     let mut rays = Vec::new();
@@ -209,7 +210,7 @@ fn through_corners(random: &mut SplitMix64) -> Vec<Ray> {
     rays
 }
 
-/// Through the corners at (4, 3), (5, 4) and (5, 5), where walls meet diagonally.
+/// Rays through the corners at (4, 3), (5, 4) and (5, 5), where walls meet diagonally.
 fn between_diagonal_walls() -> Vec<Ray> {
     let mut rays = Vec::new();
     for corner in [DVec2::new(4.0, 3.0), DVec2::new(5.0, 4.0), DVec2::new(5.0, 5.0)] {
@@ -247,7 +248,7 @@ fn slopes() -> Vec<DVec2> {
     all_turned([(1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (0.3, 0.1), (1.0, 1e-9), (0.7, 1e-300)])
 }
 
-/// On lines of either kind, on both, and on all edges of the map.
+/// Origins on lines of either kind, on both, and on all edges of the map.
 fn on_lines() -> Vec<DVec2> {
     [
         (7.0, 5.3),
@@ -290,7 +291,7 @@ fn far_end() -> Set {
     Set { name: "far end", grid, rays: all(&origins, &directions.map(DVec2::from)) }
 }
 
-/// From outside the map towards it, past it and away from it.
+/// Rays from outside the map towards it, past it and away from it.
 fn off_the_map(random: &mut SplitMix64) -> Vec<Ray> {
     let mut rays = Vec::new();
     for distance in [1.0, 1e3, 1e6, 1e9, 1e12, 1e15] {
@@ -330,7 +331,8 @@ fn long_corridor() -> Set {
     Set { name: "corridor", grid, rays: all(&origins, &directions.map(DVec2::from)) }
 }
 
-/// A map of 10⁶ cells with walls close to the ray where it crosses the line between two rows.
+/// A map of 10⁶ cells with walls close to the place where the ray crosses the line between two
+/// rows.
 fn long_map() -> Set {
     let length = 1_000_000;
     let grid = made(length, 4, |column, row| row % 3 == 0 || column == length - 1);
@@ -367,7 +369,7 @@ fn cameras() -> Vec<Set> {
     ]
 }
 
-/// Positions with the nearest wall at a distance from 1e-12 cells down to the smallest double, and
+/// Positions that are between 1e-12 cells and the smallest double away from the nearest wall, and
 /// the heading towards it.
 fn before_walls() -> Vec<(DVec2, f64)> {
     let mut places = Vec::new();
@@ -375,8 +377,8 @@ fn before_walls() -> Vec<(DVec2, f64)> {
         places.push((DVec2::new(1.0 + gap, 2.6), 180.0));
         places.push((DVec2::new(4.4, 1.0 + gap), 270.0));
     }
-    // Only near zero are doubles close enough together: off the map, before its first column and
-    // row.
+    // Only near zero are doubles close enough together, so these positions are off the map, before
+    // its first column and row.
     for gap in [1e-12, 1e-30, 1e-100, 1e-300, 5e-324] {
         places.push((DVec2::new(-gap, 2.6), 0.0));
         places.push((DVec2::new(4.4, -gap), 90.0));
@@ -400,7 +402,7 @@ fn views(cameras: impl IntoIterator<Item = (DVec2, f64)>, degrees: f64) -> Vec<R
     cameras.into_iter().filter_map(camera).flat_map(rays).collect()
 }
 
-/// A typical camera ray: from any point of the map, with any heading, and about 1 long.
+/// A typical camera ray, from any point of the map, with any heading, and of about length 1.
 ///
 /// # Panics
 /// Never: rays are drawn until one is valid.

@@ -1,9 +1,9 @@
 //! Rays clipped to the map, for the approximate methods.
 //!
 //! A table, a running sum or constant steps cannot cross 10¹⁵ empty cells, and single precision or
-//! fixed point cannot represent such a position. A ray that starts off the map is therefore first
+//! fixed point cannot represent such a position. Therefore a ray that starts off the map is first
 //! moved to the edge of the map, in double precision, and its direction is scaled. The comparison
-//! is about the behaviour on the map.
+//! is about behaviour on the map.
 
 use glam::DVec2;
 
@@ -15,7 +15,7 @@ use cellcaster::world::{Cell, Grid};
 /// 1/2 and 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClippedRay {
-    /// The ray from there on.
+    /// The ray from that point on.
     pub(crate) ray: Ray,
     /// The distance from the original origin, in lengths of the scaled direction.
     skipped: f64,
@@ -57,7 +57,8 @@ impl ClippedRay {
         Hit { cell, side, t, u: texture_coordinate(self.ray.direction(), side, along) }
     }
 
-    /// The hit at a distance that a method found. The position on the face is computed from it.
+    /// The hit at a distance that a method found. Computes the position on the face from the
+    /// distance.
     pub(crate) fn hit_at(&self, cell: Cell, side: Side, distance: f64) -> Hit {
         let point = self.ray.at(distance);
         let along = match side {

@@ -8,7 +8,8 @@ use cellcaster::world::Grid;
 
 // The DDA: from line to line, in double precision.
 //
-// It takes the lines in [`RoundedOrder`], with which the exact caster begins; here the order is not checked.
+// It takes the lines in [`RoundedOrder`], which the exact caster uses first; here the order is not
+// checked.
 //
 // Source: the digital differential analyser of Lode Vandevenne, "Raycasting", in its older form,
 // whose distance is computed from the cell (in "Raycasting II"); after Amanatides and Woo, "A Fast
@@ -27,9 +28,9 @@ impl Caster for Dda {
 
 // The same in single precision.
 //
-// Lines, distances and the texture coordinate have 24 bits. Single precision is chosen elsewhere
-// for half the memory and twice the SIMD lanes. Casting one ray at a time uses neither; this
-// method shows what single precision would cost in accuracy.
+// Lines, distances and the texture coordinate have 24 bits. Other programs choose single precision
+// for half the memory and twice the SIMD lanes. Casting one ray at a time benefits from neither;
+// this method shows how much accuracy single precision would cost.
 //
 // Source: as above, with `float` instead of `double`.
 
@@ -99,12 +100,12 @@ impl Order for Single {
 // crossing.
 //
 // Each line costs one addition, and the distance of a hit is known when the ray stops. But each
-// addition rounds, and the errors accumulate: after many lines, the smaller sum need not be the
-// nearer line.
+// addition rounds, and the errors accumulate: after many lines, the smaller sum may not belong to
+// the nearer line.
 //
 // Source: Lode Vandevenne, "Raycasting", in its newer form (`sideDist += deltaDist`), and its
-// edition with Chinese annotations. There the last addition is subtracted again; here the previous
-// sum is kept, which is the same without a rounding.
+// edition with Chinese annotations. They subtract the last addition again; here the previous sum is
+// kept, which gives the same result without rounding.
 
 /// Casts by adding up the distances between lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,7 +136,7 @@ impl Sums {
         let between = ray.direction().abs().recip();
         let first = |origin: f64, direction: f64, between: f64, count: u32| {
             let way = (first_line(origin, direction, count) - origin).abs();
-            // A distance of zero takes no time at any speed, not even at zero.
+            // A distance of zero takes no time, whatever the speed.
             if way == 0.0 { 0.0 } else { way * between }
         };
         let (origin, direction) = (ray.origin(), ray.direction());
@@ -163,14 +164,14 @@ impl Order for Sums {
 
 // The DDA in fixed point: integer arithmetic, once the ray is converted.
 //
-// Origin and direction are rounded to a number of fractional bits. The ray then goes from border
-// to border of its cells with integer products and quotients. Quotients are rounded down, so that
-// the ray could reach the border of the other axis too early; a guard keeps it one unit away from
-// that border.
+// Origin and direction are rounded to a number of fractional bits. The ray then goes from border to
+// border of its cells with integer products and quotients. Quotients are rounded down, so the ray
+// could reach the border of the other axis too early. A guard keeps it one unit away from that
+// border.
 //
 // Source: the example program of drummyfish's LRS article on raycasting, with 10 bits and the same
 // guard. That program mirrors rays to the west or the north. Here the distance to the next border
-// is stored instead of the position in the cell, which needs no mirror and is also correct on a
+// is stored instead of the position in the cell, which needs no mirroring and is also correct on a
 // border. As in the source, a component that rounds to zero becomes one unit; a component of zero
 // stays zero.
 
@@ -226,7 +227,7 @@ impl Integers {
     }
 
     /// The distance of the ray from its origin in lengths of its direction, computed along the axis
-    /// of the larger component.
+    /// with the larger component.
     fn distance(&self) -> i128 {
         let axis = if self.x.speed >= self.y.speed { &self.x } else { &self.y };
         i128::from(axis.travelled) * i128::from(self.unit) / i128::from(axis.speed)
@@ -248,7 +249,8 @@ impl Order for Integers {
 /// The progress of a ray along one axis, in units.
 #[derive(Clone, Debug)]
 struct Progress {
-    /// The size of the direction's component. At least one of the two components is 1/2 or more.
+    /// The absolute value of the direction's component. At least one of the two components is 1/2
+    /// or more.
     speed: i64,
     /// The distance to the next border; at most 1.
     ahead: i64,
@@ -262,7 +264,7 @@ impl Progress {
         let ahead = if direction == 0.0 {
             unit - place % unit
         } else {
-            // The map's edge does not matter here: the ray does not start beyond it.
+            // The map's edge does not matter here, because the ray does not start beyond it.
             let line = first_line(origin, direction, u32::MAX) as i64 * unit;
             (line - place).abs()
         };
@@ -353,7 +355,7 @@ mod tests {
     }
 
     proptest! {
-        /// The distance and the position on the face are where the ray meets the line.
+        /// The distance and the position on the face match the point where the ray meets the line.
         #[test]
         fn a_hit_is_on_its_face(
             origin in (1.0..6.0, 1.0..4.0),

@@ -1,11 +1,11 @@
-//! Ray marching: constant steps, with a test of the cell after each.
+//! Ray marching: constant steps, with a test of the cell after each step.
 //!
-//! The wall is found at the first step that ends inside it, up to one step behind its face. A wall
-//! that the ray crosses for less than a step can be missed. The face is determined by the lines
-//! between the last two steps.
+//! The wall is found at the first step that ends inside it, up to one step behind its face. If the
+//! ray crosses a wall for less than a step, it can miss the wall. The lines between the last two
+//! steps determine the face.
 //!
-//! Source: the method that Lode Vandevenne, "Raycasting", warns of before it presents its own, and
-//! that most first raycasters use.
+//! Source: the method against which Lode Vandevenne, "Raycasting", warns before presenting another,
+//! and which most first raycasters use.
 
 use glam::DVec2;
 
@@ -55,12 +55,12 @@ impl Caster for March {
     }
 }
 
-/// The column or row from which a ray starts; on a line, the one before the line.
+/// The column or row from which a ray starts. On a line, it is the one before the line.
 fn cell_before(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 { first_line(origin, direction, count) - 1.0 } else { origin.floor() }
 }
 
-/// Whether a column or row is off the map, and stays off it.
+/// Returns whether a column or row is off the map, and stays off it.
 fn has_left(index: f64, stride: f64, count: f64) -> bool {
     if stride > 0.0 { index >= count } else { index < 0.0 }
 }

@@ -1,11 +1,11 @@
 //! Angle tables: rays along a fixed number of directions.
 //!
-//! The direction is rounded to the nearest angle of the table. The lines y = const are followed by
-//! the cotangent from intersection to intersection, up to the border of a wall, then the lines x =
-//! const by the tangent. The nearer of the two is the hit. The result is a length in cells.
-//! Dividing it by the length of the ray's direction gives `t`. A camera ray at the angle β to the
-//! view is 1/cos β long, so that this division is the multiplication by cos β that corrects the
-//! fisheye distortion.
+//! The direction is rounded to the nearest angle of the table. The search follows the lines y =
+//! const by the cotangent, from intersection to intersection, up to the border of a wall, and then
+//! the lines x = const by the tangent. The nearer of the two walls is the hit. The result is a
+//! length in cells. Dividing it by the length of the ray's direction gives `t`. A camera ray at the
+//! angle β to the view is 1/cos β long, so this division is the multiplication by cos β that
+//! corrects the fisheye distortion.
 //!
 //! Source: F. Permadi, "Ray-Casting Tutorial", with 1920 angles: 320 columns for 60°.
 
@@ -100,7 +100,7 @@ struct Search {
     heading: f64,
     /// The coordinate of the origin along the lines.
     other: f64,
-    /// The sine of that angle.
+    /// The sine of the same angle.
     other_heading: f64,
 }
 

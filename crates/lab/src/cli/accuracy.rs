@@ -1,8 +1,9 @@
-//! `cellcaster-lab accuracy`: errors of everything that has a truth, against what it costs.
+//! `cellcaster-lab accuracy`: errors of everything that has a reference, over their cost.
 //!
-//! With `--update`, tables of a page are replaced that is written by hand for the rest. A table stands between two lines of
-//! the page: `<!-- accuracy NAME -->`, and `<!-- end -->`. Below it stand the run that it comes from and the plot, which is
-//! a file in the folder `docs` beside the page. Tables and plots of a page are therefore of one run.
+//! With `--update`, the command replaces tables in a page whose other text is written by hand. A
+//! table stands between two lines of the page: `<!-- accuracy NAME -->` and `<!-- end -->`. The run
+//! that produced it is named below the table, and so is the plot, a file in the folder `docs`
+//! beside the page. Tables and plots of a page therefore come from one run.
 
 use std::ffi::OsString;
 use std::fs;
@@ -89,7 +90,7 @@ fn plot_of(table: &Table) -> String {
     format!("docs/accuracy-{}.svg", table.name)
 }
 
-/// `page` with another `table`; `None` if it has no place for it.
+/// Returns `page` with the new `table`; `None` if it has no place for it.
 fn replaced(page: &str, origin: &Origin, table: &Table) -> Option<String> {
     let begin = begin(table);
     let (before, after) = page.split_once(&begin)?;
@@ -104,10 +105,10 @@ fn replaced(page: &str, origin: &Origin, table: &Table) -> Option<String> {
     Some(format!("{before}{begin}\n{plot}\n{block}\n{sentence}\n\n{END}{after}"))
 }
 
-/// Shows in a terminal on standard error which part is measured.
+/// Shows the part that is being measured, if standard error is a terminal.
 fn show_progress(part: &str) {
     if io::stderr().is_terminal() {
-        // A line that cannot be drawn is no reason to end the program.
+        // A failure to draw the line is no reason to end the program.
         _ = write!(io::stderr(), "\r{part:<20}\r");
     }
 }

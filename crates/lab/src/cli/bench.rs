@@ -34,10 +34,10 @@ fn seconds(text: &str) -> Result<u8, Takes> {
 
 /// Writes the report that `options` request.
 pub(crate) fn run(options: &Bench) -> Result<(), Error> {
-    // A file that cannot be written is reported before the measurement.
+    // A file that cannot be written is reported before the measurement starts.
     let plot = options.plot.as_deref().map(OutputFile::create).transpose()?;
     let time = Duration::from_secs(options.seconds.into());
-    // First, because nothing has allocated memory yet.
+    // The footprint comes first, because nothing has allocated memory yet.
     let footprint = measure_footprint()?;
     let tables = [
         measure_drawing(time * 2 / 5),

@@ -1,4 +1,4 @@
-//! `cellcaster-lab wire`: error against bytes.
+//! `cellcaster-lab wire`: error over bytes.
 
 use std::ffi::{OsStr, OsString};
 use std::num::NonZeroU32;

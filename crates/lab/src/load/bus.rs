@@ -1,8 +1,8 @@
-//! Rooms without hosts: what the bus of a cluster carries.
+//! Rooms without hosts: the load that the bus of a cluster can carry.
 //!
-//! Each room appends a message of the log thirty times a second, as its sequencer does: it names the number of the
-//! message before it, waits for the answer, and tells one other host. Every five seconds it keeps a checkpoint, and
-//! drops the messages before it.
+//! Each room appends a message to the log thirty times a second, as its sequencer does. The message
+//! contains the number of the message before it. The room waits for the answer, and tells one other
+//! host. Every five seconds it stores a checkpoint, and drops the messages before it.
 
 use std::error::Error;
 use std::time::Duration;
@@ -24,15 +24,15 @@ const STREAM: &str = "CELLCASTER_LOAD";
 const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
 /// The time from one message of a room to the next.
 const PERIOD: Duration = Duration::from_micros(33_333);
-/// In bytes: a message without entries.
+/// The size of a message without entries, in bytes.
 const MESSAGE: usize = 25;
-/// In bytes: a checkpoint of a room with eight members.
+/// The size of a checkpoint of a room with eight members, in bytes.
 const CHECKPOINT: usize = 15_000;
-/// The messages from one checkpoint to the next.
+/// The number of messages from one checkpoint to the next.
 const KEPT: usize = 150;
 const WARM_UP: Duration = Duration::from_secs(2);
 
-/// Runs so many rooms.
+/// Runs this number of rooms.
 pub(crate) fn run(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
     Builder::new_current_thread().enable_all().build()?.block_on(load(rooms, plan))
 }
@@ -78,7 +78,7 @@ async fn load(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Appends the messages of a room, and returns how long each one took in the time that counts.
+/// Appends the messages of a room, and returns the time of each message within the measured period.
 async fn write(
     client: &Client,
     context: &Context,

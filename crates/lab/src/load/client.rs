@@ -1,4 +1,4 @@
-//! One client: a terminal that answers, and somebody who walks.
+//! One client: a terminal that answers queries, and a player who walks.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use super::lamp::Lamp;
 use super::report::Tally;
 use super::server::Access;
 
-/// Believes every server.
+/// Accepts every server key.
 pub(crate) struct Anyone;
 
 impl Handler for Anyone {
@@ -26,16 +26,16 @@ impl Handler for Anyone {
     }
 }
 
-/// Queries, and what a terminal with true colours answers.
+/// Queries, and the answers of a terminal with true colours.
 const ANSWERS: [(&[u8], &[u8]); 4] = [
     (STATUS, b"\x1b[0n"),
     (b"\x1b[c", b"\x1b[?62;22c"),
     (b"\x1b[6n", b"\x1b[1;1R"),
     (b"\x1b[?u", b""),
 ];
-/// It follows each frame.
+/// The query that follows each frame.
 const STATUS: &[u8] = b"\x1b[5n";
-/// The keyboard repeats a held key at this interval.
+/// The interval at which the keyboard repeats a held key.
 const REPEAT: Duration = Duration::from_millis(33);
 /// The key that lights the lamp, or puts it out.
 const LAMP: &[u8] = b"l";
@@ -43,10 +43,10 @@ const LAMP: &[u8] = b"l";
 const TIMED_PAUSE: (f64, f64) = (0.5, 1.5);
 /// The time between two presses of Enter on the way to a room.
 const ENTER: Duration = Duration::from_millis(900);
-/// A frame with so many half blocks is a picture of a room.
+/// The number of half blocks from which a frame counts as a picture of a room.
 const PICTURE: usize = 200;
 
-/// Plays until the counting has ended.
+/// Plays until the measurement has ended.
 pub(crate) async fn play(
     address: SocketAddr,
     access: &Access,
@@ -73,7 +73,7 @@ pub(crate) async fn play(
     Ok(client.tally)
 }
 
-/// Connects as the guest of this number, or with a key.
+/// Connects as the guest with this number, or with a key.
 pub(crate) async fn connect(
     address: SocketAddr,
     access: &Access,
@@ -141,7 +141,7 @@ impl Client {
         }
     }
 
-    /// Answers the queries in what has come, and counts it.
+    /// Answers the queries in `data`, and counts the data.
     fn read(&mut self, data: &[u8], is_counting: bool) {
         let now = Instant::now();
         let answered = self.lamp.read(data, now.into_std());

@@ -71,7 +71,7 @@ impl Load {
         given.flatten().map(str::to_owned).collect()
     }
 
-    /// The processor time of each of the other processes.
+    /// The resources of each of the other processes.
     pub(crate) fn others(&self) -> Vec<Usage> {
         self.beside.iter().map(|&process| Usage::of(process)).collect()
     }

@@ -14,7 +14,8 @@ pub(crate) struct Tally {
     pub(crate) unanswered: usize,
 }
 
-/// Prints what clients have counted in this time, while each server has used so much of a processor.
+/// Prints the counts of clients in this time, and the processor time that each server has used
+/// meanwhile.
 pub(crate) fn print(tallies: &[Tally], seconds: u64, processor: &[Duration]) {
     let seconds = seconds as f64;
     let count = tallies.len().max(1) as f64;
@@ -48,7 +49,7 @@ pub(crate) fn print(tallies: &[Tally], seconds: u64, processor: &[Duration]) {
     );
 }
 
-/// A percentile of times that are in order, in milliseconds; 0 if there is none.
+/// A percentile of sorted times, in milliseconds; 0 if there are none.
 pub(crate) fn percentile(times: &[Duration], percent: usize) -> f64 {
     let time = times.get(times.len() * percent / 100);
     time.map_or(0.0, |time| time.as_secs_f64() * 1000.0)

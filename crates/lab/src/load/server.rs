@@ -1,4 +1,4 @@
-//! The server as a process of its own.
+//! The server as a separate process.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -11,17 +11,17 @@ use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
-/// A server that runs until this is dropped.
+/// A server that runs until this value is dropped.
 pub(crate) struct ServerProcess {
     pub(crate) child: Child,
     pub(crate) folder: PathBuf,
     pub(crate) address: SocketAddr,
-    /// Where its metrics are; `None` if it has none.
+    /// The address of its metrics; `None` if it has none.
     pub(crate) metrics: Option<SocketAddr>,
     pub(crate) access: Access,
 }
 
-/// How a client is let in.
+/// The way in which a client logs in.
 #[derive(Clone, Debug)]
 pub(crate) enum Access {
     /// As a guest.
@@ -31,8 +31,8 @@ pub(crate) enum Access {
 }
 
 impl ServerProcess {
-    /// Starts `program` with these further options, for so many connections. Its `number` among the servers of this run is
-    /// also the number of its processor.
+    /// Starts `program` with these additional options, for this number of connections. Its `number`
+    /// among the servers of this run determines its processor.
     pub(crate) fn start(
         program: &str,
         options: &[String],
@@ -42,7 +42,7 @@ impl ServerProcess {
         let folder = folder(number)?;
         let config = folder.join("serve.toml");
         let most = connections + 100;
-        // A port that is free now.
+        // A port that is free at the moment.
         let metrics = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
         fs::write(
             &config,
@@ -68,7 +68,7 @@ impl ServerProcess {
         Ok(Self { child, folder, address, metrics: Some(metrics), access: Access::Guest })
     }
 
-    /// The number of its process.
+    /// The id of its process.
     pub(crate) fn id(&self) -> u32 {
         self.child.id()
     }
@@ -79,7 +79,7 @@ impl ServerProcess {
     }
 }
 
-/// The processor of a server: they take turns.
+/// The processor of a server. Servers are assigned to processors in turn.
 fn processor(number: usize) -> usize {
     number % available_parallelism().map_or(1, NonZero::get)
 }
@@ -106,7 +106,7 @@ impl Drop for ServerProcess {
 #[derive(Debug)]
 pub(crate) struct Usage {
     pub(crate) processor: Duration,
-    /// Proportional set size: a page that several processes share counts once in all.
+    /// Proportional set size: a page that several processes share counts once in total.
     pub(crate) megabytes: f64,
 }
 
@@ -147,7 +147,7 @@ fn stats() -> BTreeMap<u32, Stat> {
 fn stat(process: u32) -> Option<Stat> {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
-    // User and system time, also of children that have ended, in hundredths of a second.
+    // User and system time, including children that have ended, in hundredths of a second.
     let ticks: u64 = fields.get(11..15)?.iter().filter_map(|it| it.parse::<u64>().ok()).sum();
     Some(Stat {
         parent: fields.get(1)?.parse().ok()?,
@@ -171,11 +171,11 @@ pub(crate) fn pin(process: u32, processor: u32) {
 
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Starts a server whose only command is the game on the level on which visitors of the other server
-/// walk.
+/// Starts a server whose only command is the game, on the level on which visitors of the other
+/// server walk.
 pub(crate) fn start_sshd(program: &str) -> Result<ServerProcess, Box<dyn Error>> {
     let folder = folder(0)?;
-    // Where sshd is started by root, it wants this to exist.
+    // If root starts sshd, this folder must exist.
     _ = fs::create_dir_all("/run/sshd");
     for key in ["host_key", "user_key"] {
         let file = folder.join(key);

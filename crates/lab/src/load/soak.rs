@@ -1,4 +1,5 @@
-//! A soak: clients that come and go for a long time, and what the server holds meanwhile.
+//! A soak: clients that come and go for a long time, and the resources that the server uses
+//! meanwhile.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -16,12 +17,12 @@ use super::plan::Load;
 use super::server::ServerProcess;
 use super::wanderer::{self, Leaving};
 
-/// How the visits have ended so far; `None` for those with a fault.
+/// The numbers of visits by the way in which they ended; `None` for visits with a fault.
 type Ends = Arc<Mutex<BTreeMap<Option<Leaving>, u64>>>;
 
-/// The server is measured after each of so many parts of the time.
+/// The number of parts of the time. The server is measured after each part.
 const PARTS: u32 = 10;
-/// The longest visit without its end.
+/// The longest duration of a visit, without its end.
 const LONGEST: Duration = Duration::from_secs(20);
 /// The time in which the server closes the last connections and rooms.
 const AFTERWARDS: Duration = Duration::from_secs(90);
@@ -65,7 +66,7 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
     Ok(())
 }
 
-/// Prints a line about what the server holds.
+/// Prints a line about the server's resources.
 fn report(server: &ServerProcess, begun: Instant, ends: &Ends) -> Result<(), Box<dyn Error>> {
     let figures = figures(server)?;
     let figure = |name: &str| figures.get(name).copied().unwrap_or(f64::NAN);

@@ -1,4 +1,5 @@
-//! Reports as text, Markdown, CSV and JSON, with the machine, the program and the command that they come from.
+//! Reports as text, Markdown, CSV and JSON, with the machine, the program and the command that
+//! produced them.
 
 use std::env;
 use std::fs;
@@ -73,7 +74,7 @@ impl Report<'_> {
         writeln!(output)
     }
 
-    /// A line for each figure. The first lines say where the report comes from.
+    /// A line for each figure. The first lines describe the origin of the report.
     pub(crate) fn csv(&self) -> String {
         let mut text =
             "table,problem,method,parameter,figure,value,lower_quartile,upper_quartile\n"
@@ -105,7 +106,8 @@ pub fn markdown(table: &Table) -> String {
     line(&lines[0]) + &rule + &rows.iter().map(line).collect::<String>()
 }
 
-/// Writes a table for a terminal, with an empty line after it and between problems of several rows.
+/// Writes a table for a terminal, with an empty line after it and between problems that have
+/// several rows.
 fn write_aligned(table: &Table, output: &mut impl Write) -> io::Result<()> {
     let (labels, lines) = cells(table);
     let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
@@ -130,7 +132,7 @@ fn write_aligned(table: &Table, output: &mut impl Write) -> io::Result<()> {
     writeln!(output)
 }
 
-/// The number of columns with keys, and the headings and all rows in words and digits.
+/// The number of key columns, and the headings and all rows as text.
 fn cells(table: &Table) -> (usize, Vec<Vec<String>>) {
     let keys: Vec<usize> = (0..3).filter(|&key| !table.keys[key].is_empty()).collect();
     let headings = keys.iter().map(|&key| table.keys[key].to_owned());
@@ -157,7 +159,7 @@ fn json_figure(value: Value) -> Json {
     match value {
         Value::None => Json::Null,
         Value::Count(count) => count.into(),
-        // There is no infinity in JSON.
+        // JSON has no infinity.
         Value::Share(number) | Value::Number(number) if !number.is_finite() => "inf".into(),
         Value::Share(number) | Value::Number(number) => number.into(),
         Value::Time(Timing { median, lower_quartile, upper_quartile }) => json!({
@@ -180,7 +182,7 @@ fn csv_line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
     quoted.collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// A value and its quartiles for CSV; empty where there are none.
+/// A value and its quartiles for CSV; empty if there are none.
 fn csv_fields(value: Value) -> [String; 3] {
     let one = |text: String| [text, String::new(), String::new()];
     match value {
@@ -233,15 +235,15 @@ fn number(number: f64) -> String {
     }
 }
 
-// Where a report comes from.
+// The origin of a report.
 
 /// The origin of a report.
 pub(crate) struct Origin {
     machine: String,
-    /// The version, and the commit if the build was told it.
+    /// The version, and the commit if the build knows it.
     program: String,
     command: String,
-    /// As in 2026-11-22, in UTC.
+    /// The date in UTC, such as 2026-11-22.
     date: String,
 }
 
@@ -273,7 +275,7 @@ impl Origin {
     }
 }
 
-/// The processor, if the system says so, the number of its cores, and the platform.
+/// The processor, if the system reports it, the number of its cores, and the platform.
 fn machine() -> String {
     let cores = available_parallelism().map_or(1, Into::into);
     let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -1,11 +1,13 @@
 //! Diagrams of a report as SVG: an error over a cost, both logarithmic.
 //!
-//! Each diagram of a table is a row of panels, one for each problem; diagrams of one panel share a row. In a panel, a
-//! method is a line of points, joined in the order of its parameter; bars are the quartiles of times. Dots of later
-//! methods are smaller, so that none hides another. The description of the file has the whole report as CSV, so that a
-//! plot holds what the tables hold. The background is white, so that it looks the same on a light and on a dark page.
+//! Each diagram of a table is a row of panels, one for each problem; diagrams with one panel share
+//! a row. In a panel, a method is a line of points, joined in the order of its parameter; bars are
+//! the quartiles of times. Dots of later methods are smaller, so that no dot hides another. The
+//! description in the file contains the whole report as CSV, so a plot holds the same data as the
+//! tables. The background is white, so that it looks the same on a light and on a dark page.
 //!
-//! Rejected: a charting library. Labels that avoid each other and quartiles as bars take more code with one than without.
+//! Rejected: a charting library. Labels that avoid each other, and quartiles as bars, take more
+//! code with a library than without.
 
 use std::fmt::{self, Write};
 
@@ -28,7 +30,7 @@ const RIGHT: f64 = 15.0;
 const TOP: f64 = 52.0;
 const BOTTOM: f64 = 40.0;
 
-/// The colours of methods, in the order of the table: of similar lightness and high chroma.
+/// The colours of methods, in the order of the table. They have similar lightness and high chroma.
 const COLORS: [Rgb; 7] = [
     Rgb::new(0xd0, 0x60, 0x10),
     Rgb::new(0x30, 0x60, 0xa0),
@@ -38,7 +40,7 @@ const COLORS: [Rgb; 7] = [
     Rgb::new(0xc0, 0x30, 0x40),
     Rgb::new(0x70, 0x70, 0x70),
 ];
-/// Almost white: for grid lines.
+/// The colour of grid lines, almost white.
 const PALE: Rgb = Rgb::new(0xdd, 0xdd, 0xdd);
 
 /// The diagrams as an SVG file.
@@ -62,7 +64,7 @@ pub(crate) fn svg(report: &Report) -> String {
     page.svg((WIDTH, y + MARGIN), &report.csv())
 }
 
-/// The title of a table and the legend of its methods. Returns the position below.
+/// Adds the title of a table and the legend of its methods. Returns the position below.
 fn put_heading(table: &Table, mut y: f64, page: &mut Page) -> f64 {
     for line in format!("{}: {}.", table.name, table.title).lines() {
         page.text((MARGIN, y), "start", line);
@@ -80,7 +82,7 @@ fn put_heading(table: &Table, mut y: f64, page: &mut Page) -> f64 {
 
 /// Puts panels side by side. Returns the position below.
 fn put_panels(panels: &[Panel<'_>], mut y: f64, page: &mut Page) -> f64 {
-    // Two rows of two are easier to compare than one of three and one more.
+    // Four panels in two rows are easier to compare than three in one row and one below.
     let columns = if matches!(panels.len(), 1 | 2 | 4) { 2 } else { 3 };
     let width = WIDTH / columns as f64;
     for row in panels.chunks(columns) {
@@ -110,7 +112,7 @@ struct Sample<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// The panels of a diagram that have points.
+    /// The panels of a diagram that contain points.
     fn all_of(table: &'a Table, diagram: &Diagram) -> Vec<Self> {
         let problems = table.distinct(0).into_iter();
         problems.filter_map(|problem| Self::new(table, diagram, problem)).collect()
@@ -131,7 +133,7 @@ impl<'a> Panel<'a> {
                 Some(Sample { method, parameter: &row.keys[2], cost, quartiles, error })
             })
             .collect();
-        // Lines join the points of a method, which a table may list by parameter.
+        // Lines join the points of a method, but a table may list them by parameter.
         points.sort_by_key(|point| point.method);
         let [across, up] = diagram.columns.map(|index| &table.columns[index]);
         let title = format!("{up} over {across}");
@@ -172,8 +174,8 @@ impl<'a> Panel<'a> {
     }
 }
 
-/// The labels of points where they overlap neither dots nor each other, left of `right` and below `top`; the
-/// others are left out.
+/// Adds labels to points, left of `right` and below `top`. Labels that would overlap dots or each
+/// other are left out.
 fn put_labels<'a>(
     points: impl Iterator<Item = (Point, &'a str)> + Clone,
     (right, top): Point,
@@ -225,7 +227,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// The greatest number of labelled powers of ten.
+    /// The largest number of labelled powers of ten.
     const MAX_TICKS: usize = 6;
 
     /// The axis between the powers of ten around `values`, which are not negative.
@@ -245,7 +247,7 @@ impl Axis {
         self.ends.0 + share * (self.ends.1 - self.ends.0)
     }
 
-    /// Some powers of ten to label.
+    /// The powers of ten to label.
     fn powers(&self) -> impl Iterator<Item = i32> + use<> {
         let (first, last) = (self.first as i32, self.last as i32);
         (first..=last).step_by(((last - first) as usize).div_ceil(Self::MAX_TICKS).max(1))
@@ -255,14 +257,14 @@ impl Axis {
 /// A position on a page, relative to the top left corner.
 type Point = (f64, f64);
 
-/// A page that grows by marks.
+/// A page, to which marks are added.
 #[derive(Default)]
 struct Page {
     marks: String,
 }
 
 impl Page {
-    /// The SVG file of this size, with `description` for programs and for readers who do not see.
+    /// The SVG file of this size. `description` is for programs and for readers who cannot see.
     fn svg(&self, (width, height): (f64, f64), description: &str) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
@@ -283,7 +285,7 @@ impl Page {
         ));
     }
 
-    /// Adds a dot with a white edge, so that a smaller one before it is seen.
+    /// Adds a dot with a white edge, so that it stays visible over a larger dot.
     fn dot(&mut self, (x, y): Point, radius: f64, color: Rgb) {
         self.add(format_args!(
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{color}\" stroke=\"#ffffff\"/>\n"

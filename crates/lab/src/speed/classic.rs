@@ -1,12 +1,12 @@
-//! The classic loop: walls by column, and floors by column or by row, as in tutorials.
+//! The classic loop: walls by column, and floors by column or by row, as found in tutorials.
 //!
-//! It follows their formulas: double precision, row-major textures of one size that the compiler
-//! knows, and a row-major picture that is written column by column. It draws plain walls only, and
-//! the camera must be inside a closed map.
+//! It follows the formulas of the tutorials: double precision, row-major textures of one size that
+//! the compiler knows, and a row-major picture that is written column by column. It draws plain
+//! walls only, and the camera must be inside a closed map.
 //!
-//! It takes as long as the same loop in C++, compiled by `g++ -O3`, or less. To that end, doubles
-//! become integers by an [addition](floor_of), since conversions in Rust saturate, and every index into
-//! a texture or the map is masked, so that no bounds are checked there.
+//! It takes as long as the same loop in C++, compiled by `g++ -O3`, or less. For that reason,
+//! doubles become integers by an [addition](floor_of), because conversions in Rust saturate. Every
+//! index into a texture or the map is masked, so that no bounds are checked there.
 
 use glam::DVec2;
 
@@ -37,14 +37,14 @@ pub(crate) struct Classic {
 #[derive(Clone, Debug)]
 struct Picture(Box<[u32; TEXELS * TEXELS]>);
 
-/// A camera, with the sine and the cosine of its heading computed.
+/// A camera with precomputed sine and cosine of its heading.
 struct View {
     position: DVec2,
     direction: DVec2,
     plane: DVec2,
 }
 
-/// The most columns and rows of a map.
+/// The largest number of columns and rows of a map.
 const MAP: usize = 32;
 /// The width and the height of each texture.
 const TEXELS: usize = 64;
@@ -139,8 +139,8 @@ impl Classic {
             (1, (f64::from(row) + 1.0 - position.y) * delta_y)
         };
         let kind_in = |column: i32, row: i32| self.map[row as usize % MAP][column as usize % MAP];
-        // Two loops, since a compiler makes one without branches, in which each step waits for the
-        // comparison before it.
+        // There are two loops, because a compiler would turn one loop into code without branches,
+        // in which each step waits for the comparison before it.
         let (is_y_side, kind) = 'cast: loop {
             while side_x < side_y {
                 side_x += delta;
@@ -201,7 +201,8 @@ impl Classic {
                 pixels[y as usize * width + x] = self.floor.0[texel];
                 pixels[(height - y as usize) * width + x] = self.ceiling.0[texel];
             }
-            // The middle row, which is not the mirror image of a floor row.
+            // The middle row is not the mirror image of a floor row, so it is copied from the row
+            // below.
             if start > 0 {
                 pixels[x] = pixels[width + x];
             }
@@ -235,7 +236,7 @@ impl Picture {
             Paint::Color(color) => color,
             Paint::Texture(id) => {
                 let level = world.texture(id).level(0);
-                // Of a texture of another size, the nearest texels.
+                // If the texture has another size, the nearest texels are taken.
                 let middle = |index: u32| u64::from(2 * index + 1) * (u64::MAX / OF_BOTH);
                 level.at_fraction(middle(x), middle(y))
             }
@@ -252,8 +253,8 @@ fn texel_at(x: f64, y: f64) -> usize {
     TEXELS * texel(y) + texel(x)
 }
 
-/// The largest integer not above `number`, modulo a power of two; off by one for a number less than
-/// 2⁻²⁰ below an integer.
+/// The largest integer not above `number`, modulo a power of two. Off by one if `number` is less
+/// than 2⁻²⁰ below an integer.
 fn floor_of(number: f64) -> u32 {
     // A double of this size has 20 bits after the binary point.
     const LARGE: f64 = (3_u64 << 31) as f64;

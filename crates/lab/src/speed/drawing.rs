@@ -10,7 +10,7 @@ use crate::report::{Diagram, Row, Table, Value, headings, median, seconds};
 use cellcaster::render::{Frame, FrameSize, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
-/// A level that is drawn.
+/// A level to draw.
 struct Scene {
     name: &'static str,
     world: World,
@@ -18,7 +18,7 @@ struct Scene {
     floors: &'static [ClassicFloor],
 }
 
-/// The sizes of the pictures: in terminals from 80×24 to 320×100 cells, then larger ones.
+/// The sizes of the pictures: in terminals from 80×24 to 320×100 cells, and then larger sizes.
 const SIZES: [FrameSize; 8] = [
     size(80, 48),
     size(120, 80),
@@ -40,18 +40,18 @@ pub(crate) const fn size(width: u32, height: u32) -> FrameSize {
 
 /// The number of cameras along the walk.
 const CAMERAS: usize = 64;
-/// The stride from one camera to the next. It visits all cameras, and any first few of them are
+/// The stride from one camera to the next. It visits all cameras, and the cameras visited first are
 /// spread over the whole walk.
 const STRIDE: usize = 39;
 /// The number of timings for each camera before the next one.
 const TURNS: usize = 3;
 
-/// Draws each scene at each size, within about `time` altogether.
+/// Draws each scene at each size, within about `time` in total.
 ///
 /// For each camera, all renderers take turns, so that a busy machine slows all of them. A result is
-/// the mean, over the visited cameras, of the medians for each camera.
+/// the mean of the medians of all visited cameras.
 pub fn measure_drawing(time: Duration) -> Table {
-    // With a textured floor and ceiling, and with one colour each.
+    // The first scene has a textured floor and ceiling; the second has one colour each.
     let textured = &[ClassicFloor::ByColumn, ClassicFloor::ByScanline];
     let scenes = [
         Scene { name: "planes", world: textured_scene(), floors: textured },
@@ -73,7 +73,7 @@ pub fn measure_drawing(time: Duration) -> Table {
     }
 }
 
-/// The weight of these pictures in the distribution of time. Large pictures take longer, but need
+/// The weight of these pictures when the time is distributed. Large pictures take longer, but need
 /// fewer samples.
 fn share(scene: &Scene, size: FrameSize) -> f64 {
     let pixels = f64::from(size.width.get()) * f64::from(size.height.get());
@@ -86,11 +86,11 @@ struct Times {
     ours: Vec<f64>,
     by_threads: Vec<f64>,
     fill: Vec<f64>,
-    /// For each of the scene's floors.
+    /// One list for each of the scene's floors.
     classic: [Vec<f64>; 2],
 }
 
-/// Draws a scene with all renderers at one size, which takes about `time`.
+/// Draws a scene with all renderers at one size. This takes about `time`.
 fn compare(scene: &Scene, size: FrameSize, time: Duration) -> Vec<Row> {
     let Scene { world, floors, .. } = scene;
     let (width, height) = (size.width.get() as usize, size.height.get() as usize);
@@ -101,7 +101,7 @@ fn compare(scene: &Scene, size: FrameSize, time: Duration) -> Vec<Row> {
     let start = world.start_camera(FieldOfView::default());
     let threads = multi_threaded.explain(world, &start, &mut frame).threads.count();
     let classic = Classic::new(world);
-    // Draws `turns` times with each renderer, in turns.
+    // Draws `turns` times with each renderer, in turn.
     let mut take_turns = |camera: &Camera, turns: usize, times: &mut Times| {
         for turn in 0..turns {
             let draw = || single_threaded.render(world, camera, black_box(&mut frame));
@@ -118,7 +118,7 @@ fn compare(scene: &Scene, size: FrameSize, time: Duration) -> Vec<Row> {
         }
     };
     let cameras = walk(world, CAMERAS);
-    // The first draw loads caches, and is not counted.
+    // The first draw fills the caches, and is not counted.
     take_turns(&cameras[0], 1, &mut Times::default());
     let mut times = vec![Times::default(); CAMERAS];
     let begun = Instant::now();

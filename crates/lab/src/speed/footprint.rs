@@ -21,11 +21,12 @@ use cellcaster::terminal::CellWriter;
 const FIRST_WINDOW: Size = Size::new(80, 24);
 /// The window in which memory is measured.
 const GAME_WINDOW: Size = Size::new(120, 40);
-/// The number of times the program is started.
+/// The number of times that the program is started.
 const STARTS: usize = 9;
 
-/// Measures the game that lies beside this program, and a game in this process, which must not have done anything else
-/// yet. A figure is missing if there is no such program, or if the system does not report it.
+/// Measures the game's program beside this one, and a game in this process, which must not have
+/// done anything else before. A figure is missing if there is no such program, or if the system
+/// does not report it.
 pub(crate) fn measure_footprint() -> Result<Table, Error> {
     const MEBIBYTE: f64 = (1 << 20) as f64;
     play()?;

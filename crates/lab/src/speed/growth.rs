@@ -1,9 +1,9 @@
-//! Costs that grow with the map: a ray with the open distance, a frame with the area and with the
-//! number of things.
+//! Costs that grow with the map: the cost of a ray with the open distance, and the cost of a frame
+//! with the area and with the number of things.
 //!
 //! All subjects of a comparison take turns, so that a busy machine slows all of them. In each turn
-//! the work is repeated, and the first repetition is not counted: a game stays in one map, which is
-//! then in the caches.
+//! the work is repeated, and the first repetition is not counted, because a game stays in one map,
+//! which is then in the caches.
 
 use std::fmt::Write;
 use std::hint::black_box;
@@ -20,17 +20,17 @@ use cellcaster::world::{Camera, FieldOfView, World};
 
 /// The sides of the open maps.
 pub const SIDES: [u32; 5] = [16, 64, 256, 1024, 4096];
-/// The index of the side with which others are compared.
+/// The index of the side with which the others are compared.
 const USUAL: usize = 1;
 /// The numbers of things in a crowded map.
 pub const CROWDS: [usize; 3] = [100, 10_000, 100_000];
 /// The size of the pictures, in pixels.
 const PICTURE: FrameSize = size(160, 90);
-/// The number of timings in a turn, and the least number in all.
+/// The number of timings in a turn, and the smallest number in total.
 const A_TURN: usize = 8;
 const FEWEST: usize = 3 * A_TURN;
 
-/// The costs of open maps, measured within about `time`, in addition to the time to make the maps.
+/// The costs of open maps, measured within about `time`, which does not include making the maps.
 pub(crate) fn measure_maps(time: Duration) -> Table {
     let loaded = |ground| SIDES.map(|side| LoadedMap::new(ground, side));
     let mut loaded: Vec<LoadedMap> = Ground::ALL.into_iter().flat_map(loaded).collect();
@@ -72,7 +72,8 @@ pub(crate) fn measure_maps(time: Duration) -> Table {
     }
 }
 
-/// The time of a frame in crowded maps, with always the same number of things in view, measured within about `time`.
+/// The time of a frame in crowded maps, always with the same number of things in view, measured
+/// within about `time`.
 pub(crate) fn measure_crowds(time: Duration) -> Table {
     let crowd = |vista: Vista| CROWDS.map(|count| (vista, count, Drawing::new(vista.world(count))));
     let mut crowds: Vec<_> = Vista::ALL.into_iter().flat_map(crowd).collect();
@@ -156,7 +157,7 @@ fn in_turns<T>(subjects: &mut [T], time: Duration, work: impl Fn(&mut T)) -> Vec
     times.into_iter().map(median).collect()
 }
 
-/// Each of `times`, in groups of `size`, with its ratio to the one at `base` in its group.
+/// Each of `times` with its ratio to the time at `base` in its group. Groups have `size` entries.
 fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = (f64, f64)> {
     let bases: Vec<f64> = times.chunks(size).map(|group| group[base]).collect();
     times.into_iter().enumerate().map(move |(index, time)| (time, time / bases[index / size]))
@@ -164,7 +165,7 @@ fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = (
 
 // Open maps of any size, and rays across them.
 
-/// The contents of an open map, besides the walls around it.
+/// The contents of an open map, apart from the walls around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Nothing.
@@ -219,7 +220,8 @@ impl Ground {
     }
 }
 
-/// Whether a plain has a pillar there: one in each block of 64 × 64 cells, at or near its middle.
+/// Returns whether a plain has a pillar there. There is one in each block of 64 × 64 cells, at or
+/// near its middle.
 fn is_pillar(column: u32, row: u32) -> bool {
     let (within, block) = (|place: u32| place % 64, |place: u32| place / 64);
     let moved = |by: u32| 16 + (block(column) * 37 + block(row) * 101 + by * 53) % 32;
@@ -245,7 +247,7 @@ pub fn crossing_rays(side: u32) -> Vec<Ray> {
     (0..RAYS).map(cast).collect()
 }
 
-// Crowded maps: the same things in view, with few or many others elsewhere.
+// Crowded maps: the same things in view, with few or many things elsewhere.
 
 /// The visible part of a map: a hall with about sixty plants. The rest of the map is full of
 /// plants.
@@ -272,7 +274,7 @@ impl Vista {
         }
     }
 
-    /// A map with this hall and `count` things, including those in view.
+    /// A map with this hall and `count` things, including the things in view.
     ///
     /// # Panics
     /// Panics if `count` is less than the number of things in view, or more than the map has room

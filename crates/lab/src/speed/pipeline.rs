@@ -25,11 +25,11 @@ const LINKS: [f64; 3] = [1.0, 10.0, 100.0];
 /// The number of frames drawn per second.
 const FRAMES_PER_SECOND: u32 = 30;
 const STEPS_A_FRAME: usize = (STEPS_PER_SECOND / FRAMES_PER_SECOND) as usize;
-/// The least number of steps played of a stretch that has as many.
+/// The smallest number of steps played of each stretch, unless the stretch is shorter.
 const FEWEST_STEPS: u32 = 4;
 
-/// Plays the showcase in each window, with ratatui's own encoder (`stock`) and with Cellcaster's at the named fidelities: as
-/// much of each stretch as `time` allows.
+/// Plays the showcase in each window, with ratatui's own encoder (`stock`) and with Cellcaster's at
+/// the named fidelities. Plays as much of each stretch as `time` allows.
 pub(crate) fn measure_pipeline(time: Duration) -> Result<Table, Error> {
     let script = SHOWCASE.script()?;
     let mut rows = Vec::new();
@@ -124,12 +124,12 @@ impl Playback {
         self.bytes = 0;
     }
 
-    /// The row of this encoder, where ratatui's takes the time `stock`.
+    /// The row of this encoder. `stock` is the time of ratatui's encoder.
     fn row(self, size: Size, stock: f64) -> Row {
         let frames = self.times.len();
         let time = median(self.times);
         let bytes = self.bytes as f64 / frames.max(1) as f64;
-        // The time to draw limits the rate, too.
+        // The time to draw also limits the rate.
         let rate = |megabits: f64| (bytes * 8.0 / (megabits * 1e6)).max(time).recip();
         let mut values = vec![
             Value::Count(size.area().into()),

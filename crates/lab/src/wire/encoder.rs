@@ -1,4 +1,4 @@
-//! Encoders of frames behind one trait.
+//! Encoders of frames, all with one interface.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -24,7 +24,7 @@ use cellcaster::tui::rgb_of;
 /// The changed cells of a frame, in the form of ratatui's backends.
 pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];
 
-/// A writer shared with a backend.
+/// A writer that is shared with a backend.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sink(Rc<RefCell<Vec<u8>>>);
 
@@ -62,7 +62,7 @@ pub(crate) struct Encoder {
 enum Kind {
     /// Ratatui's own backend for crossterm.
     Stock(CrosstermBackend<Sink>),
-    /// Cellcaster's.
+    /// Cellcaster's own writer.
     Ours(Box<CellWriter<Sink>>),
 }
 
@@ -72,7 +72,8 @@ impl Encoder {
         Self { kind: Kind::Stock(CrosstermBackend::new(sink.clone())), sink }
     }
 
-    /// With `extensions`, the terminal repeats characters and, in true colour, has its palette defined.
+    /// With `extensions`, the encoder lets the terminal repeat characters and, in true colour,
+    /// defines its palette.
     pub(crate) fn ours(
         size: Size,
         depth: ColorDepth,
@@ -87,8 +88,8 @@ impl Encoder {
         Self { sink, kind: Kind::Ours(Box::new(writer)) }
     }
 
-    /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
-    /// its backend.
+    /// Appends the bytes of a frame to `bytes`, by the calls that ratatui's `Terminal` makes to its
+    /// backend.
     pub(crate) fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>) {
         match &mut self.kind {
             Kind::Stock(backend) => send(backend, changes),
@@ -97,8 +98,8 @@ impl Encoder {
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    /// The colours shown by the dots of a cell's mosaic and by the rest, or by its text and its background;
-    /// `None` if they are the requested ones.
+    /// The colours of the dots of a cell's mosaic and of the rest, or of its text and its
+    /// background, as shown. `None` if the requested colours are shown.
     pub(crate) fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
         let Kind::Ours(writer) = &self.kind else { return None };
         Some((writer.shown_mosaic(column, row), writer.shown_colors(column, row)?))
@@ -126,14 +127,14 @@ pub(crate) const COLUMNS: [&str; 15] = [
     "first frame, bytes",
 ];
 
-/// An encoder and its sums.
+/// An encoder and its totals.
 pub(crate) struct EncoderRun {
     name: String,
     encoder: Encoder,
     streams: [Stream; 2],
-    /// For each section of the script, the index in `parts`.
+    /// For each section of the script, its index in `parts`.
     places: Vec<usize>,
-    /// The sections by their names, and then all of them.
+    /// A part for each name of a section, and then one for all sections.
     parts: Vec<Sums>,
     first_frame: usize,
     /// The bytes of the last frame.
@@ -156,7 +157,7 @@ impl EncoderRun {
         Self { name, encoder, streams, places, parts, first_frame: 0, bytes: Vec::new() }
     }
 
-    /// Encodes the frame `drawn`, which belongs to this section of the script; the first frame has
+    /// Encodes the frame `drawn`, which belongs to this section of the script. The first frame has
     /// no section.
     pub(crate) fn take(&mut self, section: Option<usize>, changes: &Changes, drawn: &Buffer) {
         self.bytes.clear();
@@ -184,18 +185,18 @@ impl EncoderRun {
         }
     }
 
-    /// The indices of the parts that have a name; the others are not reported.
+    /// The indices of the parts that have a name. Parts without a name are not reported.
     pub(crate) fn parts(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| !self.parts[part].name.is_empty())
     }
 
-    /// The mean bytes a frame of a part.
+    /// The mean number of bytes per frame of a part.
     pub(crate) fn mean_bytes(&self, part: usize) -> f64 {
         let bytes = &self.parts[part].bytes;
         bytes.iter().sum::<usize>() as f64 / bytes.len().max(1) as f64
     }
 
-    /// The figures of a part, in which ratatui's own encoder writes `stock` bytes a frame.
+    /// The figures of a part. Ratatui's own encoder writes `stock` bytes per frame.
     pub(crate) fn row(&self, part: usize, stock: f64) -> Row {
         let Sums { name, bytes, compressed, time, difference } = &self.parts[part];
         let mut bytes = bytes.clone();
@@ -224,7 +225,7 @@ impl EncoderRun {
     }
 }
 
-/// The sums over the frames of a part.
+/// The totals over the frames of a part.
 struct Sums {
     name: String,
     bytes: Vec<usize>,
@@ -265,7 +266,7 @@ impl Stream {
         Self(ZlibEncoder::new(Vec::new(), Compression::new(level)))
     }
 
-    /// The number of bytes sent for `frame`; 0 for an empty one.
+    /// The number of bytes sent for `frame`; 0 for an empty frame.
     fn size_of(&mut self, frame: &[u8]) -> usize {
         if !frame.is_empty() {
             // Writing to memory cannot fail.
@@ -275,9 +276,10 @@ impl Stream {
     }
 }
 
-// The difference between the colours that a viewer sees and the drawn ones.
+// The difference between the colours that a viewer sees and the drawn colours.
 
-/// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
+/// The sum of the differences over the parts of cells, two by twelve in each cell. A character
+/// counts as half text and half background.
 #[derive(Clone, Copy, Debug, Default)]
 struct Difference {
     parts: u64,
@@ -288,7 +290,7 @@ struct Difference {
 }
 
 impl Difference {
-    /// The difference of the frame `drawn` to what `encoder` shows.
+    /// The difference between the frame `drawn` and the frame that `encoder` shows.
     fn of(encoder: &Encoder, drawn: &Buffer) -> Self {
         let mut difference = Self::default();
         let columns = usize::from(drawn.area.width).max(1);
@@ -308,7 +310,7 @@ impl Difference {
         difference
     }
 
-    /// Adds a cell by the parts in which each pair of colours meets.
+    /// Adds a cell, by the number of parts in which each pair of colours meets.
     fn add_cell(&mut self, (shown, wanted): (Mosaic, Mosaic), colors: [[Color; 2]; 2]) {
         let mut parts = [[0; 2]; 2];
         for (x, y) in (0..24).map(|part| (part % 2, part / 2)) {

@@ -1,10 +1,10 @@
-//! Pictures of cells against what a camera sees, as both appear from a distance.
+//! Compares pictures made of cells with the view of a camera, as both appear from a distance.
 //!
-//! The truth is a picture with 8×24 samples in each cell, averaged in linear light. The cells are drawn by their
-//! dots at half that width and height. Both are blurred in linear light by a Gaussian whose deviation is half a cell in
-//! each direction, and the error is the mean distance in Oklab: about what a reader sees at arm's length, where
-//! single dots blend. Rejected: the distance of each dot, which counts a texture finer than dots as an error
-//! whatever the glyphs.
+//! The reference is a picture with 8×24 samples in each cell, averaged in linear light. The cells
+//! are drawn by their dots at half that width and height. Both are blurred in linear light by a
+//! Gaussian whose deviation is half a cell in each direction. The error is the mean distance in
+//! Oklab, which is about what a reader sees at arm's length, where single dots blend. Rejected: the
+//! distance of each dot. It counts a texture finer than the dots as an error, whatever the glyphs.
 
 use std::num::NonZeroU32;
 
@@ -19,7 +19,7 @@ use cellcaster::world::{Camera, World};
 
 /// The columns and rows of points in each cell.
 const POINTS: [usize; 2] = [4, 12];
-/// The samples of the truth along each side of a point.
+/// The samples of the reference along each side of a point.
 const SAMPLES: usize = 2;
 /// The standard deviation of the blur, in columns and in rows of points: half a cell in each direction.
 const DEVIATION: [f64; 2] = [2.0, 6.0];
@@ -51,7 +51,7 @@ impl SeenPicture {
         })
     }
 
-    /// Cells, each with a mosaic in the colours of its dots and of the rest.
+    /// A picture of cells, each with a mosaic in the colours of its dots and of the rest.
     pub(crate) fn of_cells(size: Size, cell: impl Fn(u16, u16) -> (Mosaic, [Rgb; 2])) -> Self {
         Self::blurred(size, |x, y| {
             let (mosaic, [dots, rest]) = cell((x / POINTS[0]) as u16, (y / POINTS[1]) as u16);
@@ -80,17 +80,18 @@ fn extent(size: Size) -> [usize; 2] {
     [usize::from(size.width) * POINTS[0], usize::from(size.height) * POINTS[1]]
 }
 
-/// A picture of linear light, row by row, blurred by a Gaussian of this deviation across and down.
+/// Blurs a picture of linear light, row by row, by a Gaussian of this deviation across and down.
 pub(crate) fn blurred(points: &[[f64; 3]], width: usize, deviation: [f64; 2]) -> Vec<Oklab> {
     let height = points.len() / width;
     let rows = blur(deviation[0], width, height, |x, y| points[y * width + x]);
     let columns = blur(deviation[1], height, width, |y, x| rows[y * width + x]);
-    // The columns follow each other.
+    // `columns` stores the picture column by column.
     let rows = (0..height).flat_map(|y| columns.iter().skip(y).step_by(height));
     rows.map(|&light| Oklab::from_linear(light)).collect()
 }
 
-/// Blurs along the first coordinate. The result is row by row of the second. Points beyond an edge equal the last.
+/// Blurs along the first coordinate. The result is stored row by row of the second. Points beyond
+/// an edge equal the last point.
 fn blur(
     deviation: f64,
     length: usize,
@@ -173,7 +174,7 @@ mod tests {
                 errors.iter().zip(most).all(|(&error, most)| error <= most),
                 "{name} {errors:.2?}"
             );
-            // Of the error of half blocks, sextants leave at most 0.71 and octants 0.64.
+            // Sextants leave at most 0.71 of the error of half blocks, and octants 0.64.
             assert!(
                 errors[2] <= 0.71 * errors[0] && errors[3] <= 0.64 * errors[0],
                 "{name} {errors:.2?}"

@@ -1,8 +1,9 @@
-//! Comparisons on a short walk through each level: of glyph sets at each fidelity, and of ways to choose among few
-//! colours.
+//! Comparisons on a short walk through each level: of glyph sets at each fidelity, and of methods
+//! to choose among few colours.
 //!
-//! Pictures are compared with the view as both appear from a distance ([`seen`]): the linear light is blurred, and the error
-//! is the distance in Oklab. Without a blur, the nearest colours would have the least error, because no pixel can be nearer.
+//! Pictures are compared with the view as both appear from a distance ([`seen`]): the linear light
+//! is blurred, and the error is the distance in Oklab. Without a blur, the nearest colours would
+//! have the least error, because no pixel can be nearer.
 //!
 //! [`seen`]: super::seen
 
@@ -38,7 +39,7 @@ const TOUR: &str = "\
 0.5 s  strafe-left
 ";
 
-/// Walks through a level. `show` takes the number and the state of each frame.
+/// Walks through a level. Calls `show` with the number and the state of each frame.
 fn walk(mut game: Game, frames_per_second: NonZeroU32, mut show: impl FnMut(usize, &Game)) {
     let script = Script::parse(TOUR, "tour").unwrap_or_else(|faults| unreachable!("{faults}"));
     let frames_after =
@@ -90,7 +91,8 @@ pub fn report_glyphs(
     }
 }
 
-/// The sums over all frames; the first frame of each level does not count for `frames` and `bytes`.
+/// The totals over all frames. The first frame of each level does not count for `frames` and
+/// `bytes`.
 #[derive(Clone, Copy, Default)]
 struct GlyphSums {
     frames: usize,
@@ -105,7 +107,7 @@ fn measure_glyphs(
     game: Game,
     sums: &mut [[GlyphSums; FIDELITIES.len()]; SETS.len()],
 ) {
-    /// One in this number of frames is compared; the bytes of all are counted.
+    /// One in this number of frames is compared, but the bytes of all frames are counted.
     const COMPARED: usize = 30;
     let writer = |fidelity| Encoder::ours(size, ColorDepth::True, fidelity, false);
     let mut writers = SETS.map(|_| FIDELITIES.map(writer));
@@ -151,10 +153,11 @@ fn shown_by(encoder: &Encoder, size: Size) -> SeenPicture {
     })
 }
 
-// Ways to choose among few colours.
+// Methods to choose among few colours.
 
-/// The names of the methods: `nearest` for the nearest colours. Otherwise the game's mixtures, for a terminal that draws
-/// shades as `dots`, as `flat` colours, or as is `unknown` to the game: as dots.
+/// The names of the methods. `nearest` takes the nearest colours. The others are the game's
+/// mixtures, for a terminal that draws shades as `dots` or as `flat` colours, or whose behaviour is
+/// `unknown` to the game, which then assumes dots.
 const METHODS: [(&str, Option<ShadeInk>); 4] = [
     ("nearest", None),
     ("dots", Some(ShadeInk::Dots)),
@@ -166,8 +169,8 @@ const METHODS: [(&str, Option<ShadeInk>); 4] = [
 const COLUMNS: [&str; 6] =
     ["first error", "first chroma error", "first lightness", "error", "changes", "bytes a frame"];
 
-/// Walks through each of `levels`, which have a name, in a window of `size`, and compares the methods in the palette of
-/// 256 or 16 colours. The last rows are the means of all levels.
+/// Walks through each of `levels`, which have a name, in a window of `size`, and compares the
+/// methods in the palette of 256 or 16 colours. The last rows are the means over all levels.
 ///
 /// # Panics
 /// Panics if `size` has no cells.
@@ -216,7 +219,7 @@ fn measure_palettes(
     frames_per_second: NonZeroU32,
     game: Game,
 ) -> [[f64; 6]; 4] {
-    /// One in this number of frames is compared; the bytes of all are counted.
+    /// One in this number of frames is compared, but the bytes of all frames are counted.
     const COMPARED: usize = 6;
     let pixels = FrameSize::new(u32::from(size.width), 2 * u32::from(size.height));
     let mut frame = Frame::new(pixels.expect("a picture has cells"), PixelAspect::SQUARE);
@@ -258,7 +261,7 @@ fn draw_nearest(depth: ColorDepth, frame: &Frame, buffer: &mut Buffer) {
     }
 }
 
-/// A method and its sums.
+/// A method and its totals.
 struct MethodRun {
     ink: Option<ShadeInk>,
     buffer: Buffer,
@@ -305,8 +308,9 @@ impl MethodRun {
         }
     }
 
-    /// The errors of the first picture, the error of all compared ones, the share of cells that change between a block and a
-    /// shade from one frame to the next, and the mean bytes per frame without the first.
+    /// The errors of the first picture, the error of all compared pictures, the share of cells that
+    /// change between a block and a shade from one frame to the next, and the mean bytes per frame
+    /// without the first frame.
     fn figures(self) -> [f64; 6] {
         let later = self.bytes.get(1..).unwrap_or_default();
         let count = later.len().max(1) as f64;
@@ -352,7 +356,8 @@ fn half_of(cell: &Cell, half: usize, ink: Option<ShadeInk>) -> [f64; 3] {
     }
 }
 
-/// The mean error, the mean of its red–green and yellow–blue components alone, and how much lighter the picture is.
+/// The mean error, the mean error of the red–green and yellow–blue components alone, and the mean
+/// excess of lightness.
 fn errors(shown: &[Oklab], truth: &[Oklab]) -> [f64; 3] {
     let mean = |value: fn([f64; 3]) -> f64| {
         let pairs = shown.iter().zip(truth);

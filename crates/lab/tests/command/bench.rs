@@ -1,4 +1,4 @@
-//! `cellcaster bench`: its formats and their contents. Speed is not tested.
+//! `cellcaster-lab bench`: its formats and their contents. Speed is not tested.
 
 use std::fs;
 
@@ -28,7 +28,7 @@ fn is_positive(value: &Value) -> bool {
     value.as_f64().is_some_and(|number| number > 0.0)
 }
 
-/// The numbers of a column of those rows whose `key` is `name`.
+/// The numbers of a column in the rows whose `key` is `name`.
 fn numbers(rows: &[Value], key: &str, name: &str, column: &str) -> Vec<u64> {
     let named = rows.iter().filter(|row| row[key] == name);
     named.map(|row| row[column].as_u64().unwrap()).collect()
@@ -66,7 +66,7 @@ fn has_every_map(report: &Value) {
         for row in maps {
             assert!(is_positive(&row["time, ns/ray"]), "{row}");
             assert!(is_positive(&row["time, µs/frame"]), "{row}");
-            // One byte is the content of a cell, another one is its distance to solid cells.
+            // One byte is the content of a cell, and another is its distance to solid cells.
             assert!(row["bytes/cell"].as_f64().unwrap() > 2.0, "{row}");
         }
     }
@@ -112,7 +112,7 @@ fn a_table_is_for_people() {
     for word in ["classic", "3840x2160", "200x60", "stock", "Mbit/s", "first frame", "100000"] {
         assert!(table.contains(word), "no {word} in\n{table}");
     }
-    // The last line says where the figures come from.
+    // The last line describes the origin of the figures.
     let tables = table.lines().filter(|line| !line.starts_with("Measured on "));
     for line in tables {
         assert!(line.chars().count() <= 100, "{line}");

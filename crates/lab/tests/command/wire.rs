@@ -14,7 +14,7 @@ use cellcaster_lab::wire::{self, Plan};
 use ratatui::layout::Size;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-/// Levels that stay as they are, unlike those of the campaign.
+/// Levels that never change, unlike the levels of the campaign.
 const LEVELS: [&str; 5] = ["cellar", "museum", "citadel", "cistern", "observatory"];
 
 fn world(level: &str) -> World {
@@ -47,7 +47,7 @@ fn figure(table: &Table, keys: [&str; 2], column: &str) -> f64 {
 }
 
 /// The bytes and the errors of each of Cellcaster's encoders, as means over three levels. The
-/// figures are those of the report, and are repeatable.
+/// figures are the report's, and are repeatable.
 #[test]
 fn three_levels_take_no_more_bytes_than_is_promised() {
     let reports = ["citadel", "museum", "observatory"].map(report);
@@ -104,7 +104,8 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
     }
 }
 
-/// Fidelity spares bytes whatever cells are made of. Without colours there is nothing that could be about right.
+/// A lower fidelity saves bytes, whatever the cells consist of. Without colours, nothing can be
+/// approximated.
 #[test]
 fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
     use ColorDepth::{Indexed16, Indexed256, Mono, True};

@@ -1,4 +1,4 @@
-//! `cellcaster accuracy`: its formats, its results, and the figures of ACCURACY.md.
+//! `cellcaster-lab accuracy`: its formats, its results, and the figures of ACCURACY.md.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -58,7 +58,7 @@ fn the_exact_method_is_right_about_everything() {
     }
 }
 
-/// The table, Markdown, CSV and SVG hold every row of JSON.
+/// The table, Markdown, CSV and SVG contain every row of JSON.
 #[test]
 fn every_format_holds_every_figure() {
     let (csv, table, markdown) = (text("csv"), text("table"), text("markdown"));
@@ -74,7 +74,7 @@ fn every_format_holds_every_figure() {
     let of_run = lines.iter().filter(|line| line.starts_with("run,")).count();
     assert_eq!(lines.len() - 1 - of_run, figures);
     assert_eq!(of_run, 4);
-    // A comma within quotes separates nothing.
+    // A comma inside quotes separates nothing.
     let columns =
         |line: &&str| line.split('"').step_by(2).flat_map(|part| part.matches(',')).count();
     let figures_only = lines.iter().filter(|line| !line.starts_with("run,")).map(columns);
@@ -85,7 +85,7 @@ fn every_format_holds_every_figure() {
         }
     }
     let of_table = |text: &str| text.lines().filter(|line| line.contains("march")).count();
-    // Of these, the last line has the command.
+    // The last of these lines contains the command.
     assert_eq!((of_table(&table), of_table(&markdown)), (4, 4));
 
     let without_run = |text: &str| -> Vec<String> {
@@ -104,7 +104,8 @@ fn a_plot_has_a_dot_for_each_method_in_each_panel() {
         String::from_utf8(output_of(&arguments)).unwrap()
     };
     let dots = |plot: &str| plot.matches("<circle").count();
-    // Two of the legend. There are no costs without times on a map whose rays were not counted.
+    // Two dots belong to the legend. Without times, there are no costs on a map whose rays were not
+    // counted.
     assert_eq!(dots(&plot("0")), 2);
     // Two panels: the error and the wrong rays, over the time.
     let plot = plot("1");
@@ -170,7 +171,7 @@ fn cells(block: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Compares the figures of ACCURACY.md with those of the program, but for times.
+/// Compares the figures of ACCURACY.md with the figures of the program, except times.
 fn assert_page_is_current(part: &str) {
     let page =
         fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../ACCURACY.md")).unwrap();

@@ -1,4 +1,4 @@
-//! The contract of all casters, right or wrong: they end, and a hit is a wall of the map, at a
+//! The contract of all casters, exact or not: they end, and a hit is a wall of the map, at a
 //! distance and at a position on its face.
 
 use cellcaster::cast::{Caster, Hit, Ray};
@@ -21,7 +21,7 @@ impl Visitor for Cast<'_> {
     }
 }
 
-/// Every method, also with both ends of its parameter's range.
+/// Every method, with the default value and with both ends of its parameter's range.
 fn methods() -> impl Iterator<Item = Method> {
     let ends = ["fixed:4", "fixed:26", "table:8", "table:65536", "march:1"];
     let names = Method::NAMES.into_iter().chain(ends);
@@ -53,7 +53,8 @@ fn every_method_on_every_stiff_set() {
     }
 }
 
-/// In ordinary scenes and with fine parameters, all methods agree with the exact one on most rays.
+/// In ordinary scenes and with fine parameters, all methods agree with the exact caster on most
+/// rays.
 #[test]
 fn every_method_is_mostly_right_on_ordinary_scenes() {
     for Set { name, grid, rays } in accuracy::ordinary(1, 2000) {

@@ -22,7 +22,7 @@ const DOORS: [(Cell, Side); 3] = [
     (Cell { column: 6, row: 4 }, Side::Y),
 ];
 
-/// A world with doors, all of them open by `part`.
+/// A world with doors, each with the open part `part`.
 fn world(part: f64) -> World {
     let drawn = ROWS.join("\n").replacen("#...#...#", "#@..#...#", 1);
     let mut world = map::parse_str(&format!(
@@ -96,7 +96,7 @@ fn exact(number: f64) -> BigRational {
     BigRational::from_float(number).unwrap()
 }
 
-/// The error of `hit`, if there is one.
+/// Describes the error of `hit`, if there is one.
 fn fault(truth: Option<&Met>, hit: Option<&Hit>) -> Option<String> {
     let is_right = match (truth, hit) {
         (None, None) => true,
@@ -116,7 +116,8 @@ fn part() -> impl Strategy<Value = f64> {
     prop_oneof![prop::sample::select(vec![0.0, 0.25, 0.5, 1.0]), 0.0..=1.0]
 }
 
-/// On open floor or in a door's cell, because a ray that starts in a wall has already entered it.
+/// Origins on open floor or in a door's cell, because a ray that starts in a wall has already
+/// entered it.
 fn origin() -> impl Strategy<Value = DVec2> {
     let cells = (0..).zip(ROWS).flat_map(|(row, line)| {
         let columns = (0..).zip(line.chars()).filter(|&(_, character)| character != '#');
@@ -127,7 +128,7 @@ fn origin() -> impl Strategy<Value = DVec2> {
         .prop_map(|(cell, x, y)| cell + DVec2::new(x, y))
 }
 
-/// On a raster, which hits corners and edges, or anywhere.
+/// Coordinates on a raster, which hits corners and edges, or anywhere.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![(0..=72).prop_map(|eighths| f64::from(eighths) / 8.0), 0.0..9.0]
 }
@@ -177,8 +178,8 @@ fn a_closed_door_is_a_wall_that_is_set_back() {
     let middle = &renderer.columns()[20];
     assert_eq!(middle.distance, 2.0);
     assert_eq!(frame.pixel(20, 20), Rgb::new(0, 255, 0));
-    // The jamb beside it, which is neither the door nor the wall, and then the wall, nearer by half
-    // a cell.
+    // The jamb beside it is neither the door nor the wall. Then comes the wall, nearer by half a
+    // cell.
     let distances: Vec<f64> = renderer.columns().iter().map(|column| column.distance).collect();
     assert!(distances[0] < 2.0 && distances.iter().any(|distance| (1.5..2.0).contains(distance)));
     let colors: Vec<Rgb> = (0..41).map(|x| frame.pixel(x, 20)).collect();

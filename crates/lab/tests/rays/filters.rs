@@ -11,11 +11,12 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// The largest allowed ratio.
 const MOST: f64 = 0.75;
 
-/// The mean change of a channel from frame to frame, in steps of 8 bits, over sixty frames in which
-/// `camera` turns by a ninth of a degree each. Edges that move change pixels with every filter.
+/// The mean change of a channel from frame to frame, in steps of 8 bits, over sixty frames.
+/// `camera` turns by a ninth of a degree before each. Edges that move change pixels with every
+/// filter.
 fn shimmer(world: &World, camera: &Camera, size: FrameSize, filter: Filter) -> f64 {
     const TURNS: u32 = 60;
-    /// A ninth of a degree.
+    /// A ninth of a degree, in radians.
     const TURN: f64 = 0.002;
     let mut camera = *camera;
     let mut renderer = Renderer::new();
@@ -37,7 +38,7 @@ fn shimmer(world: &World, camera: &Camera, size: FrameSize, filter: Filter) -> f
     sum as f64 / count.max(1) as f64
 }
 
-/// The ratio of the shimmer with mip levels to that without, from the start of `world`.
+/// The shimmer with mip levels divided by the shimmer without, from the start of `world`.
 fn share_left(world: &World) -> f64 {
     let camera = world.start_camera(FieldOfView::default());
     let size = FrameSize::new(160, 90).unwrap();

@@ -1,10 +1,10 @@
 //! A million rays on maps of 4096 × 4096 cells, on which rays leap by the distance field and the
-//! beam tables. Pillars stand on the borders of blocks and strips, where a leap that is too long by
-//! one cell passes them.
+//! beam tables. Pillars stand on the borders of blocks and strips, where a leap that is one cell
+//! too long passes them.
 //!
 //! The oracle tests every face of every pillar in integers of 128 bits, from the definition of a
-//! hit. Rays whose integers are longer are compared with rational arithmetic, which takes a thousand
-//! times as long; a few hundred of them are.
+//! hit. A few hundred rays have longer integers. They are compared with rational arithmetic, which
+//! takes a thousand times as long.
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::map;
@@ -18,10 +18,10 @@ use glam::DVec2;
 const SIDE: i32 = 4096;
 const PILLARS: usize = 100;
 
-/// The cell of the start, which a map must have.
+/// The start cell, which a map must have.
 const START: (i64, i64) = (1, 2);
 
-/// The world of a map with these pillars. Only a world has a distance field and beam tables.
+/// The world of a map with these pillars. A distance field and beam tables exist only in a world.
 fn world(pillars: &[(i64, i64)]) -> World {
     let side = SIDE as usize;
     let mut cells = vec![vec![b'.'; side]; side];
@@ -58,8 +58,8 @@ impl Field {
         Self { grid: world(&pillars).grid().clone(), pillars }
     }
 
-    /// A ray through a corner of a pillar or an ulp beside it, along a line beside one, or towards
-    /// any place, from a place on a grid of some power of two.
+    /// A ray from a place on a grid whose spacing is a power of two. It leads through a corner of a
+    /// pillar or an ulp beside it, along a line beside a pillar, or towards any place.
     fn ray(&self, random: &mut SplitMix64) -> Ray {
         loop {
             let parts = random.pick([1.0, 2.0, 16.0, 1024.0, 1_073_741_824.0]);
@@ -92,7 +92,7 @@ impl Field {
         }
     }
 
-    /// The hit of a ray with short integers.
+    /// The hit of a ray whose integers are short enough.
     fn truth(&self, ray: &ExactRay) -> Option<Met> {
         let faces = self.pillars.iter().flat_map(|&pillar| ray.entries(pillar));
         faces.flatten().min_by(Met::compare)
@@ -116,7 +116,7 @@ struct Met {
 }
 
 impl Met {
-    /// By distance; where that is equal, the y line is crossed first.
+    /// Compares by distance. At equal distances, the y line is crossed first.
     fn compare(&self, other: &Self) -> std::cmp::Ordering {
         let way = |met: &Self| met.way.abs();
         let by_distance = (way(self) * other.speed.abs()).cmp(&(way(other) * self.speed.abs()));
@@ -125,14 +125,14 @@ impl Met {
 }
 
 impl ExactRay {
-    /// `None` if an integer is too long for products of two to fit.
+    /// `None` if an integer is too long for products of two integers to fit.
     fn new(ray: &Ray) -> Option<Self> {
         let (origin, exponent) = integers(ray.origin(), 57)?;
         let (direction, _) = integers(ray.direction(), 62)?;
         (-44..=0).contains(&exponent).then(|| Self { unit: 1 << -exponent, origin, direction })
     }
 
-    /// The entries into a cell from the sides: by a line of x, and by a line of y.
+    /// The entries into a cell from its sides: by an x line, and by a y line.
     fn entries(&self, pillar: (i64, i64)) -> [Option<Met>; 2] {
         let (column, row) = pillar;
         [(0, Side::X, column, row), (1, Side::Y, row, column)].map(|(axis, side, across, along)| {
@@ -145,12 +145,13 @@ impl ExactRay {
             if way != 0 && (way > 0) != (speed > 0) {
                 return None;
             }
-            // The position along the line times the speed, made positive, from the cell's start.
+            // The position along the line, from the cell's start, times the speed and with a
+            // positive sign.
             let sign = speed.signum();
             let place =
                 (self.origin[1 - axis] - i128::from(along) * self.unit) * speed + way * other;
             let (place, length) = (place * sign, self.unit * speed * sign);
-            // At a corner, the ray has crossed the y line, and not the x line.
+            // At a corner, the ray has crossed the y line, but not the x line.
             let is_at_end_inside = match side {
                 Side::X => other < 0,
                 Side::Y => other > 0,
@@ -165,8 +166,8 @@ impl ExactRay {
     }
 }
 
-/// Two doubles as integers times two to a common exponent, which is at most 0; `None` if one has
-/// more than `bits` bits.
+/// Two doubles as integers times two to a common exponent, which is at most 0; `None` if one of
+/// them has more than `bits` bits.
 fn integers(pair: DVec2, bits: u32) -> Option<([i128; 2], i32)> {
     let parts = pair.to_array().map(|value| {
         let exponent = ((value.abs().to_bits() >> 52) as i32).max(1) - 1075;
@@ -186,7 +187,7 @@ fn integers(pair: DVec2, bits: u32) -> Option<([i128; 2], i32)> {
     Some(([shifted[0]?, shifted[1]?], exponent))
 }
 
-/// The difference between a hit and the truth, if there is one.
+/// Describes the difference between a hit and the truth, if there is one.
 fn fault(ray: &Ray, exact: &ExactRay, truth: Option<&Met>, hit: Option<&Hit>) -> Option<String> {
     let is_right = match (truth, hit) {
         (None, None) => true,

@@ -4,7 +4,7 @@ use super::*;
 use crate::cast::{CommonOrder, Hit, Walk};
 
 proptest! {
-    /// Without mirrors, the walk is the one in the exact order, with the same distances.
+    /// Without mirrors, the walk equals the walk in the exact order, with the same distances.
     #[test]
     fn without_mirrors_it_is_the_plain_walk(
         origin in (-3.0..9.0, -3.0..7.0),
@@ -25,8 +25,8 @@ proptest! {
         prop_assert!(mirrored.cross(&grid).into.is_none());
     }
 
-    /// A ray between two parallel mirrors goes back and forth, and ends where it leaves the map by
-    /// an open side.
+    /// A ray between two parallel mirrors goes back and forth, and ends where it leaves the map
+    /// through an open side.
     #[test]
     fn a_reflected_ray_stays_between_the_mirrors(
         origin in (1.0..3.0, 0.0..2.0),

@@ -40,7 +40,7 @@ impl GuardFrame {
     }
 }
 
-/// A frame of the sprite of a player as others see them.
+/// A frame of the sprite of a player, as others see them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PlayerFrame {
     /// Stands.

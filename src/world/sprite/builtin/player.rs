@@ -1,7 +1,7 @@
 //! Players as others see them: a traveller with a broad hat and a cape, in eight colours.
 //!
-//! One sheet shows them all: its cloth is painted with a dye, which each colour replaces. The pictures are made
-//! once for a process, because a host begins games all the time.
+//! One sheet shows all of them. Its cloth is painted with a dye, which each colour replaces. The
+//! pictures are made once for a process, because a host starts games all the time.
 
 use std::sync::OnceLock;
 
@@ -33,7 +33,7 @@ pub enum PlayerColor {
 }
 
 impl PlayerColor {
-    /// All colours, in the order in which they are easiest to tell apart.
+    /// All colours, starting with the colours that are easiest to tell apart.
     pub const ALL: [Self; 8] = [
         Self::Red,
         Self::Sky,
@@ -59,7 +59,7 @@ impl PlayerColor {
         }
     }
 
-    /// The colour with that name.
+    /// The colour with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|color| color.name() == name)
     }
@@ -79,7 +79,7 @@ impl PlayerColor {
     }
 }
 
-/// The sprite of a player of that colour.
+/// The sprite of a player in this colour.
 pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
     static SPRITES: OnceLock<[Option<Sprite>; PlayerColor::ALL.len()]> = OnceLock::new();
     let sprites = SPRITES.get_or_init(|| {
@@ -88,10 +88,11 @@ pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
     sprites[color as usize].clone()
 }
 
-/// The red and the blue of dyed cloth in full light. No other colour of the sheet is without green.
+/// The red and the blue value of dyed cloth in full light. Every other colour of the sheet has some
+/// green.
 const DYE: u8 = 0xd8;
 
-/// A colour of the sheet, with the dye of that colour.
+/// Replaces the dye in a colour of the sheet by `color`.
 fn dyed(texel: Rgb, color: PlayerColor) -> Rgb {
     let [across, none, down] = texel.channels().map(u32::from);
     if none > 0 || across == 0 {

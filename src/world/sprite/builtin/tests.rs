@@ -1,4 +1,4 @@
-//! The pictures are as painted, and kinds, facings, frames and colours can be told apart.
+//! The pictures match the painted ones, and kinds, facings, frames and colours can be told apart.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use crate::world::{GuardKind, Texture};
 /// The colour of outlines.
 const INK: Rgb = Rgb::new(0x1c, 0x18, 0x20);
 
-/// The sprites that only a game uses, but for guards.
+/// The sprites that only a game uses, except guards.
 const OF_GAMES: [&str; 19] = [
     EXIT,
     KEY,
@@ -158,7 +158,7 @@ fn picture(sprite: &Sprite, frame: GuardFrame, facing: usize) -> &Texture {
     &sprite.pictures()[usize::from(frame.index()) * 8 + facing]
 }
 
-/// A pixel is set if the figure covers more than half of it.
+/// Sets each pixel of which the figure covers more than half.
 fn silhouette(sprite: &Sprite, picture: &Texture) -> Silhouette {
     let texels_in_pixel = f64::from(picture.height()) / (sprite.height.cells() * PIXELS_IN_CELL);
     let mut covered = [[0.0; SIDE]; SIDE];
@@ -218,7 +218,7 @@ fn figures_stay_within_their_pictures() {
     for kind in GuardKind::ALL {
         let sprite = sprite(kind);
         for (index, picture) in sprite.pictures().iter().enumerate() {
-            // What reaches the edge of a picture is without an outline there, and seems cut.
+            // A figure that reaches the edge of a picture has no outline there, and looks cut off.
             let is_cut = |&(x, y): &(u32, u32)| {
                 let is_at_edge = x == 0 || x + 1 == picture.width() || y == 0;
                 let (color, alpha) = picture.texel(x, y);

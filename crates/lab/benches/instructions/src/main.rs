@@ -1,8 +1,8 @@
 //! Work whose instructions `.ci/instructions` counts.
 //!
-//! `instructions` lists the cases, and `instructions CASE` does the work of one. Only what `counted`
-//! calls is counted: the work is done once before, so that memory has grown. Times differ from run to
-//! run and from machine to machine; these counts differ with the compiler alone.
+//! `instructions` lists the cases, and `instructions CASE` does the work of one. Only the work
+//! inside `counted` is counted. It is done once before, so that memory has already grown. Times
+//! differ from run to run and from machine to machine; these counts differ with the compiler alone.
 
 mod pipeline;
 
@@ -44,13 +44,13 @@ struct Case {
 enum Work {
     /// Frames of this map and this size, in all directions from the start.
     Frames(&'static str, u32, u32),
-    /// The same by the filter by area.
+    /// The same with the area filter.
     FramesByArea(&'static str, u32, u32),
     /// Steps of the game on this level, in which the player runs in circles.
     Steps(&'static str),
-    /// A played script in these glyphs and a window of this size: from intents to bytes.
+    /// A played script in these glyphs and a window of this size, from intents to bytes.
     Pipeline(GlyphSet, u16, u16),
-    /// The encoder's part of that.
+    /// The encoder's part of [`Work::Pipeline`].
     Encode(u16, u16),
 }
 
@@ -172,6 +172,7 @@ fn draw<R: Renderable>(
 #[inline(never)]
 fn counted(work: impl FnOnce()) {
     work();
-    // Without this, the call would be the last one, and a jump.
+    // Without this, the call would be the last one in the function, and would be compiled to a
+    // jump.
     black_box(());
 }

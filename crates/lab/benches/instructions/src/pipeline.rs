@@ -15,9 +15,9 @@ use ratatui::layout::Size;
 
 use super::counted;
 
-/// The steps of the game in a frame.
+/// The number of steps of the game in a frame.
 const STEPS_A_FRAME: usize = 2;
-/// The divisor of the length of each stretch.
+/// Each stretch is shortened to this fraction of its length.
 const SHARE: u32 = 16;
 
 /// The changed cells of a frame.
@@ -57,7 +57,7 @@ pub(crate) fn encode(columns: u16, rows: u16) {
     counted(|| others.iter().for_each(encode));
 }
 
-/// Sends what was drawn. Writing to memory cannot fail.
+/// Sends the drawn cells. Writing to memory cannot fail.
 fn send(writer: &mut CellWriter<Vec<u8>>) {
     writer.output_mut().clear();
     _ = Backend::flush(writer);

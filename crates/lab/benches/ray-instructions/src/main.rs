@@ -1,8 +1,8 @@
 //! Rays whose instructions `.ci/accuracy count` counts.
 //!
-//! Each method casts the rays of each ordinary scene once, within [`counted`], and only what that
-//! calls is counted. The program prints a line for each call: the scene, the method and the number
-//! of rays.
+//! Each method casts the rays of each ordinary scene once, inside [`counted`], and only the
+//! instructions of that function are counted. For each call, the program prints a line with the
+//! scene, the method and the number of rays.
 
 use std::hint::black_box;
 

@@ -1,10 +1,10 @@
-//! Pictures with heights, mirrors, sprites, light, fog and mip levels, each compared with another way to find the same
-//! pixels.
+//! Pictures with heights, mirrors, sprites, light, fog and mip levels. Each is compared with
+//! another method that finds the same pixels.
 //!
-//! Heights are compared with the 3-D caster, to which each cell is a box, and which shares no code
-//! with them. A mirror is compared with a copy of the room behind it, built in reverse. A sprite is a
-//! rectangle on the plane through its place that faces the camera. Light and fog are compared by channel with their
-//! definition in real numbers.
+//! Heights are compared with the 3-D caster, which treats each cell as a box and shares no code
+//! with them. A mirror is compared with a copy of the room behind it, built in reverse. A sprite is
+//! a rectangle on the plane through its place that faces the camera. Light and fog are compared by
+//! channel with their definition in real numbers.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -44,14 +44,14 @@ pub(crate) fn features(seed: u64) -> Vec<Feature> {
     ]
 }
 
-/// Files of textures.
+/// The texture files of the maps.
 struct Files;
 
-/// The texels along each side of a texture.
+/// The number of texels along each side of a texture.
 const SIDE: u32 = 64;
 
-/// A checker of black and white squares of as many texels as the file's name says, or of one white square if it says
-/// nothing.
+/// A file is a checker of black and white squares. Its name is the number of texels of a square;
+/// without a number, it is all white.
 impl TextureFiles for Files {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
         let square: Option<u32> = name.trim_end_matches(".png").parse().ok();
@@ -102,7 +102,7 @@ fn frame() -> Frame {
     Frame::new(size, PixelAspect::SQUARE)
 }
 
-/// A feature whose cases are pixels: `outcome` compares each pixel of each picture, or leaves it out.
+/// A feature whose cases are pixels. `outcome` compares each pixel of each picture, or skips it.
 fn feature(
     (name, figure, unit): (&'static str, &'static str, &'static str),
     world: World,
@@ -126,7 +126,7 @@ fn feature(
 
 const COLOR: &str = "colour of a pixel";
 
-/// Cameras within `low` and `high`, with an eye from 0.6 to 2.2, which `at_eye` changes.
+/// Cameras between `low` and `high`, with an eye height from 0.6 to 2.2, which `at_eye` changes.
 fn cameras(low: DVec2, high: DVec2, seed: u64, at_eye: fn(f64) -> f64) -> Vec<Camera> {
     let mut random = SplitMix64::new(seed);
     let mut camera = || {
@@ -160,14 +160,14 @@ fn ray_of_column(camera: &Camera, x: u32) -> DVec2 {
     camera.direction() + camera.plane() * share
 }
 
-/// The direction through the centre of a pixel, with a distance of 1 to the plane of the picture.
+/// The direction through the centre of a pixel, scaled to a distance of 1 to the picture plane.
 fn direction(camera: &Camera, (x, y): (u32, u32)) -> DVec3 {
     let up = (f64::from(HEIGHT) / 2.0 - (f64::from(y) + 0.5)) / focal_length(camera);
     ray_of_column(camera, x).extend(up)
 }
 
-/// The characters of the tiles with heights, the height of each, and the colours of its top and of
-/// its sides.
+/// The characters of the tiles with heights, with the height of each and the colours of its top and
+/// of its sides.
 const TILES: [(char, f64, u32, u32); 5] = [
     ('.', 0.0, 0x20_40_60, 0x20_40_60),
     ('a', 0.25, 0xc0_80_40, 0x80_40_20),
@@ -216,7 +216,7 @@ fn heights(seed: u64) -> Feature {
         Some(Body { shape: Shape::Block(block), texture })
     });
     let scene = Scene { bodies: bodies.collect(), ..Scene::default() };
-    // Above the highest floor, and below the top of the walls.
+    // The eyes are above the highest floor and below the top of the walls.
     let cameras = cameras(DVec2::splat(1.1), DVec2::new(8.9, 6.9), seed, |eye| eye + 0.7);
     let title = ("heights", COLOR, "");
     feature(title, parse(&text), cameras, |Picture { camera, frame, .. }, (x, y)| {
@@ -263,7 +263,7 @@ fn mirrors(seed: u64) -> Feature {
     let copies: Vec<Frame> =
         cameras.iter().map(|camera| Picture::new(&straight, 0, camera).frame).collect();
     feature(("mirrors", COLOR, ""), reflected, cameras, |picture, (x, y)| {
-        // The player has an image in one of them only.
+        // The player's image appears in only one of the two pictures.
         let is_player = picture.renderer.surface(x, y) == Some(Surface::Thing);
         let copy = copies[picture.index].pixel(x, y);
         (!is_player).then(|| (picture.frame.pixel(x, y) != copy, None))
@@ -284,7 +284,8 @@ fn sprites(seed: u64) -> Feature {
     let title = ("sprites", COLOR, "");
     feature(title, world, cameras, |Picture { camera, frame, .. }, (x, y)| {
         let ray = direction(camera, (x, y));
-        // No wall is before a sprite of this room, and its plane is at one distance everywhere.
+        // In this room, no wall is in front of a sprite, and the sprite's plane has the same
+        // distance everywhere.
         let is_on = |place: &DVec2| {
             let way = place - camera.position();
             let depth = way.dot(camera.direction());
@@ -307,8 +308,8 @@ const FOG: Rgb = Rgb::new(0x30, 0x48, 0x6b);
 const FOG_DISTANCE: f64 = 4.0;
 const LIGHT: f64 = 0.37;
 
-/// The error of one channel of walls and floors: the definition in real numbers is
-/// `own · light · clearness + fog · (1 − clearness)`, where the light of a y-side is halved.
+/// The error of one channel of walls and floors. The definition in real numbers is
+/// `own · light · clearness + fog · (1 − clearness)`, in which the light of a y-side is halved.
 fn lit(name: &'static str, channel: usize, fog: Option<Fog>) -> Feature {
     let fog_text = fog.map_or(String::new(), |fog| {
         format!("fog = {{ color = '{}', distance = {FOG_DISTANCE} }}\n", fog.color)
@@ -331,18 +332,19 @@ fn lit(name: &'static str, channel: usize, fog: Option<Fog>) -> Feature {
     })
 }
 
-/// The distance of the floor or the ceiling in a row of pixels, for an eye in the middle.
+/// The distance of the floor or the ceiling in a row of pixels, for an eye halfway between them.
 fn distance_of_row(camera: &Camera, y: u32) -> f64 {
     let below = (f64::from(y) + 0.5 - f64::from(HEIGHT) / 2.0).abs();
     focal_length(camera) * 0.5 / below
 }
 
-/// The sizes of the squares of the checkers. One of `n` texels is grey from level log₂ 2n on.
+/// The sizes of the checkers' squares. A checker with squares of `n` texels is grey from level log₂
+/// 2n on.
 const SQUARES: [u32; 4] = [1, 2, 4, 8];
 
-/// The mip level of each pixel of a wall, read off pictures with four checkers, and compared with
-/// the logarithm to base 4 of the texels that the pixel covers. Half a level is the least that a
-/// choice of one level can have in the worst case.
+/// The mip level of each pixel of a wall. It is read off pictures with four checkers, and compared
+/// with the logarithm to base 4 of the number of texels that the pixel covers. With a single level
+/// for a pixel, an error of half a level cannot be avoided in the worst case.
 fn mip_levels() -> Feature {
     let worlds = SQUARES.map(|square| {
         parse(&format!("floor = '#000000'\nceiling = '#000000'\n{ROOM}[tiles]\n'#' = {{ wall = '{square}.png' }}\n"))
@@ -359,23 +361,23 @@ fn mip_levels() -> Feature {
         let frames = frames[picture.index].iter();
         let level = frames.filter(|frame| is_grey(frame.pixel(x, y))).count();
         let error = |ideal: f64| (level as f64 - ideal).abs();
-        // Beyond the last checker, levels look alike.
+        // Beyond the last checker, levels look the same.
         let ideal = ideal_level(picture.camera, x, picture.distance(x), side);
         (ideal < SQUARES.len() as f64).then(|| (error(ideal) > 0.5 + 1e-9, Some(error(ideal))))
     })
 }
 
-/// Neither black nor white, in half light or in full light.
+/// Returns whether `color` is neither black nor white, in half light or in full light.
 fn is_grey(color: Rgb) -> bool {
     ![0, 127, 128, 255].contains(&color.red())
 }
 
-/// The logarithm to base 4 of the texels that a pixel of a wall covers, at least 0.
+/// The logarithm to base 4 of the number of texels that a pixel of a wall covers, at least 0.
 fn ideal_level(camera: &Camera, x: u32, distance: f64, side: Surface) -> f64 {
     let ray = ray_of_column(camera, x);
     let step = camera.plane() * 2.0 / f64::from(WIDTH);
-    // The wall point is origin + t · ray, where t keeps one coordinate; the derivative of the other
-    // one by the column of pixels.
+    // The wall point is origin + t · ray, where t keeps one coordinate constant. `along` is the
+    // derivative of the other coordinate by the column of pixels.
     let along = match side {
         Surface::WallX => distance * (step.y - ray.y * step.x / ray.x),
         _ => distance * (step.x - ray.x * step.y / ray.y),

@@ -1,4 +1,5 @@
-//! Rays at doors that are ajar, pillars, diagonals and thin walls, compared with fixed point.
+//! Rays at doors that are ajar, pillars, diagonals and thin walls, compared with a reference in
+//! fixed point.
 
 use std::hint::black_box;
 
@@ -40,7 +41,7 @@ fn field(tiles: &str) -> World {
     ))
 }
 
-/// The world of a map of this module.
+/// Parses a map of this module.
 fn parse(text: &str) -> World {
     map::parse_str(text).expect("the maps of this module are sound, and tests parse them")
 }
@@ -59,20 +60,20 @@ fn rays(grid: &Grid, seed: u64) -> Vec<Ray> {
     all
 }
 
-/// Where a ray may end.
+/// A place where a ray may end.
 struct Met {
     cell: Cell,
     t: Fixed,
-    /// Whether it is the end of a wall, on the border of its cell: the ray may pass in the next cell.
+    /// `true` at the end of a wall, on the border of its cell. The ray may pass in the next cell.
     is_end: bool,
 }
 
 /// The possible hits of a ray.
 struct Truth {
-    /// All places up to the first that is no end. There are several where a ray through the end of one wall
-    /// meets another.
+    /// All places up to the first place that is not an end. There are several if a ray through the
+    /// end of one wall meets another wall.
     places: Vec<Met>,
-    /// Whether it may hit nothing.
+    /// `true` if the ray may hit nothing.
     may_escape: bool,
 }
 
@@ -89,7 +90,7 @@ impl Truth {
     }
 }
 
-/// The feature of these rays in `world` with these truths.
+/// The feature of these rays in `world`, compared with these truths.
 fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Truth]) -> Feature {
     let outcome = |(ray, truth): (&Ray, &Truth)| {
         let Some(hit) = cast(&world, ray) else { return (!truth.may_escape, None) };
@@ -138,12 +139,12 @@ fn cells(world: &World) -> impl Iterator<Item = (Cell, TileKind)> {
     })
 }
 
-/// The components of a vector.
+/// The components of a vector in fixed point.
 fn fixed(vector: DVec2) -> [Fixed; 2] {
     vector.to_array().map(Fixed::new)
 }
 
-/// By Cramer's rule.
+/// The place where a ray meets a line, by Cramer's rule.
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let ([start_x, start_y], [extent_x, extent_y]) =
@@ -160,7 +161,7 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
     (!t.is_negative() && !is_beside).then_some(Met { cell, t, is_end })
 }
 
-/// By the quadratic formula.
+/// The place where a ray meets a pillar, by the quadratic formula.
 fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let [center_x, center_y] = fixed(cell.center());
@@ -176,7 +177,7 @@ fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
     })
 }
 
-/// A room in which doors are open by different parts.
+/// A room with doors that are open to different degrees.
 fn doors(seed: u64) -> Feature {
     const ROWS: [&str; 7] =
         ["#########", "#@..#...#", "#...+...#", "#...#...#", "##+###+##", "#.......#", "#########"];

@@ -1,4 +1,4 @@
-//! The 3-D caster: rays at spheres, planes and boxes, compared with fixed point.
+//! The 3-D caster: rays at spheres, planes and boxes, compared with a reference in fixed point.
 
 use std::hint::black_box;
 
@@ -105,7 +105,8 @@ fn meet(shape: &Shape, ray: &Ray) -> Option<Fixed> {
     }
 }
 
-/// By the slabs between opposite faces. No direction of the report is parallel to one.
+/// The distance to a box, found by the slabs between opposite faces. No direction in the report is
+/// parallel to a face.
 fn meet_block(block: &Block, origin: &[Fixed; 3], direction: &[Fixed; 3]) -> Option<Fixed> {
     let (low, high) = (fixed(block.low()), fixed(block.high()));
     let slabs: Option<Vec<(Fixed, Fixed)>> = (0..3)
