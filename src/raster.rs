@@ -1,4 +1,4 @@
-//! Raster: a draw list to pixels, one file for each kind of item.
+//! Raster: turns a draw list into pixels, with one file for each kind of item.
 //!
 //! [`draw`] draws the rows of a [`DrawList`] that a [`Target`] covers: first planes, then faces, then the layers in
 //! front of both. Rules:
@@ -7,8 +7,8 @@
 //! - Every pixel's texel is computed in fixed point from its own row or column.
 //! - The target counts pixels and texels where they are written.
 //!
-//! Rejected: one loop that selects the kind of surface for each pixel. These loops omit the kinds
-//! of item that a scene lacks, without a branch.
+//! Rejected: one loop that selects the kind of surface for each pixel. With one loop for each kind,
+//! a scene never runs the loops of the kinds that it lacks, and no pixel needs a branch.
 
 mod band;
 mod blended;
@@ -40,7 +40,7 @@ use sampling::{Means, MipLevels, Sampling};
 pub(crate) struct RasterMemory {
     planes: PlaneMemory,
     batch: BatchMemory,
-    /// The columns of a face, with the rows that it covers as a whole.
+    /// The columns of a face, reduced to the rows in which it covers whole pixels.
     whole_columns: Vec<FaceColumn>,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn draw(
     layers::draw(scene, list, target);
 }
 
-/// Draws what is behind the layers of `list`.
+/// Draws the planes and the faces of `list`, which are behind its layers.
 fn draw_surfaces<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,

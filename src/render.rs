@@ -1,8 +1,8 @@
-//! Drawing: a world and a camera in, pixels out.
+//! Drawing: turns a world and a camera into pixels.
 //!
 //! A frame is drawn in two stages: `visibility` fills a draw list, and `raster` draws it. A
-//! [`FramePlan`], made from the world, selects the loops of both. Visibility is found once; the
-//! list is drawn in bands of rows, by several threads if the frame is large.
+//! [`FramePlan`], made from the world, selects the loops of both. The list is filled once. It is
+//! drawn in bands of rows, by several threads if the frame is large.
 //!
 //! The caller owns the [`Frame`] and keeps the [`Renderer`], which owns the memory of the stages.
 //! Drawing by one thread allocates nothing once both have grown to the size of the frame. The same
@@ -86,41 +86,42 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
+    /// A renderer that has drawn no frame. It finds walls with [`Exact`](crate::cast::Exact).
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A renderer that finds walls by `caster`.
+    /// A renderer that finds walls with `caster`.
     pub fn with_caster(caster: DynCaster) -> Self {
         Self { caster, ..Self::default() }
     }
 
-    /// Sets how textures are sampled from the next frame on; at first [`Filter::Mip`].
+    /// Sets the filter with which textures are sampled from the next frame on. The default is
+    /// [`Filter::Mip`].
     pub fn set_filter(&mut self, filter: Filter) {
         self.filter = filter;
     }
 
-    /// Sets the time at which the next frames show things, in seconds; at first 0.
+    /// Sets the time at which the next frames show things, in seconds. The default is 0.
     pub fn set_time(&mut self, seconds: f64) {
         self.seconds = seconds;
     }
 
-    /// Sets the most threads that draw a frame; at first, the number that the machine runs at once.
-    /// Only large frames are drawn by more than one. The pixels are the same for any number, bit
-    /// for bit.
+    /// Sets the largest number of threads that draw a frame. The default is the number that the
+    /// machine runs at once. Only large frames are drawn by more than one thread. The pixels are
+    /// the same for any number, bit for bit.
     pub fn set_threads(&mut self, threads: NonZero<usize>) {
         self.threads = Some(threads);
     }
 
     /// The time at which something in the last frame next changes its appearance, in seconds on the
-    /// clock of [`Renderer::set_time`]; `None` for never.
+    /// clock of [`Renderer::set_time`]; `None` if nothing will change.
     pub fn next_change(&self) -> Option<f64> {
         self.memory.next_change
     }
 
-    /// Sets whether the next frames record the surface of each pixel, for [`Renderer::surface`]; at
-    /// first, they do not.
+    /// Sets whether the next frames record the surface of each pixel, for [`Renderer::surface`]. By
+    /// default, they do not.
     pub fn keep_surfaces(&mut self, are_kept: bool) {
         self.memory.surfaces.keep(are_kept);
     }
@@ -140,8 +141,9 @@ impl Renderer {
         Explanation { plan, threads, stats }
     }
 
-    /// Whether `figure` may be seen in `frame`, the last that was drawn, wherever the figure was then.
-    /// `world` and `camera` are those of the frame.
+    /// Whether `figure` may be visible from the camera of `frame`, the last frame that was drawn.
+    /// The position of the figure in that frame does not matter. `world` and `camera` must be the
+    /// ones with which the frame was drawn.
     #[cfg(feature = "terminal")]
     pub(crate) fn may_show(
         &self,
@@ -154,7 +156,7 @@ impl Renderer {
         world.has_mirrors() || visibility::may_show(world, &projection, self.columns(), figure)
     }
 
-    /// The hits of the rays of the last frame, from left to right, one for each column of pixels.
+    /// The hits of the last frame's rays, one for each column of pixels, from left to right.
     pub fn columns(&self) -> &[Column] {
         &self.memory.list.columns
     }

@@ -1,16 +1,16 @@
 //! Visibility: a world and a camera to a draw list.
 //!
-//! A [`DrawList`] holds the contents of a frame: planes, which lie, faces, which stand, and the layers in front of
-//! both. The [walk](walk) fills it from sector to sector; [`raster`](crate::raster) draws it. Rules:
+//! A [`DrawList`] contains the items of a frame: horizontal planes, upright faces, and the layers in front of
+//! both. The [walk](walk) fills it sector by sector, and [`raster`](crate::raster) draws it. Rules:
 //!
-//! - Rows and columns are sampled at the centres of pixels. A point exactly between two belongs to
-//!   the lower or the right one.
-//! - Every number is computed from its own row or column, never from that of a neighbour, so that
-//!   no error accumulates. A band of rows is identical to those rows of the whole frame.
+//! - Rows and columns are sampled at the centres of pixels. A point exactly between two pixels belongs to the
+//!   lower or the right one.
+//! - Every number is computed from its own row or column, never from a neighbour's number. No error
+//!   accumulates, and a band of rows is identical to the same rows of the whole frame.
 //! - A list allocates nothing once it has grown to the size of the frame.
 //!
-//! Rejected: drawing each column while its ray is followed. A row of floor shares its distance, its
-//! light and its mip level, which a span finds once for many pixels.
+//! Rejected: drawing each column while its ray is followed. The pixels in a row of floor share a distance, a
+//! light and a mip level, and a span computes these once for many pixels.
 
 mod billboard;
 mod column;
@@ -56,21 +56,21 @@ use walk::WalkMemory;
 pub(crate) struct Scene<'a> {
     pub(crate) world: &'a World,
     pub(crate) camera: &'a Camera,
-    /// The time at which sprites are shown, in seconds.
+    /// The time for which animated sprites are drawn, in seconds.
     pub(crate) seconds: f64,
     pub(crate) projection: &'a Projection,
     pub(crate) plan: &'a FramePlan,
 }
 
-/// The memory of visibility, reused from frame to frame.
+/// Memory that visibility reuses from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibilityMemory {
     walk: WalkMemory,
     layers: LayerMemory,
 }
 
-/// Fills `list` with the contents of `scene`. Rays from the camera are cast by `caster`, unless by the exact one.
-/// Returns the time at which a thing in view next changes its appearance; `None` for never.
+/// Fills `list` with the contents of `scene`. The rays from the camera use `caster`, or the exact caster if it
+/// is `None`. Returns the time at which a thing in view next changes its appearance; `None` for never.
 pub(crate) fn fill(
     scene: Scene<'_>,
     caster: Option<&DynCaster>,

@@ -1,8 +1,8 @@
 //! Bands: ranges of rows of a frame, each drawn by one thread.
 //!
-//! All passes draw into a band, and the pixels do not depend on its first and last row: a picture
-//! is the same in one band and in many. Rejected: bands of columns. Rows are contiguous in memory,
-//! so a band of them is a slice, which no other thread can write to and which needs no lock.
+//! All passes draw into a band. The pixels do not depend on its first and last row, so a picture is
+//! the same in one band and in many. Rejected: bands of columns. Rows are contiguous in memory, so
+//! a band of rows is a slice. No other thread can write to it, and it needs no lock.
 
 use std::ops::Range;
 
@@ -19,7 +19,8 @@ pub(crate) struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
-    /// The rows from `first` on of a frame that is `width` pixels wide, with these `pixels`.
+    /// A band with these `pixels`. It begins with row `first` of a frame that is `width` pixels
+    /// wide.
     pub(crate) fn new(width: usize, first: u32, pixels: &'a mut [Rgb]) -> Self {
         let end = first + (pixels.len() / width) as u32;
         Self { width, rows: first..end, pixels }
@@ -54,7 +55,8 @@ impl<'a> Band<'a> {
         &mut self.pixels[pixels]
     }
 
-    /// The pixels of two rows, which are in the band, from the left; the first one is further up.
+    /// The pixels of two rows, which are in the band, each from the left. The first row is further
+    /// up.
     #[inline]
     pub(crate) fn two_rows_mut(&mut self, [upper, lower]: [u32; 2]) -> [&mut [Rgb]; 2] {
         let width = self.width;
@@ -75,8 +77,8 @@ impl<'a> Band<'a> {
         self.pixels[first..].iter_mut().step_by(width).take(count)
     }
 
-    /// The pixels from column `x` in the first of `rows` on, before that column in the row after the last. The
-    /// rows are in the band.
+    /// The pixels from column `x` in the first of `rows` to the pixel before column `x` in the row
+    /// after the last. The rows are in the band.
     #[inline]
     pub(crate) fn pixels_from(&mut self, x: u32, rows: Range<u32>) -> &mut [Rgb] {
         let Range { start, end } = self.places(rows);
@@ -109,7 +111,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// The indices of the pixels of `rows` among those of the band.
+    /// The range of the pixels of `rows` in the band's pixels.
     #[inline]
     fn places(&self, rows: Range<u32>) -> Range<usize> {
         let place = |row: u32| (row - self.rows.start) as usize * self.width;

@@ -1,7 +1,7 @@
-//! Blended faces: walls that cover pixels in part, for the filter by area.
+//! Blended faces: walls that cover pixels in part, for the area filter.
 //!
-//! A pixel has the mean of the wall and of what was drawn there before, in linear light, weighted by the share of the
-//! pixel that the wall covers.
+//! Such a pixel shows the mean, in linear light, of the wall and of the colour that it had before.
+//! The weight of the wall is the share of the pixel that it covers.
 
 use std::iter;
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::visibility::{
     Face, FaceColumn, FaceEdges, Faded, Lighting, Projection, Rows, SlopedEdge, TextureStepper,
 };
 
-/// The rows of a column of a face that it covers as a whole.
+/// The rows of a column in which a face covers whole pixels.
 pub(crate) fn whole_rows(
     projection: &Projection,
     face: &Face,
@@ -32,13 +32,13 @@ pub(crate) enum FaceColors<'a> {
     Texels { texels: &'a [Rgb], stepper: TextureStepper, lighting: Faded },
 }
 
-/// The part of a wall in a column that walls share.
+/// A wall's part of a column that several walls share.
 pub(crate) struct SharedPart<'a> {
     /// Its top and its bottom.
     pub(crate) limits: [SlopedEdge; 2],
-    /// The part of the width of the column that it covers.
+    /// The share of the column's width that it covers.
     pub(crate) width: f64,
-    /// The rows in which it covers this part from top to bottom.
+    /// The rows in which it covers this share from top to bottom of the pixel.
     pub(crate) whole: Rows,
     pub(crate) colors: FaceColors<'a>,
 }
@@ -54,7 +54,8 @@ impl FaceColors<'_> {
     }
 }
 
-/// Blends a column of a face over the pixels that it covers in part: those of `rows` that are not `whole`.
+/// Blends a column of a face over the pixels that it covers in part: the pixels of `rows` outside
+/// `whole`.
 pub(crate) fn draw_ends(
     projection: &Projection,
     (face, edges): (&Face, &FaceEdges),
@@ -96,7 +97,7 @@ pub(crate) fn draw_shared(
             add(&mut light, share, last);
             left -= share;
         }
-        // Rounding may leave a little to be covered.
+        // Rounding may leave a small share uncovered.
         let is_covered = left <= parts().count() as u32;
         add(&mut light, left, if is_covered { last } else { *pixel });
         *pixel = rounded(light);
@@ -117,7 +118,7 @@ fn in_parts_of_whole(share: f64) -> u32 {
     (share * f64::from(WHOLE) + 0.5) as u32
 }
 
-/// Adds the light of `share` of a pixel in `color` to `sums`.
+/// Adds the linear light of `color`, multiplied by `share`, to `sums`.
 fn add(sums: &mut [u32; 3], share: u32, color: Rgb) {
     for (sum, light) in iter::zip(sums, linear_16(color)) {
         *sum += share * u32::from(light);

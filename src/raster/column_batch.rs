@@ -1,8 +1,8 @@
 //! Column batches: neighbouring wall columns that are drawn together, row by row.
 //!
-//! The pixels of such a row are contiguous, so that a processor predicts the accesses and prefetches
-//! the memory. Rejected: drawing one column after the other. Each pixel would be far in memory
-//! from the one before, which took most of the time of a frame in large pictures.
+//! The pixels of such a row are contiguous, so the processor predicts the accesses and prefetches
+//! the memory. Rejected: drawing one column after the other. Each pixel is then far in memory from
+//! the one above it, which took most of the time of a frame in large pictures.
 
 use std::ops::Range;
 use std::{iter, ptr};
@@ -17,7 +17,7 @@ use crate::visibility::{Lighting, TextureStepper};
 
 /// The most columns that are drawn together.
 const MAX_COLUMNS: usize = 15 * LANES;
-/// The number of rows of some columns that are drawn before those of the columns beside them.
+/// The number of rows that are drawn in one group of columns before the next group.
 const ROWS_AT_ONCE: u32 = 8;
 
 /// Memory for columns that are drawn together, reused from frame to frame.
@@ -28,15 +28,15 @@ pub(crate) struct BatchMemory {
     lanes: Vec<Lanes>,
 }
 
-/// Columns of texels in a lighting `L`, queued until they are drawn.
+/// Queued columns with a lighting `L`.
 pub(crate) struct ColumnBatch<'m, 't, 'a, L> {
     memory: &'m mut BatchMemory,
     target: &'m mut Target<'t>,
     /// The texels and the lighting of the latest shaded range.
     latest: Option<(&'a [Rgb], L, ShadedRange)>,
-    /// Columns before this one can no longer be queued: those of a batch do not overlap.
+    /// The first column that can still be queued, because the columns of a batch do not overlap.
     next: u32,
-    /// Whether columns are drawn without a batch where that takes less time.
+    /// Whether columns are drawn without a batch if there is a loop for them.
     are_direct: bool,
 }
 
@@ -48,13 +48,13 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     ) -> Self {
         let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
         batch.clear();
-        // Enough for any later view of a wall.
+        // This is enough for any batch, so later frames do not allocate.
         batch.memory.columns.reserve(MAX_COLUMNS);
         batch.memory.lanes.reserve(MAX_COLUMNS / LANES);
         batch
     }
 
-    /// The target, for pixels that no queued column has.
+    /// The target, for pixels that are in no queued column.
     pub(crate) fn target_mut(&mut self) -> &mut Target<'t> {
         self.target
     }
@@ -67,7 +67,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         self.memory.columns.push(QueuedColumn { x, rows, address, step: 0 });
     }
 
-    /// Draws columns of a face that show one level in one lighting.
+    /// Draws or queues columns of a face that show one level in one lighting.
     #[inline]
     pub(crate) fn draw_columns(&mut self, shown: &DirectColumns<'a, L>) {
         let height = shown.level.height() as usize;
@@ -119,7 +119,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         self.push(x, rows, range, stepper);
     }
 
-    /// Queues `rows` of column `x` for drawing with `texels` that a face may repeat or show in
+    /// Queues `rows` of column `x` for drawing with `texels`, which a face may repeat or show in
     /// part.
     fn queue_repeating(
         &mut self,
@@ -151,8 +151,8 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         self.memory.columns.push(QueuedColumn { x, rows, address, step });
     }
 
-    /// Draws `rows` of column `x` at once: there are too few pixels to shade the texels first, or
-    /// too many texels.
+    /// Draws `rows` of column `x` immediately, because there are too few pixels to shade all texels
+    /// first, or too many texels.
     fn draw_at_once(
         &mut self,
         x: u32,
@@ -167,8 +167,8 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         }
     }
 
-    /// Makes room for column `x` with this number of shaded texels: draws the queued columns if
-    /// there is none, or if `x` may be among them.
+    /// Makes room for column `x` with this number of shaded texels. Draws the queued columns if
+    /// there is no room, or if `x` may be one of them.
     #[inline]
     fn make_room_for(&mut self, x: u32, texels: usize) {
         let BatchMemory { shaded, columns, .. } = &self.memory;
@@ -196,7 +196,8 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
 }
 
 impl BatchMemory {
-    /// Draws the queued columns on `band`. It does not depend on the lighting, so that there is one copy of it.
+    /// Draws the queued columns on `band`. The code does not depend on the lighting, so it is
+    /// compiled once.
     #[inline(never)]
     fn draw(&mut self, band: &mut Band<'_>) {
         let Self { shaded, columns, lanes } = self;
@@ -262,7 +263,7 @@ impl QueuedColumn {
     }
 }
 
-/// Neighbouring columns, in the rows that all of them have.
+/// Neighbouring columns, in the rows that all of them share.
 #[derive(Clone, Debug)]
 struct Lanes {
     x: u32,
@@ -289,7 +290,7 @@ impl Lanes {
         })
     }
 
-    /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
+    /// Draws the part of the lanes in `rows`, which follow the rows that were drawn last.
     #[inline]
     fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { x, mut addresses, steps, .. } = *self;
@@ -303,7 +304,7 @@ impl Lanes {
     }
 }
 
-/// The rows common to both.
+/// The rows that are in both ranges.
 fn common(one: Range<u32>, other: Range<u32>) -> Range<u32> {
     let start = one.start.max(other.start);
     start..one.end.min(other.end).max(start)

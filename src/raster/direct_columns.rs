@@ -1,9 +1,10 @@
 //! Direct columns: the wall columns of small pictures, drawn without a batch.
 //!
-//! A small picture is in the cache as a whole, so that pixels far apart cost no more than neighbours, and
-//! a batch would take longer to prepare than to draw. Each column is drawn straight from its texture,
-//! four rows at a time, which take 6.5 instructions a pixel. Rejected: four columns at a time. They take
-//! 7, and if the columns differ in height, the rest has to be drawn column by column.
+//! A small picture fits in the cache. Pixels far apart therefore cost no more than neighbours, and
+//! a batch would take longer to prepare than to draw. Each column is drawn straight from its
+//! texture, four rows at a time, at 6.5 instructions a pixel. Rejected: four columns at a time (7
+//! instructions a pixel). If these columns differ in height, the rest has to be drawn column by
+//! column.
 
 use std::mem;
 use std::ops::Range;
@@ -13,36 +14,38 @@ use crate::color::Rgb;
 use crate::visibility::{FaceColumn, FaceTexels, Lighting, Scene};
 use crate::world::texture::MipLevel;
 
-/// The most rows of a band, and the most pixels, for which direct columns take less time.
+/// The most rows and the most pixels of a band for which direct columns are faster.
 const MAX_ROWS: usize = 256;
 const MAX_PIXELS: usize = 1 << 17;
-/// The bytes of a level-1 data cache, and of each of its ways, as most processors have them.
+/// The size in bytes of a level-1 data cache, and of each of its ways, on most processors.
 const CACHE: usize = 1 << 15;
 const WAY: usize = 1 << 12;
 
-/// Whether the columns of `band` are better drawn directly.
+/// Whether direct columns are faster than a batch for `band`.
 pub(crate) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
     let (rows, width) = (band.rows().len(), band.width());
     let is_small = rows <= MAX_ROWS && rows * width <= MAX_PIXELS;
     is_small && is_column_cached(rows, width) && scene.projection.is_horizon_near()
 }
 
-/// Whether the next column of `rows` pixels finds this one in the cache, in a picture of this `width`. The rows
-/// of a picture whose width is a multiple of a large power of two compete for a few sets of the cache.
+/// Whether the cache still contains a column of `rows` pixels when the next column is drawn, in a
+/// picture of this `width`. If the width is a multiple of a large power of two, the rows of the
+/// picture compete for a few sets of the cache.
 fn is_column_cached(rows: usize, width: usize) -> bool {
     let bytes_of_row = width * size_of::<Rgb>();
     let bytes_between_sets = WAY.min(1 << bytes_of_row.trailing_zeros());
     rows * bytes_between_sets <= CACHE
 }
 
-/// Whether there is a loop for columns of this number of texels: a power of two, up to 256. Others are
-/// drawn faster in a batch.
+/// Whether there is a loop for columns with this number of texels: a power of two, up to 256. Other
+/// columns are faster in a batch.
 #[inline]
 pub(crate) fn have(texels: usize) -> bool {
     texels.is_power_of_two() && texels <= 256
 }
 
-/// Columns of pixels that show one level of a face in one lighting, the first of them in column `x`.
+/// Neighbouring columns of pixels that show one level of a face in one lighting. The first of them
+/// is column `x`.
 pub(crate) struct DirectColumns<'a, L> {
     pub(crate) level: &'a MipLevel,
     pub(crate) texels: FaceTexels,
@@ -73,7 +76,7 @@ impl<L: Lighting> DirectColumns<'_, L> {
         }
     }
 
-    /// Draws columns of `N` texels, two to the power of `BITS`.
+    /// Draws columns of `N` texels. `N` is 2 to the power of `BITS`.
     #[inline(never)]
     fn draw_texels<const N: usize, const BITS: u32>(&self, texels: &[Rgb], band: &mut Band<'_>) {
         let (of_columns, _) = texels.as_chunks::<N>();
@@ -98,7 +101,7 @@ impl<L: Lighting> DirectColumns<'_, L> {
                 self.lighting.apply_to_all(&mut shaded[shown]);
                 draw_pixels::<N, BITS>(&shaded, position, pixels, width);
             }
-            // Rounding may put the first row and the last one a texel too far.
+            // Rounding may move the first and the last row one texel too far.
             if !stepper.has_ends_of(&rows) {
                 for row in [rows.start, rows.end - 1] {
                     self.draw_rows(texels, (x, column), row..row + 1, band);
@@ -127,9 +130,9 @@ impl<L: Lighting> DirectColumns<'_, L> {
     }
 }
 
-/// Draws `texels`, of which there are `N`, two to the power of `BITS`, on the first of `pixels` and every
-/// `width`th one after it. The uppermost bits of a position are the index of its texel, so that a lookup needs
-/// no bounds check. The loop is in a function of its own, which has all registers.
+/// Draws `texels` on the first of `pixels` and on every `width`th pixel after it. `N` is 2 to the
+/// power of `BITS`. The uppermost bits of a position are the index of its texel, so a lookup needs
+/// no bounds check. The loop is in a separate function, where it can use all registers.
 #[inline(never)]
 fn draw_pixels<const N: usize, const BITS: u32>(
     texels: &[Rgb; N],
@@ -139,11 +142,11 @@ fn draw_pixels<const N: usize, const BITS: u32>(
 ) {
     let at = |position: u64| texels[(position >> (u64::BITS - BITS)) as usize % N];
     let [second, third, fourth, four_rows] = [1, 2, 3, 4].map(|rows| rows * width);
-    // Tested once, none is tested in the loop.
+    // This test removes the bounds checks from the loop.
     if second >= four_rows || third >= four_rows || fourth >= four_rows {
         return;
     }
-    // Multiples do not wait for each other, as sums do.
+    // Multiples do not depend on each other; sums would.
     let steps = [1, 2, 3, 4].map(|rows| step.wrapping_mul(rows));
     let mut rest = pixels;
     while rest.len() >= four_rows {
@@ -176,7 +179,8 @@ mod tests {
 
     const HEIGHT: u32 = 90;
 
-    /// A column of a wall: its distance, its texture coordinate, and the power of two of its texels; or `None`.
+    /// A column of a wall, or `None`: its distance, its texture coordinate, and the binary
+    /// logarithm of its number of texels.
     fn column() -> impl Strategy<Value = Option<(f64, f64, usize)>> {
         let bits = prop_oneof![1 => 0_usize..9, 4 => Just(6)];
         prop::option::weighted(0.95, (0.01..20.0, 0.0..1.0, bits))

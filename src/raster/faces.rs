@@ -1,11 +1,11 @@
 //! Faces: walls, masks and tints, column by column of their textures.
 //!
-//! A column of a wall is one column of its texture, stretched. The texel of each pixel is computed from
-//! its row, not from the texel above it, so that no error accumulates from row to row. If a wall is
-//! so near that only a few of its texels are in view, they are the right ones.
+//! A column of a wall is one column of its texture, stretched. The texel of each pixel is computed
+//! from its row, not from the texel above it, so no error accumulates from row to row. Even if a
+//! wall is so near that only a few of its texels are in view, they are the right ones.
 //!
-//! The mip level changes in one direction along a wall, so that one level at both of its ends is that of all its
-//! columns.
+//! The mip level changes in one direction along a wall. If both ends have the same level, all
+//! columns have it.
 
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ fn draw_shared_column<M: Sampling>(
     faces: &[Face],
     target: &mut Target<'_>,
 ) {
-    /// More walls in a column are left out.
+    /// The most walls that share a column. Further walls are left out.
     const MAX: usize = 4;
     let band = target.rows();
     let mut parts = [const { None }; MAX];
@@ -105,7 +105,7 @@ fn draw_shared_column<M: Sampling>(
     draw_shared((x, rows), &parts, target.band_mut());
 }
 
-/// A face with what its columns share.
+/// A face, with the state that its columns share.
 pub(crate) struct ShownFace<'a> {
     scene: Scene<'a>,
     list: &'a DrawList,
@@ -119,7 +119,7 @@ impl<'a> ShownFace<'a> {
         Self { scene, list, face, columns }
     }
 
-    /// The side that it faces, if it is on the grid.
+    /// The side that the face shows, if the face is on a line of the grid.
     fn side(&self) -> Option<Side> {
         match self.face.facing {
             Facing::Side(side) => Some(side),
@@ -127,7 +127,7 @@ impl<'a> ShownFace<'a> {
         }
     }
 
-    /// The direction of the ray of a column on the map.
+    /// The direction of a column's ray on the map.
     #[inline]
     fn direction(&self, index: usize) -> DVec2 {
         let direction = self.list.directions.of(self.face.columns.start + index as u32);
@@ -140,7 +140,7 @@ impl<'a> ShownFace<'a> {
         self.face.facing.normal(origin + self.direction(index) * self.columns[index].t)
     }
 
-    /// The approach of the ray of a column to the face, in cells per unit of `t`.
+    /// The speed at which a column's ray approaches the face, in cells per unit of `t`.
     #[inline]
     fn slope(&self, index: usize) -> f64 {
         match self.face.facing {
@@ -168,7 +168,7 @@ impl<'a> ShownFace<'a> {
         Surface::of_wall(side)
     }
 
-    /// Counts the pixels and records the surfaces, if they are kept.
+    /// Counts the pixels and records the surfaces, if the target keeps either.
     fn record(&self, paint: Paint, target: &mut Target<'_>) {
         if !target.counts() && !target.keeps_surfaces() {
             return;
@@ -291,7 +291,7 @@ impl<'a> ShownFace<'a> {
         if self.side().is_none() {
             return (first + 1..count).find(|&index| !is_same(index)).unwrap_or(count);
         }
-        // The level changes in one direction: the search halves the rest.
+        // The level changes in one direction, so a binary search finds the end.
         let (mut same, mut other) = (first, count);
         if is_same(count - 1) {
             return count;
@@ -390,7 +390,8 @@ impl ShownFace<'_> {
         }
     }
 
-    /// Blends `color` over the pixels of the columns of `range`: row by row, where all of them have the row.
+    /// Blends `color` over the pixels of the columns of `range`. Rows that all of the columns share
+    /// are blended row by row, the rest column by column.
     fn paint_over(&self, range: Range<usize>, color: Rgb, opacity: u8, target: &mut Target<'_>) {
         let band_rows = target.rows();
         let x = self.face.columns.start as usize + range.start;

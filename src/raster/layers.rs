@@ -1,4 +1,4 @@
-//! Layers: masks, tints and billboards, in front of everything that hides what is behind it.
+//! Layers: masks, tints and billboards, which are drawn over the opaque surfaces.
 
 use super::faces;
 use super::target::Target;
@@ -6,7 +6,7 @@ use crate::visibility::{
     Billboard, BillboardPart, DrawList, FullyLit, Layer, Lighting, Pass, Scene, Surface,
 };
 
-/// Paints the layers of `list` in their order.
+/// Draws the layers of `list` in order.
 pub(crate) fn draw(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_>) {
     for layer in &list.layers {
         match layer {
@@ -35,7 +35,7 @@ fn draw_billboard(
     }
 }
 
-/// `alpha` multiplied by `opacity`, in 255ths, rounded to the nearest whole number.
+/// The product of `alpha` and `opacity`, each in 255ths, rounded to the nearest 255th.
 fn share_of(alpha: u8, opacity: u8) -> u8 {
     let most = u32::from(u8::MAX);
     ((u32::from(alpha) * u32::from(opacity) + most / 2) / most) as u8

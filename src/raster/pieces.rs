@@ -1,8 +1,9 @@
-//! Pieces: the squares of a checker and the stripes of a floor or a ceiling, which have two paints in turn.
+//! Pieces: the squares of a checker and the stripes of a floor or a ceiling, which alternate
+//! between two paints.
 //!
-//! Where they are wide, the end of each piece is computed, and its pixels are drawn as those of a plane with one
-//! paint. Looking up the piece of each pixel takes 20 instructions; it is left for narrow pieces, which end
-//! before drawing them together would pay.
+//! If pieces are wide, [`draw`] computes the end of each piece, and draws its pixels like a plane
+//! with one paint. If they are narrow, it looks up the piece of each pixel. The lookup takes 20
+//! instructions, but a narrow piece ends before it would pay off to draw its pixels together.
 
 use std::mem;
 
@@ -12,13 +13,14 @@ use crate::color::Rgb;
 use crate::visibility::TexelPlaces;
 use crate::world::texture::MipLevelByShifts;
 
-/// The least mean width of pieces, in pixels, that are drawn one by one.
+/// The least mean width, in pixels, of pieces that are drawn one by one.
 const LEAST_WIDTH: u64 = 8;
-/// The width of a piece: the pattern repeats after two, so that the uppermost bit of a position is the index of
-/// the piece, and the others are the position in it.
+/// The width of a piece. The pattern repeats after two pieces, so the uppermost bit of a position
+/// is the index of the piece. The other bits are the position in the piece.
 const PIECE: u64 = 1 << 63;
 
-/// Draws `span` in two samples, unlit: as a checker, or else in stripes along the x axis. Returns its pixels.
+/// Draws `span` in two samples without lighting: as a checker if `IS_CHECKER`, otherwise in stripes
+/// along the x axis. Returns its pixels.
 pub(crate) fn draw<'p, const IS_CHECKER: bool>(
     span: &PlaneSpan<'_>,
     samples: &[Sample<'_>; 2],
@@ -77,7 +79,8 @@ fn draw_pieces<const IS_CHECKER: bool>(
     }
 }
 
-/// The number of pixels from the one at `place` to the first one in the next piece, along one axis.
+/// The number of pixels from the pixel at `place` to the first pixel of the next piece, along one
+/// axis.
 #[inline]
 fn pixels_to_edge(place: u64, step: u64) -> u64 {
     // A negative step is mirrored to a positive one.

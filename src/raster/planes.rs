@@ -1,14 +1,16 @@
 //! Planes: floors, ceilings and the sky, along rows.
 //!
-//! A span ends where the next column shows less of the plane, and begins where it shows more, with one
-//! step for each span and column, as Doom makes the spans of its visplanes (`R_MakeSpans` in
-//! `r_plane.c`, id Software 1993). Rejected: searching each row for its spans, which takes
-//! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
-//! time than reading the rows of the wall in every column.
+//! A span begins or ends at the columns where the rows of the plane change. This takes one step for
+//! each span and column, as in Doom's algorithm for the spans of its visplanes (`R_MakeSpans` in
+//! `r_plane.c`, id Software 1993). Rejected: searching each row for its spans, which takes half as
+//! long as drawing them.
 //!
-//! Planes of one height and one look are joined before their spans are made. A cell with a shape is a sector by
-//! itself, and would cut the floor around it into short spans. A floor and a ceiling that are mirror images of each
-//! other share their spans.
+//! A plane with one colour everywhere is filled in whole rows, behind the walls. At 160×90 pixels,
+//! this takes less time than reading the rows of the wall in every column.
+//!
+//! Planes with the same height and the same look are joined before their spans are made. Otherwise
+//! a cell with a shape, which is a separate sector, would cut the floor around it into short spans.
+//! A floor and a ceiling that are mirror images of each other share their spans.
 
 use std::mem;
 use std::ops::Range;
@@ -51,12 +53,13 @@ struct SpanMemory {
 #[derive(Clone, Debug, Default)]
 struct RowMappings {
     height: f64,
-    /// The number of heights so far, which tells a row's mapping from that to another height.
+    /// The number of the current height. A row's mapping with another number belongs to another
+    /// height.
     current: u32,
     rows: Vec<(u32, Option<SpanMapping>)>,
 }
 
-/// The rows of planes of one look, joined in each column.
+/// The rows of planes with the same look, joined in each column.
 #[derive(Clone, Debug, Default)]
 struct JoinedRows {
     columns: Range<usize>,
@@ -78,7 +81,7 @@ pub(crate) fn draw<M: Sampling>(
     joined.iter_mut().for_each(|rows| rows.begin(scene.projection.columns()));
     sort::<M>(scene, list, order);
     let is_whole = target.rows() == (0..scene.projection.rows());
-    // The planes drawn next, unless they are drawn with their mirror image.
+    // The planes to draw next, together with their mirror image if that follows.
     let mut waiting: Option<PlaneDrawing<'_>> = None;
     let mut rest = order.as_slice();
     while let Some((&(.., first), others)) = rest.split_first() {
@@ -113,12 +116,12 @@ pub(crate) fn draw<M: Sampling>(
     }
 }
 
-/// The order in which a plane is drawn: by the distance of its height from the eye, its image and its side. Last is its
+/// The sort key of a plane: the distance of its height from the eye, its image, its side and its
 /// index.
 type PlaneKey = (u64, usize, u8, usize);
 
-/// Finds the `order` of the planes of `list`: those that may be joined are beside each other, and after them are those
-/// that may be their mirror images.
+/// Fills `order` with the planes of `list`. If planes may be joined, they are sorted: planes that
+/// may be joined are next to each other, and the planes that may be their mirror images follow.
 fn sort<M: Sampling>(scene: Scene<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
     order.clear();
     order.reserve(list.planes.capacity());
@@ -132,7 +135,8 @@ fn sort<M: Sampling>(scene: Scene<'_>, list: &DrawList, order: &mut Vec<PlaneKey
     }
 }
 
-/// Fills the rows above and below the horizon whose colour is the same in all columns.
+/// Draws the backdrops: the rows above or below the horizon that show one colour or the sky in all
+/// columns.
 fn draw_backdrops(scene: Scene<'_>, list: &DrawList, sky: &SkyView<'_>, target: &mut Target<'_>) {
     let projection = scene.projection;
     let (ground, width) = (projection.first_row_of_ground(), projection.columns());
@@ -163,7 +167,7 @@ fn draw_backdrops(scene: Scene<'_>, list: &DrawList, sky: &SkyView<'_>, target: 
 }
 
 impl SpanMemory {
-    /// Prepares for the planes of a band of `rows` rows.
+    /// Prepares for the planes of a band of `rows` rows and `columns` columns.
     fn begin(&mut self, rows: usize, columns: usize) {
         self.starts.resize(rows, 0);
         self.mappings.begin(rows);
@@ -179,7 +183,7 @@ impl JoinedRows {
         self.rows.resize(columns, Rows::NONE);
     }
 
-    /// Forgets all rows.
+    /// Removes all rows.
     fn clear(&mut self) {
         let columns = mem::replace(&mut self.columns, 0..0);
         self.rows[columns].fill(Rows::NONE);
@@ -190,7 +194,8 @@ impl JoinedRows {
         (self.columns.start, &self.rows[self.columns.clone()])
     }
 
-    /// Adds the rows of a plane of `list`, unless that leaves a gap in a column. Returns whether it does.
+    /// Adds the rows of a plane of `list`. Adds nothing and returns `false` if they do not adjoin
+    /// the present rows in some column.
     fn join(&mut self, list: &DrawList, index: usize) -> bool {
         let (first, of_plane) = list.rows_of_plane(&list.planes[index]);
         let columns = first..first + of_plane.len();
@@ -234,7 +239,7 @@ impl RowMappings {
         }
     }
 
-    /// The mapping of `row`, one of `rows`.
+    /// The mapping of `row`, which is one of `rows`.
     #[inline]
     fn of(&mut self, scene: Scene<'_>, row: u32, rows: &Range<u32>) -> &SpanMapping {
         let (number, mapping) = &mut self.rows[(row - rows.start) as usize];
@@ -246,8 +251,9 @@ impl RowMappings {
     }
 }
 
-/// Calls `emit` for every stretch of columns, from `first` on, that shows a row of a plane: each column shows these
-/// of `rows`.
+/// Calls `emit` for each span: a row, and the neighbouring columns in which a plane shows it.
+/// `columns` are the rows that the plane shows in each column from `first` on. `rows` are the rows
+/// of the band.
 #[inline]
 fn for_each_span(
     first: usize,
@@ -256,7 +262,7 @@ fn for_each_span(
     starts: &mut [usize],
     mut emit: impl FnMut(u32, Range<usize>),
 ) {
-    // A column without the plane has an empty range below all others, so that all of their rows end.
+    // A column without the plane has an empty range below all rows, so all spans end.
     let none = rows.end..rows.end;
     let mut before = none.clone();
     let mut x = first;
@@ -264,7 +270,7 @@ fn for_each_span(
         let start_of = |starts: &mut [usize], row: u32| {
             mem::replace(&mut starts[(row - rows.start) as usize], x)
         };
-        // The rows that end are above those of the next column, or below.
+        // The rows that end are above or below the rows of the next column.
         for row in before.start..before.end.min(now.start) {
             emit(row, start_of(starts, row)..x);
         }
@@ -308,13 +314,13 @@ impl DrawnPlane {
     }
 }
 
-/// A plane with what its spans share.
+/// A plane, with the state that its spans share.
 #[derive(Clone, Copy)]
 struct PlaneDrawing<'a> {
     scene: Scene<'a>,
     list: &'a DrawList,
     plane: &'a Plane,
-    /// Whether its rows were joined to those of others.
+    /// Whether its rows are joined with the rows of other planes.
     is_joined: bool,
     side: PlaneSide,
     /// The look, if it is the same in all cells.
@@ -337,7 +343,7 @@ impl<'a> PlaneDrawing<'a> {
         Self { scene, list, plane, is_joined: false, side, even }
     }
 
-    /// Whether `plane` looks the same in each cell.
+    /// Whether `plane` has the same height, side and image, and looks the same in each cell.
     fn is_alike(&self, plane: &'a Plane) -> bool {
         let Plane { height, kind, image, .. } = *plane;
         (height, kind.side(), image) == (self.plane.height, self.side, self.plane.image)
@@ -357,7 +363,8 @@ impl<'a> PlaneDrawing<'a> {
         }
     }
 
-    /// Whether each row of the plane is the mirror image of a row of `other`, and both have texels.
+    /// Whether each row of the plane is the mirror image of a row of `other`, and neither is of one
+    /// colour.
     fn is_mirror_image(&self, other: &Self, joined: &[JoinedRows; 2]) -> bool {
         let projection = self.scene.projection;
         let height = projection.rows();
@@ -438,8 +445,9 @@ impl<'a> PlaneDrawing<'a> {
         });
     }
 
-    /// Draws a span for each stretch of one covering in `columns` of `row`. The cell of a pixel is that `before` its
-    /// point, or that `behind` it if only that is in the sector.
+    /// Draws `columns` of `row`, with a span for each run of columns that show one covering. The
+    /// cell of a pixel is the cell just `before` its point, or the cell just `behind` the point if
+    /// the first one is not in the sector.
     fn draw_cells<M: Sampling>(
         &self,
         sky: &SkyView<'_>,
@@ -482,7 +490,7 @@ impl<'a> PlaneDrawing<'a> {
         self.draw_span::<M>(sky, row, covering, mapping, lights, target);
     }
 
-    /// Draws neighbouring columns of `row`, each stretch of them in its light.
+    /// Draws neighbouring columns of `row`, each range of `lights` in its light.
     fn draw_span<M: Sampling>(
         &self,
         sky: &SkyView<'_>,
@@ -509,12 +517,12 @@ impl<'a> PlaneDrawing<'a> {
         }
     }
 
-    /// The image in mirrors; `None` for the direct one.
+    /// The image in mirrors; `None` if the plane is seen directly.
     fn mirrored(&self) -> Option<MirrorTransform> {
         Some(self.plane.image).filter(|image| *image != MirrorTransform::default())
     }
 
-    /// Whether cells of this tile may have the plane.
+    /// Whether the plane can extend over cells with this tile.
     fn is_of(&self, tile: TileId) -> bool {
         match self.plane.kind {
             PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
@@ -524,7 +532,7 @@ impl<'a> PlaneDrawing<'a> {
         }
     }
 
-    /// The look of the plane in a cell of this tile, without lamplight.
+    /// The look of the plane in a cell with this tile, without lamplight.
     fn look_of(&self, tile: TileId) -> PlaneSurface {
         let world = self.scene.world;
         match self.plane.kind {

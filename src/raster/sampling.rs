@@ -1,7 +1,7 @@
 //! Sampling: the level of a texture from which a surface is drawn.
 //!
-//! A frame has one [`Filter`](crate::visibility::Filter), and the loops are compiled for each kind of
-//! level, so that one has no code of the other.
+//! A frame has one [`Filter`](crate::visibility::Filter). The loops are compiled once for each kind
+//! of level, so no loop contains code for the other kind.
 
 use std::fmt;
 
@@ -9,13 +9,13 @@ use crate::visibility::{Scene, SpanMapping};
 use crate::world::Texture;
 use crate::world::texture::{AreaLod, MipLevel, Repeat};
 
-/// A kind of levels.
+/// A kind of texture level.
 pub(crate) trait Sampling: Copy {
-    /// What distinguishes the levels of a texture.
+    /// The key that selects a level of a texture.
     type Lod: Copy + PartialEq + fmt::Debug;
 
-    /// Whether planes of one height never overlap, so that they may be joined and drawn in any order. Planes of the
-    /// filter by area go on under the ends of faces.
+    /// `true` if planes at the same height never overlap, so they may be joined and drawn in any
+    /// order. With the area filter, planes continue under the ends of faces.
     const JOINS_PLANES: bool;
 
     /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
@@ -37,11 +37,11 @@ pub(crate) trait Sampling: Copy {
     fn level_on_plane(texture: &Texture, lod: Self::Lod) -> &MipLevel;
 }
 
-/// Mip levels, by the area of a pixel.
+/// Mip levels, selected by the area of a pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct MipLevels;
 
-/// Means over boxes, by the width and the height of a pixel.
+/// Means over boxes, selected by the width and the height of a pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Means;
 

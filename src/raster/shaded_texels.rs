@@ -1,13 +1,13 @@
 //! Shaded texels: the texels of columns after lighting, which is applied once for many pixels.
 //!
 //! All texels of a batch are in one array of constant size. An address is an integer whose
-//! uppermost bits are the index, so that a lookup needs no bounds check. Neighbouring columns with
-//! the same texels and the same lighting, such as those of a near wall, share a range.
+//! uppermost bits are the index, so a lookup needs no bounds check. Neighbouring columns with the
+//! same texels and the same lighting, such as those of a near wall, share a range.
 
 use crate::color::Rgb;
 use crate::visibility::{Lighting, TextureStepper};
 
-/// The step from one texel to the next, in [`TexelAddress`]s.
+/// The step from one texel to the next, as a difference of two [`TexelAddress`]es.
 const TEXEL: u64 = 1 << (u64::BITS - BITS);
 
 /// The number of texels in the array: enough for a batch, with most textures. Unused texels occupy
@@ -22,8 +22,8 @@ pub(crate) struct ShadedTexels {
     used: usize,
 }
 
-/// A range of the texels, by the address of the first texel of its texture, which may be outside
-/// the range.
+/// A range of the texels, stored as the address of the first texel of its texture. That texel may
+/// be outside the range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadedRange(TexelAddress);
 
@@ -42,15 +42,15 @@ impl ShadedTexels {
     /// The most texels of a range.
     pub(crate) const MAX: usize = TEXELS - 2;
 
-    /// Whether there is room for a range of `texels` more.
+    /// Whether there is room for another range of `texels` texels.
     pub(crate) fn have_room_for(&self, texels: usize) -> bool {
         self.used + texels <= Self::MAX
     }
 
-    /// A range of these texels, shaded, if there is room for them.
+    /// Adds a range of these texels after lighting. There must be room for them.
     #[inline]
     pub(crate) fn make<L: Lighting>(&mut self, texels: &[Rgb], lighting: L) -> ShadedRange {
-        // Rounding may put the first and the last row one texel too far.
+        // Rounding may move the first and the last row one texel too far.
         self.add(&texels[..texels.len().min(1)], lighting);
         let range = ShadedRange(self.next());
         self.add(texels, lighting);
@@ -58,8 +58,8 @@ impl ShadedTexels {
         range
     }
 
-    /// A range of all texels of `pieces`, shaded, if there is room for them. The first one is
-    /// `first` texels down its texture.
+    /// Adds a range of all texels of `pieces` after lighting. There must be room for them. The
+    /// first texel is `first` texels down its texture.
     #[inline]
     pub(crate) fn make_of_pieces<'t, L: Lighting>(
         &mut self,
@@ -102,7 +102,7 @@ impl ShadedTexels {
 }
 
 impl ShadedRange {
-    /// The address of its first texel.
+    /// The address of the first texel of its texture.
     pub(crate) fn start(self) -> TexelAddress {
         self.0
     }

@@ -1,4 +1,4 @@
-//! The sky: in place of a ceiling, and beyond the edge of the map.
+//! The sky, which is drawn in place of a ceiling and beyond the edge of the map.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,8 +14,9 @@ use crate::world::{Sky, SkyGradient, Texture};
 /// The sky as seen by a camera.
 pub(crate) enum SkyView<'a> {
     Gradient {
-        /// The colour of each row above the horizon, and that at the horizon.
+        /// The colour of each row above the horizon.
         rows: &'a [Rgb],
+        /// The colour at the horizon.
         horizon: Rgb,
     },
     Panorama {
@@ -29,9 +30,10 @@ pub(crate) enum SkyView<'a> {
 /// The mapping of a column of pixels to a panorama.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SkyColumn {
-    /// The distance from its left edge, in 2⁻⁶⁴ths of its width.
+    /// The distance from the panorama's left edge, in units of 2⁻⁶⁴ of its width.
     across: u64,
-    /// The height of a pixel on it, as a fraction of its height, per unit of the pixel's slope.
+    /// The height of a pixel on the panorama, as a fraction of the panorama's height, for each unit
+    /// of the pixel's slope.
     up_for_slope: f64,
 }
 
@@ -42,12 +44,12 @@ pub(crate) struct SkyMemory {
     columns: Vec<SkyColumn>,
 }
 
-/// The number 1 in 2⁻⁶⁴ths, and in 2⁻³²ths.
+/// The number 1, in units of 2⁻⁶⁴ and in units of 2⁻³².
 const WHOLE: f64 = 18_446_744_073_709_551_616.0;
 const WHOLE_IN_32_BITS: f64 = 4_294_967_296.0;
 
 impl<'a> SkyView<'a> {
-    /// The sky of `scene`, if it `is_shown`.
+    /// The sky of `scene`. The colours of a gradient are computed only if the sky `is_shown`.
     pub(crate) fn new(scene: Scene<'a>, is_shown: bool, memory: &'a mut SkyMemory) -> Self {
         let Scene { world, projection, plan, .. } = scene;
         let SkyMemory { rows, columns } = memory;
@@ -60,7 +62,7 @@ impl<'a> SkyView<'a> {
             }
             Sky::Panorama(id) => {
                 let texture = world.texture(id);
-                // At the horizon a texel is as high as wide.
+                // At the horizon, a texel is as high as it is wide.
                 let texels_per_radian = f64::from(texture.width()) / TAU;
                 let area = projection.pixel_angles() * texels_per_radian;
                 let lod = plan.filter.lod(area.x * area.y);
@@ -74,7 +76,7 @@ impl<'a> SkyView<'a> {
         }
     }
 
-    /// Draws the sky in `columns` of `row`, seen in the mirrors of `image` if there is one.
+    /// Draws the sky in `columns` of `row`, as seen in the mirrors of `image` if there is one.
     pub(crate) fn draw(
         &self,
         row: u32,
@@ -121,7 +123,7 @@ impl SkyColumn {
     }
 
     /// The distance from the left edge after the reflections of `transform`. Angles are measured
-    /// from the east, so that a mirror facing north or south negates them.
+    /// from the east, so a mirror that faces north or south negates them.
     fn reflected_across(&self, transform: MirrorTransform) -> u64 {
         const HALF: u64 = 1 << 63;
         let direction = transform.direction_to_map(DVec2::ONE);
@@ -130,14 +132,14 @@ impl SkyColumn {
     }
 }
 
-/// The colour of a gradient at this slope: it changes quickly at the horizon and slowly above.
+/// The colour of a gradient at this slope. It changes quickly at the horizon and slowly above.
 fn gradient(zenith: Rgb, horizon: Rgb, slope: f64) -> Rgb {
     let up = (slope / SLOPE_OF_ZENITH).clamp(0.0, 1.0);
     let share = (up * (2.0 - up) * 256.0) as u32;
     horizon.blended(256 - share, zenith, share)
 }
 
-/// The slope from which on a gradient has the colour of the zenith.
+/// The least slope at which a gradient has the colour of the zenith.
 const SLOPE_OF_ZENITH: f64 = 0.5;
 
 #[cfg(test)]

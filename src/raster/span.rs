@@ -1,4 +1,4 @@
-//! Spans of floor and ceiling: inner loops for each kind of pattern.
+//! Spans of floors and ceilings: the inner loops for each kind of pattern.
 
 use std::ops::Range;
 
@@ -100,7 +100,7 @@ fn draw_texels<const N: usize>(
     let Some(texels) = level.texels().first_chunk::<N>() else { return };
     let blocks = pixels.chunks_mut(AT_ONCE).map(|pixels| (pixels.len(), pixels));
     for_each_block(level, places, blocks, |indices, pixels| {
-        // A compiler does not unroll the loop by itself.
+        // The compiler does not unroll this loop by itself.
         let (pixels, rest) = pixels.as_chunks_mut::<UNROLLED>();
         let (indices, rest_of_indices) = indices.split_at(pixels.as_flattened().len());
         for (pixels, indices) in pixels.iter_mut().zip(indices.as_chunks::<UNROLLED>().0) {
@@ -114,8 +114,8 @@ fn draw_texels<const N: usize>(
     });
 }
 
-/// Passes each of `blocks`, of this number of pixels, to `draw` with the indices of its texels. They
-/// are computed in a loop that reads no texel, so that a compiler vectorizes it.
+/// Passes each of `blocks` to `draw` with the indices of its texels. A block comes with its number
+/// of pixels. The loop that computes the indices reads no texel, so the compiler vectorizes it.
 #[inline]
 pub(crate) fn for_each_block<B>(
     level: MipLevelByShifts<'_>,
@@ -156,9 +156,8 @@ pub(crate) enum Sample<'a> {
     Level(&'a MipLevel),
 }
 
-/// A pixel that covers half a piece of a pattern shows the mean of both paints. The number of
-/// pieces in a pixel, times this constant, is then the number of texels from which on a texture is
-/// halved.
+/// The number of texels that a piece of a pattern counts as. A pixel that covers half a piece then
+/// covers two texels, at which the first mip level begins, and shows the mean of both paints.
 const PIECES_IN_A_PIXEL: f64 = 4.0;
 
 impl<'a> Sampler<'a> {
@@ -186,13 +185,13 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The level of detail of `texture`, which is a repeat.
+    /// The level of detail of `texture`, which fills one repeat.
     #[inline]
     pub(crate) fn lod_of<M: Sampling>(self, texture: &Texture) -> M::Lod {
         M::lod_on_plane(self.scene, texture, self.mapping, self.per_cell)
     }
 
-    /// The level of detail of a pattern with `texels` texels in a repeat.
+    /// The level of detail of a pattern whose pieces count as `texels` texels each.
     #[inline]
     fn lod(self, texels: f64) -> usize {
         let area = self.mapping.pixel_area * self.per_cell * self.per_cell;

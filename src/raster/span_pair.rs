@@ -1,8 +1,9 @@
 //! Span pairs: a span of the ceiling and its mirror image, a span of the floor.
 //!
-//! If two textures of one size are in full light, the indices of their texels are computed once for both.
-//! What all pairs of a frame share, such as these textures, is found once for the frame: in small pictures,
-//! a span has a dozen pixels, and finding it for each span took as long as drawing.
+//! If both planes have textures of the same size in full light, the indices of the texels are
+//! computed once for both. The state that all pairs of two planes share, such as these textures, is
+//! found once for the planes. Rejected: finding it for each pair. In small pictures, a span has a
+//! dozen pixels, and this took as long as drawing them.
 
 use std::ops::Range;
 
@@ -16,18 +17,18 @@ use crate::visibility::{Faded, Lighting, Scene, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
-/// The drawing of a ceiling and of a floor that is its mirror image.
+/// Draws a ceiling together with a floor that is its mirror image.
 pub(crate) struct SpanPairs<'a, M: Sampling> {
     scene: Scene<'a>,
     /// The ceiling and the floor.
     planes: [DrawnPlane; 2],
-    /// The textures of the planes, if they have textures of one size.
+    /// The textures of the planes, if both have textures of the same size and the same light.
     textures: Option<TexturePair<'a, M>>,
 }
 
 /// A span of the ceiling and its mirror image, a span of the floor.
 struct SpanPair<'m> {
-    /// The row of each; the first one is further up.
+    /// The row of each span. The first row is further up.
     rows: [u32; 2],
     columns: Range<usize>,
     planes: &'m [DrawnPlane; 2],
@@ -35,7 +36,7 @@ struct SpanPair<'m> {
 }
 
 impl<'m> SpanPair<'m> {
-    /// Both spans, each by itself, and their light.
+    /// The two spans as separate spans, each with its light.
     fn spans(&self) -> [Option<(PlaneSpan<'m>, Light)>; 2] {
         let [ceiling, floor] = self.planes;
         let [above, below] = self.rows;
@@ -52,17 +53,17 @@ impl<'m> SpanPair<'m> {
     }
 }
 
-/// Two textures of one size on planes in one light.
+/// Two textures of the same size, on planes with the same light.
 struct TexturePair<'a, M: Sampling> {
     textures: [&'a Texture; 2],
     /// The number of repeats of the textures in a cell.
     per_cell: f64,
     light: Light,
-    /// The levels of the pair before.
+    /// The levels of the previous pair.
     levels: Option<LevelPair<'a, M>>,
 }
 
-/// Two mip levels of one size.
+/// Two mip levels of the same size.
 #[derive(Clone, Copy)]
 struct LevelPair<'a, M: Sampling> {
     lod: M::Lod,
@@ -71,7 +72,7 @@ struct LevelPair<'a, M: Sampling> {
 }
 
 impl<'a, M: Sampling> SpanPairs<'a, M> {
-    /// The drawing of these `planes`: a ceiling and a floor.
+    /// Prepares to draw these `planes`: a ceiling and a floor.
     pub(crate) fn new(scene: Scene<'a>, planes: [DrawnPlane; 2]) -> Self {
         Self { scene, planes, textures: TexturePair::new(scene, &planes) }
     }
@@ -115,7 +116,7 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
         are_alike.then(|| Self { textures, per_cell: 1.0 / scale.cells(), light, levels: None })
     }
 
-    /// Draws `pair`; `None` if its spans are better drawn each by itself.
+    /// Draws `pair`. Draws nothing and returns `None` if its spans have to be drawn separately.
     fn draw(
         &mut self,
         scene: Scene<'_>,
@@ -150,14 +151,15 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
 }
 
 impl<'a, M: Sampling> LevelPair<'a, M> {
-    /// The levels of two `textures` of one size; `None` if their texels are not found by shifts.
+    /// The levels of two `textures` of the same size; `None` if a lookup of their texels needs
+    /// multiplications.
     fn new(textures: [&'a Texture; 2], lod: M::Lod) -> Option<Self> {
         let [upper, lower] = textures.map(|texture| M::level_on_plane(texture, lod).by_shifts());
         Some(Self { lod, upper: upper?, lower: lower?.texels() })
     }
 }
 
-/// Draws `pair` in `levels` with `N` texels.
+/// Draws `pair` from `levels`, which have `N` texels each.
 fn draw_texels<M: Sampling, const N: usize>(
     levels: LevelPair<'_, M>,
     places: TexelPlaces,
@@ -183,7 +185,8 @@ fn draw_texels<M: Sampling, const N: usize>(
     Some(())
 }
 
-/// Colours pixels above and below by the indices of their texels, of which there are at least as many.
+/// Colours the pixels above and below by the indices of their texels. There are at least as many
+/// indices as pixels in a row.
 #[inline]
 fn look_up<const N: usize>(
     (upper, lower): (&[Rgb; N], &[Rgb; N]),

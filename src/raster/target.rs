@@ -1,6 +1,7 @@
-//! The target: the pixels that items are drawn to, and the surfaces of the layers that cover them.
+//! The target: the pixels that items are drawn to, and the surface that each pixel shows.
 //!
-//! Only glyph sets that distinguish surfaces need these; for all others nothing is stored.
+//! Only glyph sets that distinguish surfaces need the surfaces. For other glyph sets, nothing is
+//! stored.
 
 use std::num::NonZeroU32;
 use std::ops::Range;
@@ -25,22 +26,22 @@ impl<'a> Target<'a> {
         Self { band, surfaces, stats }
     }
 
-    /// The cost of the drawing so far.
+    /// The cost of the drawing.
     pub(crate) fn into_stats(self) -> Stats {
         self.stats
     }
 
-    /// Whether it counts.
+    /// Whether the target counts pixels and texels.
     pub(crate) fn counts(&self) -> bool {
         self.stats.are_kept()
     }
 
-    /// Whether it keeps the surfaces of pixels.
+    /// Whether the target records the surface of each pixel.
     pub(crate) fn keeps_surfaces(&self) -> bool {
         !self.surfaces.surfaces.is_empty()
     }
 
-    /// The indices of its rows in the frame.
+    /// The indices of the band's rows in the frame.
     pub(crate) fn rows(&self) -> Range<u32> {
         self.band.rows()
     }
@@ -75,8 +76,8 @@ impl<'a> Target<'a> {
         &mut self.band.row_mut(row)[columns]
     }
 
-    /// The pixels of `columns` in two rows, the first one further up, to be written for two passes, from a texel
-    /// each.
+    /// The pixels of `columns` in two rows, to be written for two passes. The first row is further
+    /// up. Counts a texel for each pixel.
     #[expect(clippy::inline_always, reason = "a call would cost a fiftieth of a small picture")]
     #[inline(always)]
     pub(crate) fn two_spans_mut(
@@ -141,7 +142,7 @@ impl<'a> Target<'a> {
         self.stats.change(|stats| stats.of_mut(pass).texels += count as u64);
     }
 
-    /// Records `surface` for the pixels of column `x` from `row` on, if their item in `shown` is
+    /// Records `surface` for the pixels of column `x` from `row` downwards whose item in `shown` is
     /// true.
     pub(crate) fn mark(
         &mut self,
@@ -154,17 +155,17 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The surfaces of single pixels.
+/// The surface that each pixel of a frame shows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceBuffer {
     are_kept: bool,
     width: usize,
-    /// The surfaces in rows, as the pixels of a frame; empty if none are kept.
+    /// The surfaces, in the order of a frame's pixels. Empty if surfaces are not recorded.
     surfaces: Vec<Option<Surface>>,
 }
 
 impl SurfaceBuffer {
-    /// Sets whether surfaces are kept from now on.
+    /// Sets whether surfaces are recorded from now on.
     pub(crate) fn keep(&mut self, are_kept: bool) {
         self.are_kept = are_kept;
         self.surfaces.clear();
@@ -179,7 +180,8 @@ impl SurfaceBuffer {
         }
     }
 
-    /// The surfaces in bands of `rows` rows each, without end: bands below the frame are empty.
+    /// The surfaces in bands of `rows` rows each. The iterator never ends: bands below the frame
+    /// are empty.
     pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = SurfaceRows<'_>> {
         let (width, rows) = (self.width, rows.get());
         let mut rest = &mut self.surfaces[..];
@@ -203,7 +205,7 @@ pub(crate) struct SurfaceRows<'a> {
     width: usize,
     /// The first row.
     first: u32,
-    /// The surfaces in rows; empty if none are kept.
+    /// The surfaces, row by row. Empty if surfaces are not recorded.
     surfaces: &'a mut [Option<Surface>],
 }
 
@@ -221,8 +223,8 @@ impl SurfaceRows<'_> {
         self.surfaces[start..][columns].fill(Some(surface));
     }
 
-    /// Records `surface` for the pixels of column `x` from `row` on, which is in the band, if their
-    /// item in `shown` is true.
+    /// Records `surface` for the pixels of column `x` from `row` downwards whose item in `shown` is
+    /// true. The row is in the band.
     pub(crate) fn mark(
         &mut self,
         x: usize,

@@ -1,12 +1,12 @@
 //! Runs: neighbouring pixels of a row that show the same texel.
 //!
 //! In a large picture, a texel of a near surface is dozens of pixels wide. The ends of the texels
-//! are then computed instead of the texel of each pixel: in whole steps and a remainder, as a
-//! straight line is drawn on a grid, so that all pixels are identical.
+//! are then computed instead of the texel of each pixel. They are computed in whole steps and a
+//! remainder, as in an algorithm that draws a straight line on a grid, so all pixels are identical.
 //!
 //! Rejected: testing whether the first and the last of eight pixels show the same texel. If texels
-//! are sixteen pixels wide, nearly half of the groups of eight contain an edge. No processor
-//! predicts which, and their pixels have to be drawn one by one.
+//! are sixteen pixels wide, nearly half of the groups of eight contain an edge. The processor
+//! cannot predict which groups do, and their pixels have to be drawn one by one.
 
 use crate::color::Rgb;
 use crate::visibility::TexelPlaces;
@@ -19,13 +19,12 @@ pub(crate) struct TexelRuns {
     south: Edges,
 }
 
-/// The least mean length of runs, in pixels: below it, drawing each pixel by itself takes less
-/// time.
+/// The least mean length of runs, in pixels. Below it, drawing each pixel separately is faster.
 const SHORTEST: u64 = 6;
-/// The least number of pixels: for fewer, a division takes longer than it saves.
+/// The least number of pixels. For fewer pixels, the divisions take longer than they save.
 const FEWEST_PIXELS: usize = 32;
-/// The number of pixels that are set at a time, beyond the end of a run as well: the next run
-/// overwrites those.
+/// The number of pixels that are set at a time. Some may be beyond the end of a run; the next run
+/// overwrites them.
 const AT_ONCE: usize = 16;
 
 impl TexelRuns {
@@ -70,7 +69,7 @@ impl TexelRuns {
     }
 }
 
-/// Sets the first `count` of `pixels`, and some after them.
+/// Sets the first `count` of `pixels`, and possibly some after them.
 #[inline]
 fn fill(pixels: &mut [Rgb], count: usize, color: Rgb) {
     let (blocks, rest) = pixels.as_chunks_mut::<AT_ONCE>();
@@ -91,7 +90,7 @@ fn edges_a_pixel(step: u64, bits: u32) -> u64 {
     step.cast_signed().unsigned_abs() >> (u64::BITS - EDGE_BITS).saturating_sub(bits)
 }
 
-/// With them, the edges of 2³¹ texels do not overflow.
+/// The number of fraction bits. With these, the edges of 2³¹ texels do not overflow.
 const EDGE_BITS: u32 = 28;
 
 /// The edges between texels, along one axis.
@@ -115,8 +114,8 @@ struct Edges {
 
 impl Edges {
     /// The edges from `place` on, with this `step` from each pixel to the next. A position
-    /// contributes the bits in `mask` to the index of a texel; at first they are `index`. `None` if
-    /// there is only one texel.
+    /// contributes the bits in `mask` to the index of a texel. At first, these bits are `index`.
+    /// `None` if there is only one texel.
     fn new(place: u64, step: u64, index: u32, mask: u32) -> Option<Self> {
         let texel = 1_u64.checked_shl(u64::BITS - mask.count_ones())?;
         let to_next = mask & mask.wrapping_neg();
@@ -145,7 +144,7 @@ impl Edges {
     /// Advances to the next edge if the current one is before the pixel `end`.
     #[inline]
     fn pass(&mut self, end: u64) {
-        // The branch would be unpredictable, so that both results are computed.
+        // A branch would be unpredictable, so both results are computed.
         let passes = u64::from(self.next == end).wrapping_neg();
         let is_one_more = u64::from(self.rest > self.behind);
         let moved = self.steps + is_one_more;
@@ -193,7 +192,7 @@ mod tests {
             let places = mapping.places(first as usize, 1.0);
             let mut pixels = vec![Rgb::WHITE; width as usize];
             let Some(runs) = TexelRuns::of(by_shifts, &places, pixels.len()) else {
-                // A texel is then 32 pixels wide, or there is only one.
+                // There are runs if a texel is at least 32 pixels wide, unless it is the only one.
                 let is_near = half_step.abs().max_element() <= 0.5 / 64.0 / 32.0;
                 let is_one = sides.0 == 0 || sides.1 == 0;
                 prop_assert!(pixels.len() < FEWEST_PIXELS || !is_near || is_one);

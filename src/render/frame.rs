@@ -22,7 +22,7 @@ impl Frame {
     }
 
     /// Changes the size and the pixel aspect. The colours of the pixels are unspecified until the
-    /// next drawing. Allocates only if the frame was never as large.
+    /// next drawing. Allocates only if the frame has never been this large.
     pub fn resize(&mut self, size: FrameSize, pixel_aspect: PixelAspect) {
         self.size = size;
         self.pixel_aspect = pixel_aspect;
@@ -44,7 +44,7 @@ impl Frame {
         self.size.height.get()
     }
 
-    /// The height of a pixel over its width.
+    /// The ratio of a pixel's height to its width.
     pub fn pixel_aspect(&self) -> PixelAspect {
         self.pixel_aspect
     }
@@ -54,7 +54,7 @@ impl Frame {
         self.pixels.chunks_exact(self.width() as usize)
     }
 
-    /// The rows from the top, to change their pixels.
+    /// The rows from the top, with mutable pixels.
     #[cfg(feature = "tui")]
     pub(crate) fn rows_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [Rgb]> {
         let width = self.width() as usize;
@@ -78,7 +78,7 @@ impl Frame {
         self.row_slice(y).iter().copied()
     }
 
-    /// The pixels of a row, as [`Frame::row`] has them.
+    /// The pixels that [`Frame::row`] returns, as a slice.
     pub(crate) fn row_slice(&self, y: u32) -> &[Rgb] {
         let start = y as usize * self.width() as usize;
         &self.pixels[start..][..self.width() as usize]

@@ -47,8 +47,8 @@ pub trait Renderable {
     /// Draws as [`Renderable::render`] does, but may stop once `go_on` returns `false`, and then leaves
     /// the rest of `frame` as it was. Returns whether the frame is complete.
     ///
-    /// A grid never stops. The slowest one found, thousands of things between mirrors, takes about a
-    /// second in the largest terminals, while bodies can take several.
+    /// A grid never stops early. The slowest known grid, with thousands of things between mirrors,
+    /// takes about a second in the largest terminals. Bodies can take several seconds.
     fn render_while(
         &self,
         camera: &Self::Camera,
@@ -72,7 +72,7 @@ pub trait Renderable {
     ) -> Self::Explanation;
 
     /// The time at which something in the last frame of `renderer` next changes its appearance, on
-    /// the clock of [`Options::seconds`]; `None` for never.
+    /// the clock of [`Options::seconds`]; `None` if nothing will change.
     fn next_change(renderer: &Self::Renderer) -> Option<f64> {
         _ = renderer;
         None
@@ -89,11 +89,11 @@ pub trait Renderable {
 /// The options of a drawing, apart from size and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Options {
-    /// How textures are sampled.
+    /// The filter with which textures are sampled.
     pub filter: Filter,
     /// The time at which animated things are shown, in seconds.
     pub seconds: f64,
-    /// Whether [`Renderable::surface`] is needed for each pixel.
+    /// Whether the renderer records the surface of each pixel, for [`Renderable::surface`].
     pub keeps_surfaces: bool,
 }
 

@@ -4,7 +4,7 @@ use super::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::map;
 use crate::world::{FieldOfView, Figure, Heading};
 
-/// Under the sky, a figure is looked for behind a level wall if it rises above the wall.
+/// Under the sky, a figure behind a level wall may show if it rises above the wall.
 #[test]
 fn a_figure_may_show_above_a_wall_under_the_sky() {
     let may_show = |ceiling: &str, base: f64| {

@@ -1,8 +1,8 @@
-//! Threads: how many draw a frame, and how they share it.
+//! Threads: their number for a frame, and the way they share its rows.
 //!
 //! Each frame that is large enough starts its own threads. Starting one takes tens of microseconds,
 //! and drawing such a frame takes milliseconds. Rejected: a thread pool. It would need a shutdown
-//! and sharing between renderers, and save little.
+//! and sharing between renderers, and would save little.
 
 use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -12,8 +12,9 @@ use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
 use crate::visibility::Stats;
 
-/// The number of pixels for each thread: for fewer, starting the thread takes longer than it saves. A
-/// fuzz target compares threads in small pictures.
+/// The least number of pixels for each thread. For fewer pixels, starting the thread takes longer
+/// than it saves. The number is small under fuzzing, because a fuzz target compares numbers of
+/// threads in small pictures.
 const PIXELS_OF_A_THREAD: usize = 1 << if cfg!(fuzzing) { 8 } else { 19 };
 
 /// The number of bands for each thread. Each band costs the preparation of all columns.
@@ -29,14 +30,15 @@ static OF_THE_MACHINE: LazyLock<NonZero<usize>> =
 pub enum Threads {
     /// One thread.
     One(WhyOne),
-    /// This number of threads: each draws a band of rows, then the next one that is left.
+    /// This number of threads. Each draws a band of rows, then the next band that no thread has
+    /// taken.
     Bands(NonZero<usize>),
 }
 
-/// Why one thread draws the whole frame.
+/// The reason why one thread draws the whole frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyOne {
-    /// The frame is small: other threads would take longer to start than it takes to draw.
+    /// The frame is small. Other threads would take longer to start than the frame takes to draw.
     Small,
     /// No other thread is permitted.
     Only,
@@ -66,8 +68,8 @@ impl Threads {
         }
     }
 
-    /// The number of rows of a band, for a frame of this height: all rows for one thread, else few
-    /// enough that a thread which finishes early takes bands from another.
+    /// The number of rows of a band, for a frame of this height. One thread draws all rows. With
+    /// several threads, bands are so small that a thread that finishes early can draw another one.
     fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
         match self {
             Self::One(_) => height,
@@ -89,8 +91,8 @@ impl fmt::Display for Threads {
     }
 }
 
-/// Draws all bands of `frame` and its surface buffer by these threads, each with its own memory.
-/// Adds the counts to `stats`.
+/// Draws all bands of `frame` and its surface buffer with these threads, each of which has its own
+/// memory. Adds the counts to `stats`.
 pub(crate) fn draw_bands<M: Default + Send>(
     threads: Threads,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
@@ -136,7 +138,7 @@ fn share_out<T, W: Send>(
     let work_with = &work_with;
     thread::scope(|scope| {
         for worker in others {
-            // If the system starts no more threads, the others do all tasks.
+            // If the system cannot start another thread, the existing threads do all tasks.
             _ = thread::Builder::new().spawn_scoped(scope, move || work_with(worker));
         }
         work_with(own);

@@ -44,8 +44,8 @@ impl Bounds {
     }
 }
 
-/// The range of pixels, of `count` along a side of the picture, with slopes in this extent. It has
-/// one more pixel on either side because of rounding.
+/// The range of pixels with slopes in this extent, along a side of the picture that is `count`
+/// pixels long. It contains one more pixel on either side because of rounding.
 fn pixels((low, high): Extent, per_slope: f64, count: u32) -> Range<u32> {
     let first = low * per_slope + f64::from(count) / 2.0 - 1.5;
     let last = high * per_slope + f64::from(count) / 2.0 + 1.5;

@@ -79,17 +79,18 @@ pub struct Axes {
     pub forward: DVec3,
 }
 
-/// The mapping from the world to the pixels of one frame. A cube looks like a cube for any shape of
-/// a pixel, as with the grid's renderer.
+/// The mapping from the world to the pixels of one frame. A cube looks like a cube with pixels of
+/// any shape, as in the grid's renderer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection {
     pub(crate) origin: DVec3,
     pub(crate) axes: Axes,
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// The number of columns from the middle to a point 1 to the side at distance 1.
+    /// The number of columns from the middle of the picture to a point that is 1 to the side at
+    /// distance 1.
     pub(crate) columns_a_cell: f64,
-    /// The number of rows from the middle to a point 1 above at distance 1.
+    /// The number of rows from the middle of the picture to a point that is 1 above at distance 1.
     pub(crate) rows_a_cell: f64,
 }
 
@@ -107,11 +108,12 @@ impl Projection {
         }
     }
 
-    /// The direction through the middle of a column, at the middle of the picture's height. The sum
-    /// of it and [`Projection::upwards`] is the direction of a ray, whose `t` is the distance to
-    /// the camera plane.
+    /// The direction through the middle of a column, at the middle of the picture's height. Its sum
+    /// with [`Projection::upwards`] is the direction of a ray, whose `t` is the distance to the
+    /// camera plane.
     pub(crate) fn across(&self, column: u32) -> DVec3 {
-        // These are halves of integers, so that a column and its mirror image have opposite slopes.
+        // The offsets are exact halves, so a column and its mirror image have exactly opposite
+        // slopes.
         let slope = (f64::from(column) + 0.5 - f64::from(self.width) / 2.0) / self.columns_a_cell;
         self.axes.forward + self.axes.right * slope
     }
@@ -146,7 +148,7 @@ mod tests {
             }
             assert!(up.z >= 0.0);
             assert_eq!(forward.z, libm::sin(camera.elevation.radians()));
-            // To the right of a camera that looks east is the south.
+            // South is to the right of a camera that looks east.
             assert!(right.dot(heading.turned(FRAC_PI_2).direction().extend(0.0)) > 0.999);
         }
     }

@@ -1,8 +1,8 @@
 //! The filtered checker: the mean of a checkerboard of cubes over the area of a pixel.
 //!
-//! A checkerboard of +1 and −1 is the product of one square wave for each axis, so that its mean
-//! over a box is the product of three means. The integral of a square wave is a triangle wave. The
-//! mean over the box is therefore exact for any size. The method is Íñigo Quílez's, "Filtering the
+//! A checkerboard of +1 and −1 is the product of one square wave for each axis. Its mean over a box
+//! is therefore the product of three means. The integral of a square wave is a triangle wave, so
+//! the mean over the box is exact for any size. The method is from Íñigo Quílez, "Filtering the
 //! checkerboard" (<https://iquilezles.org/articles/checkerfiltering/>), with a third axis. The area
 //! of a pixel on the surface follows from the movement of a ray's end from pixel to pixel (Igehy,
 //! "Tracing Ray Differentials", 1999). Along each axis, the box has the variance of that area.
@@ -20,17 +20,18 @@ use crate::color::Rgb;
 use crate::numeric::rounding::{floor_double, floor_of_small};
 use crate::world::scene::SolidTexture;
 
-/// For larger widths, the mean is closer to 0 than the resolution of colours.
+/// The least width at which the mean counts as 0. The mean is then closer to 0 than the resolution
+/// of colours.
 const WIDEST: f64 = 65_536.0;
-/// The largest place that is rounded to an integer by [`floor_of_small`], positive or negative.
+/// The largest place, positive or negative, that [`floor_of_small`] can round to an integer.
 const MOST: f64 = (1_u64 << 50) as f64;
 
 /// Sets each lane of `widths` to the area that its pixel covers on a surface, as the widths of a box along
 /// the axes, in cells.
 ///
-/// A ray in each of `directions` meets the surface at `t`, where it has this normal. `steps` are the
-/// changes of a direction to the next column and to the next row. `are_alike` says that all normals are
-/// equal, and that their products with the directions are.
+/// In each lane, the ray meets the surface at `t`, where the surface has the normal of this lane.
+/// `steps` are the changes of a direction to the next column and to the next row. `are_alike` is
+/// true if all normals are equal, and all of their dot products with the directions are equal, too.
 #[inline(never)]
 pub(crate) fn find_footprints(
     directions: &Vectors,
@@ -40,7 +41,7 @@ pub(crate) fn find_footprints(
     are_alike: bool,
     widths: &mut Vectors,
 ) {
-    // The change of `t`, as a share of it, to the next column and to the next row.
+    // The relative change of `t` to the next column and to the next row.
     let changes = |lane| {
         let normal: DVec3 = normals.get(lane);
         let across = normal.dot(directions.get(lane));
@@ -85,7 +86,7 @@ impl SolidTexture {
     }
 }
 
-/// Whether the cube at `point` is one of +1. The coordinates are in cubes.
+/// Whether the cube at `point` has the value +1. The coordinates are in cubes.
 fn is_first(point: DVec3) -> bool {
     point.to_array().into_iter().map(|place| mean_along(place, 0.0)).product::<f64>() > 0.0
 }
@@ -110,11 +111,12 @@ fn multiply_by_means_along(places: &Lanes, widths: &Lanes, products: &mut Lanes)
     }
 }
 
-/// The mean along one axis over areas between these `ends` and up to this `width`, if they are in one
-/// cube.
+/// The mean along one axis that all areas share, if they are in one cube. The areas are around
+/// places between the two ends, and up to `width` wide.
 ///
-/// Along the axis on which it is level, a surface mostly is. Since sums of doubles and their floors are
-/// monotonic, all areas are between the two ends that are computed here, with any rounding.
+/// The areas of a level surface are usually in one cube along the axis of its normal. Sums of
+/// doubles and their floors are monotonic. All areas are therefore between the two ends that are
+/// computed here, despite rounding.
 fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
     let period = floor_of_small(least / 2.0);
     if period != floor_of_small(greatest / 2.0) {
@@ -127,19 +129,19 @@ fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
 
 /// The mean of a square wave, +1 from 0 to 1 and −1 from 1 to 2, over `width` around `place`.
 fn mean_along(place: f64, width: f64) -> f64 {
-    // With a large place, the difference of two close ends would lose its digits.
+    // For a large place, the difference of two close ends would lose its digits.
     let place = place - 2.0 * floor_double(place / 2.0);
     let mean = mean_within(place, width);
     if width < WIDEST || mean.abs() == 1.0 { mean } else { 0.0 }
 }
 
-/// The same for a place of at most [`MOST`] and a width below [`WIDEST`].
+/// [`mean_along`] for a place of at most [`MOST`] and a width below [`WIDEST`].
 #[inline(always)]
 fn mean_of_small(place: f64, width: f64) -> f64 {
     mean_within(place - 2.0 * floor_of_small(place / 2.0), width)
 }
 
-/// The same for a place within the first period.
+/// [`mean_along`] for a place in the first period.
 #[inline(always)]
 fn mean_within(place: f64, width: f64) -> f64 {
     let (low, high) = (Place::new(place - width / 2.0), Place::new(place + width / 2.0));
@@ -294,7 +296,8 @@ mod tests {
         };
         let widths = footprint(DVec3::X, -DVec3::X);
         assert!((widths - DVec3::new(0.0, 0.1, 0.2)).length() < 1e-12, "{widths}");
-        // A floor that is seen at a slope of one in ten is covered ten times as far along the ray.
+        // On a floor that is seen at a slope of one in ten, the footprint is ten times as long
+        // along the ray.
         let widths = footprint(DVec3::new(1.0, 0.0, -0.1), DVec3::Z);
         assert!((widths - DVec3::new(2.0, 0.1, 0.0)).length() < 1e-12, "{widths}");
     }

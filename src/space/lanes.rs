@@ -8,8 +8,8 @@
 
 use glam::DVec3;
 
-/// The number of lanes. With 8, what is done once for all lanes costs more; with 32, the unused lanes at
-/// the edges of bodies do.
+/// The number of lanes. Rejected: 8 lanes, because the work that is done once for all lanes costs
+/// more; and 32 lanes, because unused lanes at the edges of bodies cost more.
 pub(crate) const LANES: usize = 16;
 
 /// A number for each lane.
@@ -30,7 +30,7 @@ impl Default for Vectors {
 }
 
 impl Vectors {
-    /// Sets each lane to what `of` returns for it.
+    /// Sets each lane to the value that `of` returns for it.
     #[inline(always)]
     pub(crate) fn fill(&mut self, of: impl Fn(usize) -> DVec3) {
         for lane in 0..LANES {
@@ -77,7 +77,8 @@ pub(crate) fn greatest(lanes: &Lanes) -> f64 {
     reduced(lanes, |one, other| if one > other { one } else { other })
 }
 
-/// Combines the even and the odd lanes: one instruction for two.
+/// Combines all lanes. The even and the odd lanes are combined side by side, so one instruction
+/// does two lanes.
 #[inline(always)]
 fn reduced(lanes: &Lanes, combined: impl Fn(f64, f64) -> f64) -> f64 {
     let [mut even, mut odd] = [lanes[0], lanes[1]];
@@ -88,7 +89,8 @@ fn reduced(lanes: &Lanes, combined: impl Fn(f64, f64) -> f64) -> f64 {
     combined(even, odd)
 }
 
-/// Whether all lanes of both are finite; their products may be too large for that.
+/// Returns true only if all lanes of both are finite. May return false if a product of two lanes
+/// overflows.
 #[inline(always)]
 pub(crate) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
     let [mut even, mut odd] = [0.0; 2];

@@ -2,7 +2,7 @@
 //!
 //! Values that depend only on the eye are computed once, with high precision. The power of the eye
 //! with respect to a sphere is a difference of squares, which are large for a large sphere; it is
-//! computed with compensated sums. The roots of the quadratic equation are taken without
+//! computed with compensated sums. The roots of the quadratic equation are computed without
 //! cancellation. Neither a planet under the eye nor a grain of sand on it loses digits.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
@@ -78,12 +78,13 @@ impl RelativeShape {
     /// The unit normal on the side of the eye, if it is the same wherever a ray hits the shape.
     pub(crate) fn common_normal(&self) -> Option<DVec3> {
         let Self::Plane(RelativePlane { normal, distance }) = *self else { return None };
-        // With another normal, or with an eye on the plane, the side depends on the rounding of each ray.
+        // If the normal is not exactly a unit vector, or if the eye is on the plane, the side
+        // depends on the rounding of each ray.
         let is_certain = unit(normal) == normal && distance != 0.0;
         is_certain.then(|| if distance > 0.0 { -normal } else { normal })
     }
 
-    /// Sets each lane of `normals` to that for its direction and its `t`.
+    /// Sets each lane of `normals` to the normal for the lane's direction and `t`.
     #[inline(never)]
     pub(crate) fn find_normals(&self, directions: &Vectors, t: &Lanes, normals: &mut Vectors) {
         match self {
@@ -99,8 +100,8 @@ impl RelativeShape {
     }
 }
 
-/// The vector in units of its length. Only the exact center of a sphere has no direction, and it is not
-/// on the surface.
+/// The vector divided by its length. Only the exact center of a sphere has no direction, and the
+/// center is not on the surface.
 #[inline(always)]
 fn unit(vector: DVec3) -> DVec3 {
     let per_length = 1.0 / vector.dot(vector).sqrt();
@@ -108,7 +109,7 @@ fn unit(vector: DVec3) -> DVec3 {
     DVec3::select(BVec3::splat(has_direction), vector * per_length, DVec3::Z)
 }
 
-/// The one of `normal` and its opposite that is on the side of the eye.
+/// `normal`, or its opposite if that is on the side of the eye.
 #[inline(always)]
 fn facing_eye(normal: DVec3, direction: DVec3) -> DVec3 {
     normal * if normal.dot(direction) > 0.0 { -1.0 } else { 1.0 }
@@ -120,8 +121,8 @@ impl RelativeSphere {
         Self { center: center - origin, radius, power: power(origin, center, radius) }
     }
 
-    /// The distance to the sphere; NaN or negative if it is not ahead. Without branches, neighbouring
-    /// rays are calculated together.
+    /// The distance to the sphere; NaN or negative if the sphere is not ahead. The code has no
+    /// branches, so neighbouring rays are calculated together.
     #[inline(always)]
     pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         let Self { center, radius, power } = *self;
@@ -132,7 +133,7 @@ impl RelativeSphere {
         // discriminant `b² - 4ac` would lose a small sphere far away.
         let beside = center - direction * (along / square);
         let half_chord = (radius * radius - beside.dot(beside)) * square;
-        // NaN if the ray passes the sphere.
+        // NaN if the ray misses the sphere.
         let root = half_chord.sqrt();
         let far = along + root;
         let (dividend, divisor) = match (power < 0.0, along > 0.0) {
@@ -150,7 +151,7 @@ impl RelativeSphere {
     }
 }
 
-/// The power of `point` with respect to a sphere, accurate to the last digits for any cancellation.
+/// The power of `point` with respect to a sphere, accurate to the last digits despite cancellation.
 fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
     let mut sum = Sum::default();
     for (one, other) in [(center.x, point.x), (center.y, point.y), (center.z, point.z)] {
@@ -191,14 +192,14 @@ impl RelativePlane {
         Self { normal, distance: normal.dot(plane.point() - origin) }
     }
 
-    /// The distance to the plane; negative if it is not ahead, infinite or NaN if the direction is
-    /// parallel to it.
+    /// The distance to the plane; negative if the plane is not ahead, infinite or NaN if the
+    /// direction is parallel to it.
     #[inline(always)]
     pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         self.distance / self.normal.dot(direction)
     }
 
-    /// Whether the distance depends on nothing but the `z` of a direction.
+    /// Whether the distance depends only on the `z` of a direction.
     pub(crate) fn is_horizontal(&self) -> bool {
         self.normal.x == 0.0 && self.normal.y == 0.0
     }
@@ -215,7 +216,7 @@ impl RelativeBlock {
         Self { low: block.low() - origin, high: block.high() - origin }
     }
 
-    /// The distance to the block; NaN or negative if it is not ahead.
+    /// The distance to the block; NaN or negative if the block is not ahead.
     #[inline(always)]
     pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         let (enters, leaves) = self.crossings(direction);
@@ -254,8 +255,8 @@ impl RelativeBlock {
     }
 }
 
-/// The distances at which a ray is between `low` and `high`, for this component of its direction. A
-/// ray parallel to the slab is inside always or never.
+/// The distances at which a ray enters and leaves the slab between `low` and `high`, for this
+/// component of its direction. A ray that is parallel to the slab is always inside or never.
 #[inline(always)]
 fn slab(low: f64, high: f64, direction: f64) -> (f64, f64) {
     let (one, other) = (low / direction, high / direction);

@@ -15,11 +15,12 @@ use crate::render::{Frame, Options, Renderable};
 use crate::world::FieldOfView;
 use crate::world::scene::Scene;
 
-/// With more tests of a ray on average, the tree is faster than the bounds on the screen.
+/// The largest mean number of tests for a ray. With more tests, the tree is faster than the bounds
+/// on the screen.
 const MOST_TESTS_OF_RAY: u64 = 32;
 
-/// The number of tests and pixels of a band, after which a drawing can be interrupted: a millisecond or
-/// two.
+/// The number of tests and pixels of a band, which takes a millisecond or two. A drawing can be
+/// interrupted after each band.
 const WORK_OF_BAND: u64 = 1 << 16;
 
 /// Draws frames, and reuses its memory from frame to frame.
@@ -28,7 +29,7 @@ pub struct Renderer {
     /// The bodies that can cover a pixel.
     in_view: Vec<InView>,
     row: Row,
-    /// Empty where the bounds of bodies overlap little.
+    /// Empty if the bounds of bodies overlap little.
     tree: Tree,
     shadows: Shadows,
     shading: Shading,
@@ -49,7 +50,8 @@ pub struct Explanation {
     pub hits: u64,
     /// Rays cast from these hits towards the sun.
     pub shadow_rays: u64,
-    /// Tests of shadow rays against bodies, and of neighbouring ones together against boxes around them.
+    /// Tests of shadow rays against bodies, and of groups of neighbouring shadow rays against boxes
+    /// around bodies.
     pub shadow_tests: u64,
 }
 
@@ -76,8 +78,7 @@ impl Renderer {
     /// called; if it returns `false`, the rest of `frame` stays as it was. Returns whether the frame is
     /// complete.
     ///
-    /// A band ends after the row in which the number of its pixels and of tests of its rays exceeds a
-    /// limit.
+    /// A band ends after the row in which its number of pixels and tests reaches a limit.
     pub fn render_while(
         &mut self,
         scene: &Scene,
@@ -205,7 +206,8 @@ impl Renderable for Scene {
         Self::start_camera(self, field_of_view)
     }
 
-    /// Draws the view of `camera`. No option applies: bodies have neither textures nor animations.
+    /// Draws the view of `camera`. The options have no effect, because bodies have neither textures
+    /// nor animations.
     fn render(&self, camera: &Camera, _: Options, renderer: &mut Renderer, frame: &mut Frame) {
         renderer.render(self, camera, frame);
     }
@@ -233,7 +235,7 @@ impl Renderable for Scene {
 }
 
 impl fmt::Display for Explanation {
-    /// Writes a few lines for people.
+    /// Writes a few lines of text.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { bodies, in_view, rays, tests, hits, shadow_rays, shadow_tests } = self;
         let without_bounds = rays * bodies;

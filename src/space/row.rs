@@ -1,7 +1,8 @@
 //! A row of pixels: its rays, and the nearest hit of each.
 //!
-//! The rays of a row are tested against one body after the other. The components of directions and the
-//! hits are in arrays of their own, so that a test of neighbouring rays is one loop without branches.
+//! The rays of a row are tested against one body after the other. Each component of the directions
+//! has its own array, and so do the hits. A test of neighbouring rays is therefore one loop without
+//! branches.
 
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
 
@@ -14,26 +15,26 @@ use super::lanes::{LANES, Lanes, Vectors};
 use super::relative_shape::RelativeShape;
 use super::tree::{Nearest, Tree};
 
-/// The index of the body that a ray hits if it hits none.
+/// The index that stands for no body, for a ray that hits none.
 const NONE: u64 = u64::MAX;
 
 /// The rays of a row, in memory that is reused.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Row {
     width: usize,
-    /// The directions at the middle of the picture's height, by component. As many as there are lanes follow
-    /// after the last column.
+    /// The directions at the middle of the picture's height, by component. After the last column,
+    /// the arrays continue for as many columns as there are lanes.
     x: Vec<f64>,
     y: Vec<f64>,
     z: Vec<f64>,
-    /// Whether all directions have the same `z`, as those of a camera without roll.
+    /// Whether all directions have the same `z`, as for a camera without roll.
     is_level: bool,
     /// The change of all directions from the middle to this row.
     up: DVec3,
-    /// The distances of the nearest hits so far.
+    /// The distance of the nearest hit that was found for each ray.
     t: Vec<f64>,
-    /// The indices of the bodies that are hit there. They are as wide as the distances, so that one
-    /// comparison selects both.
+    /// The index of the body that is hit there, or [`NONE`]. Indices are as wide as distances, so
+    /// one comparison selects both.
     found: Vec<u64>,
 }
 
@@ -75,8 +76,8 @@ impl Row {
         self.found.resize(self.width, NONE);
     }
 
-    /// Tests the rays of these `columns` against the body with this index. Of bodies at the same distance,
-    /// the first tested is hit. Returns the number of tests.
+    /// Tests the rays of these `columns` against the body with this index. If several bodies are at
+    /// the same distance, the first one tested is hit. Returns the number of tests.
     pub(crate) fn test(
         &mut self,
         columns: Range<usize>,
@@ -112,7 +113,8 @@ impl Row {
         tests
     }
 
-    /// Finds the hits of all rays in `tree`. `distance` returns that of the body with this index.
+    /// Finds the hits of all rays in `tree`. `distance` returns the distance to the body with an
+    /// index, in a direction.
     pub(crate) fn search(
         &mut self,
         tree: &Tree,
@@ -127,8 +129,8 @@ impl Row {
         }
     }
 
-    /// The index of the body that the rays from `column` on hit, and the end of these columns, at most one
-    /// for each lane.
+    /// The index of the body that the rays from `column` on hit, and the end of the columns that
+    /// hit it, at most one column for each lane.
     pub(crate) fn same_from(&self, column: usize) -> (Option<usize>, usize) {
         let found = self.found[column];
         let rest = &self.found[column..];
@@ -139,8 +141,8 @@ impl Row {
         ((found != NONE).then_some(found as usize), column + count)
     }
 
-    /// Sets `stretch` to the rays of these columns, at most one for each lane. In the lanes after them, the
-    /// directions go on, and the last distance is repeated.
+    /// Sets `stretch` to the rays of these columns, at most one for each lane. In the remaining
+    /// lanes, the directions continue, and the last distance is repeated.
     pub(crate) fn take(&self, columns: Range<usize>, stretch: &mut Stretch) {
         let Stretch { directions, t } = stretch;
         let count = columns.len();
@@ -170,7 +172,8 @@ struct Rays<'a> {
 }
 
 impl Rays<'_> {
-    /// Puts the body with this index into `t` and `found` where its `distance` is the nearest so far.
+    /// Tests the rays against the body with this index. Updates `t` and `found` for each ray to
+    /// which it is nearer than all bodies tested before.
     #[inline(never)]
     fn test(self, t: &mut [f64], found: &mut [u64], index: u64, distance: impl Fn(DVec3) -> f64) {
         let rays = self.x.iter().zip(self.y).zip(self.z);

@@ -21,7 +21,8 @@ pub(crate) struct Shader<'a> {
     origin: DVec3,
     /// The changes of direction to the next column and to the next row.
     steps: [DVec3; 2],
-    /// Whether the directions of a row have the same `z`, so that a horizontal plane is at the same `t`.
+    /// Whether the directions of a row have the same `z`. A row then meets a horizontal plane at
+    /// one `t`.
     is_level: bool,
 }
 
@@ -129,7 +130,8 @@ impl<'a> Shader<'a> {
         (rays, tests)
     }
 
-    /// Sets the brightness without shadows. `normal` is that of all pixels, if they have the same one.
+    /// Sets the brightness without shadows. `normal` is the normal that all pixels share, if there
+    /// is one.
     #[inline(never)]
     fn find_brightness(&self, normal: Option<DVec3>, shading: &mut Shading) {
         let sun = self.scene.sun;
@@ -144,7 +146,8 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Sets the light, by the brightness and the fog. `is_level` says that all pixels are at the same `t`.
+    /// Sets the light from the brightness and the fog. `is_level` is true if all pixels are at the
+    /// same `t`.
     #[inline(never)]
     fn find_light(&self, is_level: bool, shading: &mut Shading) {
         const WHOLE: f64 = 256.0;

@@ -1,15 +1,16 @@
 //! Shadows: one ray from each visible surface point towards the sun.
 //!
 //! Spheres and boxes cast shadows. Planes cast none: a plane overhead would put everything in
-//! shadow. A body casts no shadow on itself, as the side away from the sun is dark anyway, and none
-//! on the bodies that it encloses: a sphere around a whole scene is its sky.
+//! shadow. A body casts no shadow on itself, because its side away from the sun is dark anyway. It
+//! casts none on the bodies that it encloses, because a sphere around a whole scene is the sky of
+//! the scene.
 //!
 //! All shadow rays have the same direction. Projected along it, a body covers an interval of an
-//! axis perpendicular to the light. Only bodies whose interval overlaps that of the rays of
-//! neighbouring pixels are tested: first by boxes around the body and the pixels, and then exactly for
-//! each ray. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
-//! layout. Rejected: a grid perpendicular to the light, as in the light buffer of Haines and
-//! Greenberg (1986), since a few huge bodies would fill all its cells.
+//! axis perpendicular to the light. The rays of neighbouring pixels also cover an interval, and
+//! only bodies whose interval overlaps it are tested: first with boxes around the body and the
+//! pixels, then exactly for each ray. An interval tree in a sorted array finds these bodies. Li and
+//! Rong ("Bedtk", 2021) describe this layout. Rejected: a grid perpendicular to the light, as in
+//! the light buffer of Haines and Greenberg (1986). A few huge bodies would fill all its cells.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
@@ -37,14 +38,14 @@ pub(crate) struct Shadows {
     occluders: Vec<Occluder>,
 }
 
-/// Three perpendicular unit vectors, of which one is the direction of all shadow rays.
+/// Three perpendicular unit vectors. The first is the direction of all shadow rays.
 #[derive(Clone, Copy, Debug, Default)]
 struct LightAxes {
     toward_sun: DVec3,
     /// The axis of the interval tree.
     across: DVec3,
     upwards: DVec3,
-    /// The signs of `toward_sun`; zero where it is zero.
+    /// The signs of the components of `toward_sun`; zero for a component that is zero.
     signs: DVec3,
 }
 
@@ -56,11 +57,12 @@ struct Occluder {
     shape: Shape,
     /// The interval that the body covers on the axis of the tree.
     across: Interval,
-    /// The greatest end of `across` in the range whose root this is.
+    /// The greatest end of `across` in the range with this root.
     highest: f64,
     /// The interval that the body covers on the other axis perpendicular to the light.
     upwards: Interval,
-    /// The corner towards the sun of the box around the body, as [`LightPoint::sunward`].
+    /// The corner towards the sun of the box around the body, with the signs of
+    /// [`LightBox::sunward`].
     sunward: DVec3,
 }
 
@@ -75,13 +77,14 @@ struct Interval {
 struct LightBox {
     across: Interval,
     upwards: Interval,
-    /// The corner away from the sun; coordinates are negated that decrease towards the sun, and zero
-    /// if they do not change.
+    /// The corner away from the sun. A coordinate that decreases towards the sun is negated, and a
+    /// coordinate that does not change is zero.
     sunward: DVec3,
 }
 
 impl Shadows {
-    /// Prepares the tree for `bodies` under `sun`, unless it is that of the last frame.
+    /// Prepares the tree for `bodies` under `sun`. Keeps the tree of the last frame if both are
+    /// unchanged.
     pub(crate) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
         if self.sun == Some(*sun) && self.bodies == bodies {
             return;
@@ -99,9 +102,10 @@ impl Shadows {
         set_highest(&mut self.occluders);
     }
 
-    /// Sets the `brightness` of each of `points` to `ambient` if a body is between it and the sun. All of
-    /// them are on the surface of `body`, and in the box between two corners, up to rounding. Returns the
-    /// number of bodies whose boxes are tested, and that of those against which the points are tested.
+    /// Sets the `brightness` of each of `points` to `ambient` if a body is between it and the sun.
+    /// All points are on the surface of `body` and, up to rounding, in the box between the two
+    /// corners `bounds`. Returns the number of bodies whose boxes are tested, and the number of
+    /// bodies against which the points are tested exactly.
     pub(crate) fn darken(
         &self,
         points: &Vectors,
@@ -187,7 +191,7 @@ impl Interval {
     }
 }
 
-/// Sets the greatest end of each range of `occluders`, and returns that of the whole.
+/// Sets the greatest end of each range of `occluders`, and returns the greatest end of all.
 fn set_highest(occluders: &mut [Occluder]) -> f64 {
     let (before, rest) = occluders.split_at_mut(occluders.len() / 2);
     let [root, after @ ..] = rest else { return f64::NEG_INFINITY };
@@ -214,8 +218,8 @@ fn any_at(
             && (places.low <= root.across.high && is_such(root) || any_at(after, places, is_such))
 }
 
-/// Sets the `brightness` of each of `points` to `ambient` from which a ray along the unit vector
-/// `direction` enters `shape` from outside.
+/// Sets the `brightness` of each of `points` to `ambient` if a ray from this point along the unit
+/// vector `direction` enters `shape` from outside.
 fn darken_behind(
     shape: &Shape,
     points: &Vectors,

@@ -1,11 +1,11 @@
 //! A bounding volume hierarchy over the bodies in view, for scenes in which many bodies overlap on the
 //! screen.
 //!
-//! Each node has a box around its bodies (Rubin and Whitted, "A 3-Dimensional Representation for Fast
-//! Rendering of Complex Scenes", 1980). A ray visits the nearer box first, and skips boxes that begin
-//! beyond the nearest hit so far. A node is split at the median of its centers along the axis on which
-//! they differ most. Rejected: the surface area heuristic. The tree is built for each frame, and that
-//! takes longer to build.
+//! Each node has a box around its bodies (Rubin and Whitted, "A 3-Dimensional Representation for
+//! Fast Rendering of Complex Scenes", 1980). A ray visits the nearer box first, and skips boxes
+//! that begin beyond the nearest hit that it has found. A node is split at the median of its
+//! centers along the axis on which they differ most. Rejected: the surface area heuristic. The tree
+//! is built for each frame, and the heuristic takes longer.
 
 use std::ops::Range;
 
@@ -15,16 +15,16 @@ use super::relative_shape::{RelativeBlock, RelativeShape};
 
 /// The largest number of bodies of a node without children.
 const MOST_IN_LEAF: usize = 4;
-/// The distance of a box from its body, as a fraction of their largest coordinate: more than any
-/// rounding in a test of a ray against a body.
+/// The distance of a box from its body, as a fraction of their largest coordinate. It exceeds any
+/// rounding error in a test of a ray against a body.
 const MARGIN: f64 = 1e-9;
 
-/// The tree over some shapes, which are named by their indices. Its memory is reused.
+/// The tree over some shapes, which are identified by their indices. Its memory is reused.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
     /// A node comes before its first child, which comes before the second one.
     nodes: Vec<Node>,
-    /// The bounded shapes. Those of a node are next to each other.
+    /// The bounded shapes. The shapes of a node are next to each other.
     leaves: Vec<Leaf>,
     /// The indices of planes.
     unbounded: Vec<usize>,
@@ -44,7 +44,7 @@ struct Leaf {
     bounds: RelativeBlock,
 }
 
-/// The nearest hit of a ray so far.
+/// The nearest hit that the search for a ray has found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nearest {
     pub(crate) t: f64,
@@ -78,8 +78,8 @@ impl Tree {
         }
     }
 
-    /// The nearest hit of the ray in this direction. `distance` returns that of a shape. Of hits at the
-    /// same distance, it is the one with the lowest index.
+    /// The nearest hit of the ray in this direction. `distance` returns the distance of a shape. If
+    /// several hits are at the same distance, the hit with the lowest index is returned.
     pub(crate) fn nearest(
         &self,
         direction: DVec3,

@@ -13,22 +13,23 @@ use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing
 #[cfg(feature = "terminal")]
 use crate::world::{Heights, World};
 
-/// Things nearer to the camera plane, in cells, are not drawn: they would contain the player.
+/// The least distance from the camera plane at which a thing is drawn, in cells. A nearer thing would contain
+/// the player.
 const NEAREST: f64 = 0.2;
 
-/// The position of a thing or a figure in the picture, seen directly or in mirrors.
+/// A thing, a figure or the player in the picture, seen directly or in mirrors.
 #[derive(Clone, Debug)]
 pub(crate) struct Billboard {
     /// The sprite of a thing or a figure; `None` for the player.
     sprite: Option<SpriteId>,
-    /// Whether it shows the frame of the time.
+    /// `true` if its frame changes with time.
     is_animated: bool,
     /// The index of the sprite's picture, and its mip level.
     picture: usize,
     lod: usize,
-    /// The lighting; `None` for a near billboard in full light.
+    /// The lighting; `None` if neither light nor fog changes the colours.
     pub(crate) lighting: Option<Faded>,
-    /// How much of it shows instead of what is behind, from 1 to 255.
+    /// The opacity, from 1 to 255.
     pub(crate) opacity: u8,
     /// The distance from the camera plane, in cells.
     pub(crate) depth: f64,
@@ -37,22 +38,22 @@ pub(crate) struct Billboard {
     width: f64,
     /// The columns of pixels whose centres it covers.
     pub(crate) columns: Range<u32>,
-    /// The position of the top in rows, and the number of texels in a row.
+    /// The position of the top in rows, and the number of texels per row of pixels.
     top: f64,
     texels_in_row: f64,
     /// The rows of pixels whose centres it covers.
     pub(crate) rows: Range<u32>,
     is_mirrored: bool,
-    /// Whether any part of it is in view.
+    /// `true` if any part of it is in view.
     pub(crate) is_drawn: bool,
-    /// The order among billboards at equal distance: by row, column and sprite, things before
-    /// figures, and figures as the world lists them.
+    /// The order among billboards at the same depth: by row, column and sprite, then things before figures, and
+    /// figures in the order of the world's list.
     pub(crate) order: (u32, u32, u16, u32),
 }
 
-/// Whether `figure`, or a mark for it on a map of what is in view, may be seen in a picture whose rays
-/// are `columns`, if it has no mirrors: a part of it is nearer than the end of a ray, or rises above level walls
-/// under the sky.
+/// Returns whether `figure`, or its mark on a map of the view, may be seen in a picture with the rays
+/// `columns`. The picture must have no mirrors. The figure may be seen if a part of it is nearer than the end
+/// of a ray, or if it rises above level walls under the sky.
 #[cfg(feature = "terminal")]
 pub(crate) fn may_show(
     world: &World,
@@ -60,7 +61,7 @@ pub(crate) fn may_show(
     columns: &[Column],
     figure: &Figure,
 ) -> bool {
-    /// The columns beside the figure that count, too: more than the rounding error.
+    /// The number of columns on each side of the figure that are also checked: more than the rounding error.
     const MARGIN: f64 = 1.0;
     let Some(sprite) = world.sprites().get(usize::from(figure.sprite.0)) else { return false };
     let place = projection.place(figure.position);
@@ -78,7 +79,7 @@ pub(crate) fn may_show(
 /// The frame and the heading that a billboard shows.
 #[derive(Clone, Copy)]
 enum Pose {
-    /// Those of the sprite itself, after this many seconds.
+    /// The sprite's own heading, and its frame after this many seconds.
     AtTime(f64),
     Fixed {
         frame: usize,
@@ -104,7 +105,7 @@ impl Billboard {
         Some(Self { sprite, is_animated, order, ..billboard })
     }
 
-    /// The billboards in an image of those figures of which a part is in the picture.
+    /// The billboards, in an image, of the figures that are at least partly inside the picture.
     pub(crate) fn of_figures(
         scene: Scene<'_>,
         image: MirrorTransform,
@@ -113,8 +114,8 @@ impl Billboard {
         figures.filter_map(move |(number, figure)| Self::of_figure(scene, image, number, figure))
     }
 
-    /// The billboard of `figure` in an image; `None` if it is outside the picture, or if nothing of
-    /// it shows.
+    /// The billboard of `figure` in an image. `None` if it is outside the picture, fully transparent, or has an
+    /// unknown sprite.
     fn of_figure(
         scene: Scene<'_>,
         image: MirrorTransform,
@@ -145,7 +146,7 @@ impl Billboard {
         Self::new(scene, image, figure, Pose::AtTime(0.0), (place, base), light)
     }
 
-    /// The billboard of `sprite` at a point on the map and at a height.
+    /// The billboard of `sprite` with its middle at a point on the map, and its base at a height.
     fn new(
         scene: Scene<'_>,
         image: MirrorTransform,
@@ -198,12 +199,12 @@ impl Billboard {
         })
     }
 
-    /// Whether it shows a thing or a figure rather than the player.
+    /// Returns true if it shows a thing or a figure, and not the player.
     pub(crate) fn is_of_thing(&self) -> bool {
         self.sprite.is_some()
     }
 
-    /// The mip level from which it is drawn: that of `player`, if it shows the player.
+    /// The mip level from which it is drawn. A billboard of the player takes it from the sprite `player`.
     pub(crate) fn level<'a>(
         &self,
         scene: Scene<'a>,
@@ -216,20 +217,20 @@ impl Billboard {
         Some(sprite.pictures()[self.picture].level(self.lod))
     }
 
-    /// The position of the pixel centres of `column` across its picture, from 0 to 1.
+    /// The position across its picture of the pixel centres in `column`, from 0 to 1.
     pub(crate) fn u(&self, column: u32) -> f64 {
         let u = (f64::from(column) + 0.5 - self.left) / self.width;
         if self.is_mirrored { 1.0 - u } else { u }
     }
 
-    /// The texel of the centre of `row`, counted from the top.
+    /// The texel at the centre of `row`, counted from the top.
     #[inline]
     pub(crate) fn texel(&self, row: u32) -> usize {
         // A conversion to 32 bits takes fewer instructions.
         ((f64::from(row) + 0.5 - self.top) * self.texels_in_row) as u32 as usize
     }
 
-    /// The time at which one of `billboards` in view next changes its appearance; `None` for never.
+    /// The next time at which a billboard in view changes its appearance; `None` for never.
     pub(crate) fn next_change(billboards: &[Self], scene: Scene<'_>) -> Option<f64> {
         let drawn =
             billboards.iter().filter(|it| it.is_drawn && it.is_animated).filter_map(|it| it.sprite);

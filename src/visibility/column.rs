@@ -1,14 +1,13 @@
-//! Columns: the hit of the ray of each column of pixels.
+//! Columns: the ray hit of each column of pixels.
 
 use crate::cast::{Hit, Side};
 
-/// The hit of the ray of one column of pixels.
+/// The ray hit of one column of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// The hit; `None` if the ray left the map.
     pub hit: Option<Hit>,
-    /// The distance from the camera plane to the end of the ray, in cells: to the wall, or to the
-    /// edge of the map.
+    /// The distance from the camera plane to the end of the ray at a wall or at the edge of the map, in cells.
     pub distance: f64,
 }
 
@@ -25,7 +24,7 @@ pub enum Surface {
     WallY,
     /// The floor.
     Floor,
-    /// A thing in front of the others.
+    /// A thing in front of the other surfaces.
     Thing,
 }
 

@@ -1,8 +1,8 @@
 //! The draw list: the contents of a frame, as planes, faces and layers.
 //!
-//! Each item is found once for all of its columns, and keeps for each of them only what differs. Rows are clipped to
-//! bands when they are drawn. Rejected: a list of finished spans. There may be as many as pixels, and each band
-//! needs its own.
+//! Visibility finds each item once for all of its columns, and stores for each column only the values that
+//! differ. Drawing clips the rows to bands. Rejected: a list of finished spans. There may be as many spans as
+//! pixels, and each band needs its own list.
 
 use std::ops::Range;
 
@@ -19,29 +19,29 @@ use crate::world::{Light, Sprite, TileId};
 pub(crate) struct DrawList {
     /// The hit of the ray of each column of pixels.
     pub(crate) columns: Vec<Column>,
-    /// The directions of these rays.
+    /// The directions of the rays of all columns.
     pub(crate) directions: Directions,
     pub(crate) sectors: Sectors,
     /// The images in view, the direct one first.
     pub(crate) images: Vec<MirrorTransform>,
-    /// What is behind everything else below the horizon and above it, if that is the same in all columns.
+    /// The backdrops below and above the horizon, behind all other items, if they are the same in all columns.
     pub(crate) backdrops: [Option<Backdrop>; 2],
     pub(crate) planes: Vec<Plane>,
     /// The rows of each column of the planes.
     pub(crate) plane_rows: Vec<Rows>,
-    /// The faces that hide what is behind them.
+    /// The opaque faces.
     pub(crate) faces: Vec<Face>,
     /// The masks and tints.
     pub(crate) see_through: Vec<Face>,
     pub(crate) face_columns: Vec<FaceColumn>,
-    /// What rays passed, nearer items earlier in each column.
+    /// The items that rays passed, from near to far in each column.
     pub(crate) passed: Vec<Layer>,
-    /// The columns of the parts of rays among them.
+    /// The columns of the ray parts in `passed`.
     pub(crate) stretches: Vec<Stretch>,
-    /// The items that are painted in front of all others, in the order of painting.
+    /// The items in front of all planes and opaque faces, in the order of painting.
     pub(crate) layers: Vec<Layer>,
     pub(crate) billboards: Vec<Billboard>,
-    /// The rows of each column of the billboards among the layers.
+    /// The rows of each column of the billboards in `layers`.
     pub(crate) billboard_rows: Vec<Rows>,
     /// The player, as seen in mirrors; `None` until there is a mirror.
     pub(crate) player: Option<Sprite>,
@@ -74,12 +74,12 @@ pub(crate) enum PlaneKind {
     Top(TileId),
 }
 
-/// An item in front of the faces that hide everything.
+/// An item in front of the opaque faces.
 #[derive(Clone, Debug)]
 pub(crate) enum Layer {
-    /// An index into the masks and tints.
+    /// A mask or a tint: an index into `see_through`.
     Face(usize),
-    /// The part of rays in a sector, before the billboards in it are known.
+    /// The parts of rays in a sector, before their billboards are known.
     Part(RayPart),
     Billboard(BillboardPart),
 }
@@ -91,12 +91,12 @@ pub(crate) struct RayPart {
     /// The index of the first stretch. The others follow.
     pub(crate) first: usize,
     pub(crate) sector: SectorId,
-    /// The height of the top of a pillar below it, which hides what is lower.
+    /// The height of a pillar's top below the parts. The top hides everything lower.
     pub(crate) top_below: Option<f64>,
     pub(crate) image: MirrorTransform,
 }
 
-/// The part of a ray in one sector: the rows that no nearer surface covers, and its ends.
+/// The part of a ray in one sector: the rows that no nearer surface covers, and the distances of its ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretch {
     pub(crate) rows: Rows,
@@ -110,7 +110,7 @@ pub(crate) struct BillboardPart {
     pub(crate) columns: Range<u32>,
     /// The index of the rows of the first column. The others follow.
     pub(crate) first: usize,
-    /// An index into the billboards.
+    /// An index into `billboards`.
     pub(crate) billboard: usize,
 }
 
@@ -124,8 +124,8 @@ impl PlaneKind {
 }
 
 impl DrawList {
-    /// Removes the contents of the last frame, and reserves memory for all but extreme views of `width` columns, so
-    /// that a turn of the camera towards more faces allocates nothing.
+    /// Removes the contents of the last frame, and reserves memory for all but extreme views of `width`
+    /// columns. A turn of the camera towards more faces then allocates nothing.
     pub(crate) fn begin(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.columns.clear();
@@ -161,7 +161,7 @@ impl DrawList {
         self.billboard_rows.reserve(width * OF_A_COLUMN);
     }
 
-    /// Adds a plane with these rows in `columns`, unless there are none.
+    /// Adds a plane with these rows in `columns`, unless all of them are empty.
     #[inline]
     pub(crate) fn add_plane(
         &mut self,
@@ -179,12 +179,12 @@ impl DrawList {
         self.planes.push(Plane { columns: columns.clone(), first, kind, height, image });
     }
 
-    /// The first column of `plane`, and its rows from there on.
+    /// The first column of `plane`, and its rows from that column on.
     pub(crate) fn rows_of_plane(&self, plane: &Plane) -> (usize, &[Rows]) {
         (plane.columns.start as usize, &self.plane_rows[plane.first..][..plane.columns.len()])
     }
 
-    /// Adds a face whose columns are the last face columns, unless it shows in none.
+    /// Adds a face whose columns are at the end of `face_columns`, unless it has no rows in any of them.
     pub(crate) fn push_face(&mut self, face: Face) {
         let first = face.first;
         if self.face_columns[first..].iter().all(|column| column.rows.is_empty()) {
@@ -199,7 +199,7 @@ impl DrawList {
         self.faces.push(face);
     }
 
-    /// Whether the sky may be in view.
+    /// Returns true if the sky may be in view.
     pub(crate) fn shows_sky(&self) -> bool {
         let is_of_sky = |plane: &Plane| match plane.kind {
             PlaneKind::Ceiling(sector) => {
@@ -211,12 +211,12 @@ impl DrawList {
         self.backdrops.contains(&Some(Backdrop::Sky)) || self.planes.iter().any(is_of_sky)
     }
 
-    /// The index of `image`, which is in view.
+    /// The index of `image`, which must be in the list.
     pub(crate) fn index_of_image(&self, image: MirrorTransform) -> usize {
         self.images.iter().position(|&known| known == image).unwrap_or(0)
     }
 
-    /// Adds an image, unless it is known.
+    /// Adds an image, unless it is in the list already.
     pub(crate) fn add_image(&mut self, image: MirrorTransform) {
         if !self.images.contains(&image) {
             self.images.push(image);

@@ -1,12 +1,14 @@
-//! Edges: the ends of faces for the filter by area, which are straight lines in the picture.
+//! Edges: the outlines of faces under the area filter, as straight lines in the picture.
 //!
-//! A wall covers some pixels at its ends in part. What is behind it is drawn there first: floor and ceiling go on
-//! under its lower and its upper end. The walls are then blended over it, from far to near, by the share of each pixel
-//! that they cover; those that share a column of pixels all at once, so that nothing is rounded between them.
+//! A wall covers the pixels along its edges only in part. The surfaces behind these pixels are drawn first:
+//! floor and ceiling continue under the wall's lower and upper edge. The walls are then blended over them from
+//! far to near, each by the share of the pixel that it covers. Walls that share a column of pixels are blended
+//! together, so that no rounding happens between them.
 //!
-//! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long. Walls so
-//! narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders of
-//! pixels, as they are for other filters.
+//! A wall so narrow that no ray hits it is not found. The sides of doors, diagonals and pillars are at the
+//! borders of pixels, as under the other filters.
+//!
+//! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long.
 
 use std::ops::Range;
 
@@ -19,29 +21,29 @@ use super::sectors::{Sector, SectorId, TileSectors};
 use super::walk::{ColumnMemory, Group, Visit, Walk, texture_coordinate_at};
 use crate::world::TileKind;
 
-/// The heights of a face on the grid in the picture, column by column.
+/// The height in the picture of a face on the grid, as a linear function of the column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FaceEdges {
-    /// The rows that a cell of height covers at the left edge of the picture, and their change from column to
+    /// The number of rows per cell of height at the left edge of the picture, and its change from column to
     /// column.
     rows: f64,
     change: f64,
-    /// The part of each column that it covers, from 0 at the left to 1 at the right.
+    /// The part of each column that the face covers, from 0 at the left to 1 at the right.
     part: (f64, f64),
-    /// Whether it is blended together with the next face, which shares the column.
+    /// `true` if the face is blended together with the next face, which shares the column.
     pub(crate) is_joined: bool,
 }
 
 /// The border between two walls that may share a column of pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Joint {
-    /// In columns from the left edge of the picture.
+    /// The position, in columns from the left edge of the picture.
     place: f64,
 }
 
-/// A border this near to that of a pixel is on it, in columns.
+/// The distance, in columns, within which a joint counts as on the border of a pixel.
 const EPSILON: f64 = 1.0 / 512.0;
-/// More rows than any picture has, for a cell of height.
+/// A number of rows per cell of height that is greater than the height of any picture.
 const FAR: f64 = 1e9;
 
 impl FaceEdges {
@@ -50,27 +52,27 @@ impl FaceEdges {
         let to_line = face.distance_to_line(projection.origin());
         let [middle, right] =
             [projection.direction(), projection.plane()].map(|it| it[face.side as usize]);
-        // The inverse of the distance to the camera plane changes evenly across the picture.
+        // The inverse of the distance to the camera plane is linear across the picture.
         let rows = (projection.focal_length() / to_line).min(FAR);
         let rows = if face.is_ahead { rows } else { -rows };
         let change = rows * right * (2.0 / projection.columns() as f64);
         Self { rows: rows * (middle - right), change, part: (0.0, 1.0), is_joined: false }
     }
 
-    /// The rows that a cell of height covers at `place`.
+    /// The number of rows per cell of height at `place`.
     #[inline]
     fn rows_at(&self, place: f64) -> f64 {
         self.rows + self.change * place
     }
 
-    /// The top and the bottom of `face` in column `x`.
+    /// The upper and the lower edge of `face` in column `x`.
     #[inline]
     pub(crate) fn limits(&self, projection: &Projection, face: &Face, x: u32) -> [SlopedEdge; 2] {
         let across = self.across(x);
         [face.top, face.bottom].map(|height| self.edge(projection, height, &across))
     }
 
-    /// The edge at `height` between two places.
+    /// The edge at `height` between two positions.
     #[inline]
     fn edge(&self, projection: &Projection, height: f64, across: &Range<f64>) -> SlopedEdge {
         let row =
@@ -95,12 +97,12 @@ impl FaceEdges {
 }
 
 impl Walk<'_> {
-    /// Whether faces are blended over what is behind their ends.
+    /// Returns true if faces are blended over the surfaces behind their edges.
     pub(crate) fn blends(&self) -> bool {
         self.scene.plan.filter == super::Filter::Area
     }
 
-    /// Finds the places at which walls of the current visit share a column of pixels.
+    /// Finds the positions at which neighbouring walls of the current visit share a column of pixels.
     pub(crate) fn find_joints(&mut self, visit: &Visit, sector: &Sector) {
         let mut joints = std::mem::take(&mut self.memory.joints);
         joints.clear();
@@ -125,7 +127,7 @@ impl Walk<'_> {
         let x = f64::from(right.columns.start);
         let [of_left, of_right] =
             [left, right].map(|it| FaceEdges::new(projection, &it.face).rows_at(x));
-        // The ray on the border is in the middle between the two columns.
+        // The border is between two columns; its ray is in the middle.
         let between = x - 0.5..x + 0.5;
         let end = if of_left > of_right {
             self.end_of_wall(visit, left, left.face.right_end(), &between)
@@ -136,7 +138,7 @@ impl Walk<'_> {
         Some(Joint { place })
     }
 
-    /// Whether there is a wall behind `border` that hides everything.
+    /// Returns true if a wall that hides everything is behind `border`.
     fn is_wall(&self, sector: &Sector, border: &Border) -> bool {
         border.into.is_some_and(|(_, id)| {
             let TileSectors { lower, .. } = self.fan.sectors.of(id);
@@ -145,8 +147,9 @@ impl Walk<'_> {
         })
     }
 
-    /// The place of the end of the wall of `border` in the picture, which is at `end` or, where the wall goes on in
-    /// the next cells, further on, if that is still `between` two places.
+    /// The position in the picture of the end of the wall at `border`; `None` if it is behind the camera. The
+    /// wall ends at `end`, or further on if it continues in the next cells. The search stops at the first
+    /// position outside `between`.
     fn end_of_wall(
         &self,
         visit: &Visit,
@@ -188,8 +191,9 @@ impl Walk<'_> {
         Some(place)
     }
 
-    /// Moves `bottoms` and `tops`, the rows in which the rays leave the sector, for its planes: they go on under the rows
-    /// that a face at the border covers in part. The rows for the faces become the outer ones.
+    /// Extends the planes of the sector under the rows that a face at the border covers only in part. `bottoms`
+    /// and `tops` become the limits of the planes. `outer_bottoms` and `outer_tops` receive the limits of the
+    /// faces.
     pub(crate) fn extend_planes(&mut self, sector: &Sector) {
         let projection = self.scene.projection;
         let ground = projection.first_row_of_ground();
@@ -220,7 +224,7 @@ impl Walk<'_> {
         self.uncover_joints(sector);
     }
 
-    /// Whether a face that is blended is above the floor at `border`, and below the ceiling.
+    /// Returns whether a blended face is above the floor at `border`, and whether one is below the ceiling.
     fn faces_at(&self, sector: &Sector, border: &Border) -> [bool; 2] {
         let sectors = self.fan.sectors;
         let Some((_, id)) = border.into else {
@@ -235,7 +239,7 @@ impl Walk<'_> {
         [is_rock, is_rock && gap.bottom >= sector.top || is_lintel]
     }
 
-    /// Lets planes show in the columns that walls share what they show beside each of them.
+    /// Extends the planes, in each column that two walls share, as far as they reach beside either wall.
     fn uncover_joints(&mut self, sector: &Sector) {
         let projection = self.scene.projection;
         let ground = projection.first_row_of_ground();
@@ -257,8 +261,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Finds the rows of the faces at `group` between two heights, where they are in `sector`: `tops` and `bottoms`
-    /// with those that the faces cover in part.
+    /// Writes the rows of the faces at `group` between two heights to `tops` and `bottoms`, including the rows
+    /// that the faces cover only in part. A height outside `sector` changes nothing.
     pub(crate) fn find_outer_limits(
         &mut self,
         sector: &Sector,
@@ -279,7 +283,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Adds an opaque face at `group`, without the columns that it shares with walls beside it.
+    /// Adds an opaque face at `group`, except in the columns that it shares with neighbouring walls.
     pub(crate) fn show_blended_face(
         &mut self,
         visit: &Visit,
@@ -314,7 +318,8 @@ impl Walk<'_> {
         });
     }
 
-    /// The column `x` of the face at a border, in the middle of the part `across` of it.
+    /// The face column at a border in column `x` of the picture, sampled in the middle of the part `across` of
+    /// that column.
     fn column_at(
         &self,
         visit: &Visit,
@@ -358,8 +363,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Adds the part of the wall at a border in column `x`, which is blended together with the next one unless it
-    /// is the last.
+    /// Adds the part of the wall at a border that is in column `x`. It is blended together with the next part,
+    /// unless it is the last.
     fn show_part(
         &mut self,
         visit: &Visit,
@@ -399,7 +404,7 @@ impl Walk<'_> {
 }
 
 impl Joint {
-    /// The column that both walls share; `None` if the border is on that of a pixel.
+    /// The column that both walls share; `None` if the joint is on the border of a pixel.
     fn column(self) -> Option<u32> {
         let column = self.place as u32;
         let within = self.place - f64::from(column);
@@ -415,7 +420,7 @@ pub(crate) struct SlopedEdge {
 }
 
 impl SlopedEdge {
-    /// The rows that it crosses, at most `height`: from the first to the one after the last.
+    /// The rows that the edge crosses, limited to `height`.
     #[inline]
     pub(crate) fn rows(self, height: u32) -> Range<u32> {
         let [left, right] = self.ends;
@@ -426,10 +431,10 @@ impl SlopedEdge {
         first.min(height)..end.saturating_add(u32::from(is_between)).min(height)
     }
 
-    /// The share of the pixels of `row`, between the edge's ends, that is below the edge.
+    /// The share of `row`, between the edge's ends, that is below the edge.
     #[inline]
     pub(crate) fn share_below(self, row: u32) -> f64 {
-        /// With a lower rise the edge is level: the difference is then a rounding error.
+        /// An edge with a smaller rise counts as level, because the difference is a rounding error.
         const LEVEL: f64 = 1e-6;
         let bottom = f64::from(row) + 1.0;
         let [left, right] = self.ends.map(|end| bottom - end);
@@ -451,7 +456,7 @@ impl SlopedEdge {
     }
 }
 
-/// The integral from 0 to `end` of a number that is limited to the range from 0 to 1.
+/// The integral of `x.clamp(0.0, 1.0)` from 0 to `end`.
 fn integral(end: f64) -> f64 {
     let limited = end.clamp(0.0, 1.0);
     limited * limited / 2.0 + (end - limited).max(0.0)

@@ -12,18 +12,18 @@ use crate::world::{Cell, FaceLight, Glass, Grid, Outline, Paint, TextureId, Tile
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
     pub(crate) columns: Range<u32>,
-    /// The index of the first of its face columns. The others follow.
+    /// The index of its first face column. The others follow.
     pub(crate) first: usize,
     pub(crate) facing: Facing,
     pub(crate) material: Material,
-    /// The light along a cell of it.
+    /// The light along one cell of the face.
     pub(crate) light: FaceLight,
-    /// The heights between which it extends.
+    /// The heights of its bottom and its top.
     pub(crate) bottom: f64,
     pub(crate) top: f64,
     /// The image in which it is seen.
     pub(crate) image: MirrorTransform,
-    /// Its ends, if it is blended over what is behind them.
+    /// Its edges, if it is blended over the surfaces behind them.
     pub(crate) edges: Option<FaceEdges>,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct FaceColumn {
     pub(crate) u: f64,
 }
 
-/// Rows of pixels: none if the end is not below the start.
+/// A range of rows of pixels, empty if the end is not below the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rows {
     pub(crate) start: u32,
@@ -55,7 +55,7 @@ pub(crate) enum Material {
 /// The direction of a face on the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Facing {
-    /// Perpendicular to a side.
+    /// Perpendicular to a side of a cell.
     Side(Side),
     /// Along a vector of length 1, in either direction.
     Normal(DVec2),
@@ -70,7 +70,7 @@ impl Rows {
         self.start >= self.end
     }
 
-    /// The rows common to both.
+    /// The rows that are in both ranges.
     #[inline]
     pub(crate) fn within(self, rows: &Range<u32>) -> Range<u32> {
         let start = self.start.max(rows.start);
@@ -98,14 +98,15 @@ impl Facing {
     }
 }
 
-/// A side of a cell by which straight rays from one origin enter it.
+/// A side of a cell through which straight rays from one origin enter it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CellFace {
     /// The kind of line that the rays cross.
     pub(crate) side: Side,
-    /// The column and the row of the cell along the rays; with mirrors, the map repeats there.
+    /// The column and the row of the cell along the straight rays. Mirrors repeat the map
+    /// along these rays.
     pub(crate) place: [i64; 2],
-    /// Whether the rays go to the east or to the south across the line.
+    /// `true` if the rays cross the line to the east or to the south.
     pub(crate) is_ahead: bool,
 }
 
@@ -139,7 +140,7 @@ impl CellFace {
         place
     }
 
-    /// Whether rays see the north or west end on the left.
+    /// Returns true if the rays see the north or west end on the left.
     #[inline]
     fn is_from_left(&self) -> bool {
         self.is_ahead == (self.side == Side::X)
@@ -165,13 +166,13 @@ impl CellFace {
         }
     }
 
-    /// Whether `other` is on the same line.
+    /// Returns true if `other` is on the same line.
     #[inline]
     pub(crate) fn is_in_line_with(&self, other: &Self) -> bool {
         self.side == other.side && self.is_ahead == other.is_ahead && self.line() == other.line()
     }
 
-    /// Whether `other` is on the same line, and of a neighbouring cell.
+    /// Returns true if `other` is on the same line and belongs to a neighbouring cell.
     #[inline]
     pub(crate) fn is_beside(&self, other: &Self) -> bool {
         self.is_in_line_with(other) && self.along().abs_diff(other.along()) == 1
@@ -190,7 +191,7 @@ pub(crate) fn cell_in_front(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<
     grid.cell(column, row)
 }
 
-/// A straight ray from `origin` along `direction`, on the map after the reflections of an image.
+/// The ray on the map that an image shows as the straight ray from `origin` along `direction`.
 pub(crate) fn on_map(image: MirrorTransform, origin: DVec2, direction: DVec2) -> Ray {
     Ray::moved(image.to_map(origin), image.direction_to_map(direction))
 }

@@ -1,14 +1,16 @@
-//! The fan: the rays of neighbouring columns through one sector, to the faces at its border.
+//! The fan: the rays of neighbouring columns through one sector, up to the faces at its border.
 //!
-//! Few of them are cast. Between two rays that hit the same face, all rays hit that face: a cell outside the sector
-//! would be at least as wide as the face and nearer, and one of the two would hit it. So rays are cast where a face
-//! ends: at the first column beyond it, then at its last one. Rejected: halving the picture, and each half. At
-//! 80×48 pixels it casts 33 rays where this casts 15.
+//! Only a few of the rays are cast. If two rays hit the same face, all rays between them hit it too. A cell
+//! outside the sector that hides the face would be nearer and at least as wide as the face, so one of the two
+//! rays would hit that cell. Rays are therefore cast where a face ends: at the first column beyond the face,
+//! then at its last column. Rejected: halving the picture recursively. At 80×48 pixels, it casts 33 rays
+//! instead of 15.
 //!
-//! Two rays may also hit neighbouring faces on one line, each a cell wide. Then the rays between them hit these two
-//! faces, if no cell fits between the two rays: a cell nearer than the line is at least one cell nearer, where the
-//! rays are less than one cell apart if they are less than D / (D − 1) cells apart at the line, D cells from the
-//! eye. The corner between the faces tells which ray hits which.
+//! Two rays may also hit neighbouring faces on one line, each a cell wide. The rays between them then hit only
+//! these two faces if no cell fits between the two rays. A cell in front of the line is at least one cell
+//! nearer than the line. If the line is D cells from the eye, the rays are less than one cell apart at such a
+//! cell if they are less than D / (D − 1) cells apart at the line. The corner between the two faces decides
+//! which ray hits which face.
 
 use std::cell::Cell as Counter;
 use std::ops::Range;
@@ -23,7 +25,7 @@ use crate::cast::{
 };
 use crate::world::{Cell, Grid, TileId};
 
-/// Neighbouring columns whose rays leave a sector by one face.
+/// Neighbouring columns whose rays leave a sector through one face.
 #[derive(Clone, Debug)]
 pub(crate) struct Border {
     pub(crate) columns: Range<u32>,
@@ -32,51 +34,51 @@ pub(crate) struct Border {
     pub(crate) into: Option<(Cell, TileId)>,
 }
 
-/// The beginning of rays in a sector.
+/// The start of rays in a sector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View<'a> {
     pub(crate) sector: SectorId,
     pub(crate) image: MirrorTransform,
     pub(crate) entries: &'a [Entry],
-    /// Whether the rays begin at the camera.
+    /// `true` if the rays begin at the camera.
     pub(crate) is_at_camera: bool,
 }
 
-/// The cell in which the rays of a column, and of those to its right up to the next entry, enter a sector.
+/// The cell in which rays enter a sector: the ray of `column`, and the rays to its right up to the next entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) column: u32,
-    /// Its column and row along the straight rays.
+    /// The column and the row of the cell along the straight rays.
     pub(crate) place: [i64; 2],
 }
 
 /// The directions of the rays of all columns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Directions {
-    /// The places of the columns across the picture, from −1 to 1.
+    /// The positions of the columns across the picture, from −1 to 1.
     places: Vec<f64>,
     along: [Vec<f64>; 2],
 }
 
-/// What the rays of a frame share.
+/// State shared by the rays of a frame.
 pub(crate) struct Fan<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) sectors: &'a Sectors,
     pub(crate) directions: &'a Directions,
-    /// The caster of the rays from the camera, unless it is the exact one.
+    /// The caster of the rays from the camera; `None` for the exact one.
     pub(crate) caster: Option<&'a DynCaster>,
     order: CommonOrder,
-    /// The cost so far.
+    /// The cost of the rays cast until now.
     pub(crate) counts: Counter<WalkStats>,
 }
 
-/// Memory for the rays whose neighbours to the left are not known yet, reused from frame to frame.
+/// Rays whose neighbours to the left are not known yet, in memory that is reused from frame to frame.
 pub(crate) type FanMemory = Vec<(u32, Hit)>;
 
-/// The face by which a ray leaves a sector, and the cell behind it.
+/// The face through which a ray leaves a sector, and the cell behind the face.
 type Hit = (CellFace, Option<(Cell, TileId)>);
 
-/// A corner whose position is less than this from the centre of a pixel is as good as on it, in columns.
+/// The distance, in columns, within which a corner counts as on the centre of a pixel.
 const EPSILON: f64 = 1e-6;
 
 impl Directions {
@@ -101,7 +103,7 @@ impl Directions {
         DVec2::new(x[column as usize], y[column as usize])
     }
 
-    /// The components of all directions across lines of kind `side`.
+    /// The components of all directions across the lines of `side`.
     #[inline]
     pub(crate) fn across(&self, side: Side) -> &[f64] {
         &self.along[side as usize]
@@ -121,8 +123,8 @@ impl<'a> Fan<'a> {
         Self { scene, sectors, directions, caster, order, counts: Counter::default() }
     }
 
-    /// Finds the faces by which the rays of `columns`, which are not empty, leave the sector of `view`, from left to
-    /// right, into `borders`.
+    /// Writes the faces through which the rays of `columns` leave the sector of `view` to `borders`, from left
+    /// to right. `columns` must not be empty.
     pub(crate) fn find(
         &self,
         view: View<'_>,
@@ -163,7 +165,8 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// The grid in which exactly the cells outside the sector of `view` are solid, if there is one.
+    /// The grid in which exactly the cells outside the sector of `view` are solid; `None` if the world has no
+    /// such grid.
     fn grid_of(&self, view: View<'_>) -> Option<&'a Grid> {
         let world = self.scene.world;
         if !view.is_at_camera {
@@ -187,7 +190,7 @@ impl<'a> Fan<'a> {
         hit.unwrap_or_else(|| self.walk(view, column, direction))
     }
 
-    /// The first solid cell of `grid` that the ray from the camera along `direction` enters.
+    /// The hit of the ray from the camera along `direction`: the first solid cell of `grid` that it enters.
     #[inline]
     fn cast_through(&self, grid: &Grid, direction: DVec2) -> Option<Hit> {
         let ray = Ray::of_camera(self.scene.projection.origin(), direction);
@@ -213,7 +216,7 @@ impl<'a> Fan<'a> {
         Some((CellFace { side, place, is_ahead }, Some((cell, tile))))
     }
 
-    /// Counts a ray into this number of cells.
+    /// Counts a ray that entered `cells` cells and made `looks` lookups.
     fn count(&self, cells: u64, looks: u64) {
         self.counts.update(|counts| WalkStats {
             rays: counts.rays + 1,
@@ -223,7 +226,7 @@ impl<'a> Fan<'a> {
         });
     }
 
-    /// The hit of the ray of `column`, which is followed from cell to cell.
+    /// The hit of the ray of `column`, found by following it from cell to cell.
     fn walk(&self, view: View<'_>, column: u32, direction: DVec2) -> Hit {
         let grid = self.scene.world.grid();
         let mut order = self.order.along(direction);
@@ -248,7 +251,8 @@ impl<'a> Fan<'a> {
     }
 }
 
-/// Adds `columns` whose rays leave by the face of `hit`, which may be the last of `borders`.
+/// Adds `columns` whose rays leave through the face of a hit. They extend the last border if it has the same
+/// face.
 #[inline]
 fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): Hit) {
     if columns.is_empty() {
@@ -268,16 +272,17 @@ struct Gap<'a> {
     width: u32,
 }
 
-/// What to do with the rays of a gap. Columns are counted from that of the first ray.
+/// The next step for the rays in a gap. Columns are counted from the column of the first ray.
 enum Step {
-    /// Those before this column hit the first face, and the others the second one.
+    /// The rays before this column hit the first face, and the others hit the second one.
     Split(u32),
-    /// The ray of this column is to be cast.
+    /// The ray of this column must be cast.
     Cast(u32),
 }
 
 impl Gap<'_> {
-    /// What to do with the rays between both: which of them follow from the two, or which to cast.
+    /// The next step for the rays between the two: the split if it follows from their hits, else the ray to
+    /// cast.
     fn step(&self, fan: &Fan<'_>, faces: [&CellFace; 2]) -> Step {
         let [left, right] = faces;
         let (width, last) = (self.width, self.width - 1);
@@ -302,7 +307,7 @@ impl Gap<'_> {
         if beyond_left == 0 {
             return Step::Cast(1);
         }
-        // The face on the right, or another one, is in front.
+        // The face on the right, or a third face, is in front.
         let start_of_right = self.column_of(right.left_end()).unwrap_or(0.0);
         let first_of_right = self.first_column_from(start_of_right);
         Step::Cast(if first_of_right == 0 {
@@ -312,7 +317,7 @@ impl Gap<'_> {
         })
     }
 
-    /// Whether no cell in front of the line of both faces fits between the rays.
+    /// Returns true if no cell in front of the line of both faces fits between the rays.
     fn has_no_room_for_a_cell(&self, fan: &Fan<'_>, [left, right]: [&CellFace; 2]) -> bool {
         let origin = self.projection.origin();
         let to_line = left.distance_to_line(origin);
@@ -322,19 +327,18 @@ impl Gap<'_> {
             direction * t
         };
         let apart = point(self.first, left) - point(self.first + self.width, right);
-        // Rounding is far less than a hundredth.
+        // The rounding error is far less than a hundredth.
         apart.abs().max_element() * (to_line - 1.0) < 0.99 * to_line
     }
 
-    /// The position of `point` in columns from that of the first ray, where integers are the centres of
-    /// columns; `None` if it is behind the camera.
+    /// The position of `point`, in columns from the first ray. Integers are the centres of columns. `None` if
+    /// the point is behind the camera.
     fn column_of(&self, point: DVec2) -> Option<f64> {
         let place = self.projection.place(point);
         (place.depth > 0.0).then_some(place.column - 0.5 - f64::from(self.first))
     }
 
-    /// The first column whose centre is not before `position`; one after the second ray for all further
-    /// ones.
+    /// The first column whose centre is not before `position`, limited to one column after the second ray.
     fn first_column_from(&self, position: f64) -> u32 {
         let position = position.max(0.0).min(f64::from(self.width) + 1.0);
         // On old processors `f64::ceil` is a call.

@@ -1,13 +1,14 @@
 //! Layers: masks, tints and the billboards between them, from far to near.
 //!
-//! A thing or a figure is seen once in each image, at its own depth. The part of a ray in a sector is behind the faces
-//! by which it enters and in front of those by which it leaves, so that the billboards in it are known by their
-//! depths, clipped to the rows and to the heights of the sector. In reverse, what rays passed is in the order of
-//! painting. Rejected: a depth for each pixel. A clip range for each column is equivalent.
+//! A thing or a figure appears once in each image, at its own depth. The part of a ray in a sector is behind
+//! the faces through which the ray enters, and in front of the faces through which it leaves. A billboard is
+//! therefore drawn in the parts whose distances contain its depth, clipped to the rows and the heights of the
+//! sector. The reverse of the list of items that rays passed is the order of painting. Rejected: a depth for
+//! each pixel. A clip range for each column is equivalent.
 //!
-//! Only things in the cells that an image shows are considered. Colours are mixed as sRGB values, as in the frame.
-//! Rejected: mixing linear light. It needs a table in each direction for every pixel, and tints looked no more like
-//! glass.
+//! Only things in the cells that an image shows are considered. Colours are mixed as sRGB values, as in the
+//! frame. Rejected: mixing linear light. It needs a table lookup in each direction for every pixel, and tints
+//! looked no more like glass.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -22,7 +23,7 @@ use super::{Billboard, Scene};
 use crate::world::World;
 use crate::world::sprite::builtin;
 
-/// The number of images in mirrors for which memory is reserved in advance.
+/// The number of mirror images for which memory is reserved in advance.
 pub(crate) const IMAGES_AT_ONCE: usize = 64;
 /// The number of things in view for which memory is reserved in advance.
 const MAX_THINGS: usize = 4096;
@@ -32,9 +33,9 @@ const MAX_THINGS: usize = 4096;
 pub(crate) struct LayerMemory {
     /// The cells in view in each image.
     visible: Vec<VisibleCells>,
-    /// The extents of each image from north to south.
+    /// The northern and southern limits of each image.
     extents: Vec<[f64; 2]>,
-    /// The billboards of each image, from near to far, as indices.
+    /// The indices of each image's billboards, from near to far.
     of_image: Vec<Range<usize>>,
 }
 
@@ -61,7 +62,8 @@ impl LayerMemory {
     }
 }
 
-/// Makes the layers of `list` from what rays passed. Returns the number of things and figures considered.
+/// Makes the layers of `list` from the items that rays passed. Returns the number of things and figures
+/// considered.
 pub(crate) fn fill(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawList) -> u64 {
     let has_parts = list.passed.iter().any(|layer| matches!(layer, Layer::Part(_)));
     let considered = if has_parts { find_billboards(scene, memory, list) } else { 0 };
@@ -105,7 +107,7 @@ fn find_billboards(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawLi
     considered
 }
 
-/// Finds the cells in view of each image.
+/// Finds the cells in view in each image.
 fn look(scene: Scene<'_>, memory: &mut LayerMemory, list: &DrawList) {
     let world = scene.world;
     let images = list.images.len();
@@ -129,9 +131,9 @@ fn look(scene: Scene<'_>, memory: &mut LayerMemory, list: &DrawList) {
     for_each_edge(scene, list, |image, [one, other]| visible[image].follow(one, other));
 }
 
-/// Passes the edges of the area that each part of rays covers on the map to `follow`, with the index of the image.
-/// Edges that end nowhere near the map are left out, and outside mirrors those at which a part begins: another one
-/// ends there.
+/// Calls `follow` with the index of the image and each edge of the area on the map that a ray part covers. It
+/// skips edges whose ends are not finite. In the direct image, it also skips edges at which a part begins,
+/// because another part ends there.
 fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize, [DVec2; 2])) {
     let origin = scene.projection.origin();
     for layer in &list.passed {
@@ -161,7 +163,7 @@ fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize
     }
 }
 
-/// Whether the world has a figure of the player who sees it, which mirrors show then.
+/// Returns true if the world has a figure at the camera, which mirrors show instead of the built-in player.
 fn has_own_figure(scene: Scene<'_>) -> bool {
     let origin = scene.projection.origin();
     scene.world.figures().iter().any(|figure| figure.position == origin)
@@ -171,7 +173,7 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
     one.depth.total_cmp(&other.depth).then_with(|| other.order.cmp(&one.order))
 }
 
-/// Adds the layers of the billboards in a part of rays, from far to near.
+/// Adds the layers of the billboards in a ray part, from far to near.
 fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawList) {
     let index = list.index_of_image(part.image);
     let of_image = memory.of_image[index].clone();
@@ -210,7 +212,7 @@ fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawLi
     }
 }
 
-/// The rows of `billboard` between the heights of a part of rays.
+/// The rows of `billboard` between the heights of a ray part.
 fn limits(scene: Scene<'_>, part: &RayPart, sector: &Sector, billboard: &Billboard) -> Rows {
     let row_of = |height| scene.projection.row_of_height(height, billboard.depth);
     let top = if sector.top < f64::INFINITY { row_of(sector.top) } else { 0 };

@@ -1,7 +1,7 @@
 //! Lighting: the effect of light and fog on the colour of a texel.
 //!
-//! A row of the floor and a column of a wall have one lighting each. It is applied to many colours at once, several
-//! channels by one instruction, and not at all where everything is near and fully lit.
+//! Each row of floor and each column of wall has one lighting. It is applied to many colours at once, with
+//! several channels per instruction. It is not applied at all if everything is near and fully lit.
 
 use glam::DVec2;
 
@@ -12,15 +12,15 @@ use crate::world::{Fog, Light};
 
 /// The effect of light and fog on colours.
 pub(crate) trait Lighting: Copy + PartialEq {
-    /// Whether mip levels have texels in this lighting.
+    /// `true` if mip levels store texels in this lighting.
     const HAS_TEXELS: bool;
 
     fn apply(self, color: Rgb) -> Rgb;
 
-    /// Applies it to each of `colors`.
+    /// Applies the lighting to each of `colors`.
     fn apply_to_all(self, colors: &mut [Rgb]);
 
-    /// The texels of `level`, column by column, in this lighting if the level has them so, else unlit.
+    /// The texels of `level`, column by column: lit if the level stores them in this lighting, else unlit.
     fn texels(self, level: &MipLevel) -> &[Rgb];
 }
 
@@ -35,10 +35,10 @@ pub(crate) struct SideLit(pub(crate) Side);
 /// A fade towards black or the fog's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Faded {
-    /// The share of the own colour, in 256ths.
+    /// The weight of the surface's own colour, in 256ths.
     own: u32,
     fog: Rgb,
-    /// The share of the fog's colour, in 256ths; at most the rest of the own.
+    /// The weight of the fog's colour, in 256ths. Both weights add up to at most 256.
     share: u32,
 }
 
@@ -122,8 +122,8 @@ impl Faded {
         Self::new(light, fog, distance)
     }
 
-    /// The fade of a surface with this `normal`, a vector of length 1: that of an x-side or a
-    /// y-side if it is parallel to one, and between both if it is oblique.
+    /// The fade of a surface with this `normal`, a vector of length 1. A surface parallel to an x-side or a
+    /// y-side has the fade of that side. An oblique one is between both.
     pub(crate) fn of_surface(normal: DVec2, light: Light, fog: Option<Fog>, distance: f64) -> Self {
         let share = f64::midpoint(1.0, normal.x * normal.x);
         Self::new((f64::from(light.in_256ths()) * share) as u32, fog, distance)

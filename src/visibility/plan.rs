@@ -1,8 +1,8 @@
 //! The frame plan: the loops that draw a frame.
 //!
-//! The plan is a small value. It is made before the drawing from the camera and from the parts of
-//! each kind of tile in the world. It is matched once a frame, so that features which a scene lacks
-//! are absent from the loops. As text it has a line for each part, with its loop and the reason.
+//! The plan is a small value, made from the world and the filter before the drawing. It is matched once per
+//! frame, so that the loops contain no code for features that the scene lacks. Its text has a line for each
+//! part of the frame, with the loop and the reason.
 
 use std::fmt;
 
@@ -12,45 +12,45 @@ use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind
 /// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// How ceilings are drawn.
+    /// The loop for ceilings.
     pub ceiling: CeilingLoop,
-    /// How the floor is drawn.
+    /// The loop for the floor.
     pub floor: PlaneLoop,
-    /// How the sky is drawn, in place of a ceiling or beyond the edge of the map.
+    /// The loop for the sky, in place of a ceiling or beyond the edge of the map.
     pub sky: SkyLoop,
-    /// How the walls are drawn.
+    /// The loop for walls.
     pub walls: WallLoop,
-    /// How things and figures are drawn.
+    /// The loop for things and figures.
     pub things: ThingLoop,
-    /// How textures are sampled.
+    /// The filter of textures and edges.
     pub filter: Filter,
-    /// Whether anything may be in front of what hides everything: things, masks, glass or mirrors.
+    /// `true` if anything may be in front of the opaque faces: things, figures, masks, glass or mirrors.
     pub(crate) has_layers: bool,
 }
 
-/// How the floor or the ceiling is drawn.
+/// A loop that draws the floor or the ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaneLoop {
-    /// In one colour everywhere: a single fill, behind the walls.
+    /// For one colour everywhere: a single fill, behind the walls.
     Fill(Rgb),
-    /// In one colour with fog: a fill for each row.
+    /// For one colour with fog: a fill for each row.
     FillRows(Rgb),
-    /// With one covering everywhere: the spans of each row that no wall covers.
+    /// For one covering everywhere: the spans of each row that no wall covers.
     Spans,
-    /// By tile: the same spans, cut where the tile changes.
+    /// For tiles that differ: the same spans, cut where the tile changes.
     Tiles,
 }
 
-/// How ceilings are drawn.
+/// A loop that draws ceilings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CeilingLoop {
-    /// Not at all: the sky is above every cell.
+    /// No loop, because the sky is above every cell.
     Sky,
-    /// As a plane, in some cells at least.
+    /// A loop for planes, if at least some cells have a ceiling.
     Plane(PlaneLoop),
 }
 
-/// How the sky is drawn.
+/// A loop that draws the sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkyLoop {
     /// One colour for each row.
@@ -59,23 +59,23 @@ pub enum SkyLoop {
     Panorama,
 }
 
-/// How the walls are drawn.
+/// The loop that draws walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallLoop {
-    /// Whether any wall has a texture.
+    /// `true` if any wall has a texture.
     pub textured: bool,
-    /// Whether colours fade, by fog or by darkness.
+    /// `true` if fog or darkness fades colours.
     pub faded: bool,
-    /// Whether a wall may have a door beside it, and show its jamb.
+    /// `true` if a wall may stand beside a door and show the door's jamb.
     pub jambs: bool,
 }
 
-/// How things and figures are drawn.
+/// A loop that draws things and figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThingLoop {
-    /// Not at all: the world has none.
+    /// No loop, because the world has no things or figures.
     None,
-    /// As billboards, from far to near: things in visible cells, and all figures.
+    /// Billboards, from far to near: the things in visible cells, and all figures.
     Billboards,
 }
 
@@ -211,21 +211,20 @@ impl fmt::Display for Filter {
     }
 }
 
-/// How a pixel is computed from the surfaces that it covers.
+/// The method of computing a pixel from the surfaces that it covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
-    /// From the mip level whose texels are about as large as the pixel: far walls and floors do not
-    /// shimmer.
+    /// Samples the mip level whose texels are about as large as the pixel. Far walls and floors do not shimmer.
     #[default]
     Mip,
-    /// From the texture itself, at the pixel's centre: far surfaces shimmer.
+    /// Samples the texture itself at the pixel's centre. Far surfaces shimmer.
     Nearest,
-    /// By area: from the mean of the texture over the pixel's width and height on the surface, with walls
-    /// blended over what is behind them by the share of the pixel that they cover.
+    /// Averages the texture over the pixel's width and height on the surface. Walls are blended over the
+    /// surfaces behind them by the share of the pixel that they cover.
     ///
-    /// Walls and steps are blended along their tops and bottoms, and walls in columns that they share. The borders of
-    /// tiles and of pieces of a pattern, things, masks, glass, doors, and the sides of pillars, diagonals and steps have
-    /// hard edges as by [`Filter::Mip`].
+    /// Walls and steps are blended along their tops and bottoms, and walls also in the columns that they share.
+    /// The other edges are as hard as under [`Filter::Mip`]: the borders of tiles and of pieces of a pattern,
+    /// things, masks, glass, doors, and the sides of pillars, diagonals and steps.
     Area,
 }
 
@@ -244,10 +243,12 @@ impl Filter {
 
     /// The level of detail for a pixel that covers an area of this many texels.
     ///
-    /// A texel of each level covers four of the level before. A long and narrow pixel counts by its
-    /// area: by its longer side, walls seen at an angle would blur along their sharp direction; by
-    /// its shorter side, they would shimmer. [`Filter::Area`] samples by it what it has no
-    /// [means](crate::world::texture::AreaLod) for: masks, things and the sky.
+    /// A texel of each level covers four texels of the level before. The area also decides for a long and
+    /// narrow pixel. Rejected: its longer side. Walls seen at an angle would blur along their sharp direction.
+    /// Rejected: its shorter side. Such walls would shimmer.
+    ///
+    /// [`Filter::Area`] uses this level for surfaces without [area averages](crate::world::texture::AreaLod):
+    /// masks, things and the sky.
     pub(crate) fn lod(self, area: f64) -> usize {
         match self {
             // The nearest power of four. The exponent of a double is exact on every machine.
@@ -257,7 +258,7 @@ impl Filter {
     }
 }
 
-/// The binary exponent of a double that is at least 1. That of infinity is above all others.
+/// The binary exponent of a double that is at least 1. Infinity has the greatest exponent.
 fn exponent(number: f64) -> u64 {
     const BIAS: u64 = f64::MAX_EXP as u64 - 1;
     (number.to_bits() >> (f64::MANTISSA_DIGITS - 1)) - BIAS

@@ -1,8 +1,8 @@
 //! The projection: the ray of each column, and the rows of each height at each distance.
 //!
-//! Proportions are true for any window and any font: the focal length in pixels is `(w/2) /
-//! tan(fov/2)`, and vertically that divided by the pixel aspect. Rows and columns are sampled at
-//! the centres of pixels. The filter by area also needs rays between the centres, and the ends of faces.
+//! Proportions are true for any window and any font. The focal length is `(w/2) / tan(fov/2)` pixels across,
+//! and this value divided by the pixel aspect down. Rows and columns are sampled at the centres of pixels. The
+//! area filter also needs rays between the centres, and the positions of the ends of faces.
 
 use std::num::NonZeroU32;
 use std::ops::{Range, RangeInclusive};
@@ -24,13 +24,13 @@ pub struct Projection {
     height: f64,
     /// The horizon, at eye height, in rows from the top; it may be far outside the picture.
     horizon: f64,
-    /// The same horizon, for the texels of walls.
+    /// The same horizon, for texture steppers.
     horizon_of_texels: Horizon,
     /// The height of the eye.
     eye: f64,
     /// The number of rows from the horizon to a point 1 above the eye at distance 1.
     focal_length: f64,
-    /// The number of columns from the middle to a point 1 beside it at distance 1.
+    /// The number of columns from the middle to a point 1 to its side at distance 1.
     focal_length_across: f64,
 }
 
@@ -89,44 +89,46 @@ impl Projection {
         self.width as usize
     }
 
-    /// Whether neighbouring rays differ by far more than rounding.
+    /// Returns true if neighbouring rays differ by far more than the rounding error.
     pub(crate) fn fans_out(&self) -> bool {
-        /// Half of such a field of view is between 0.06° and 89.94°.
+        /// The tangents of half a field of view, for half angles from 0.06° to 89.94°.
         const MODERATE: RangeInclusive<f64> = 1e-3..=1e3;
-        /// The greatest number of rays.
+        /// The greatest number of columns.
         const WIDEST: u32 = 1 << 16;
         MODERATE.contains(&self.plane.length()) && self.width <= WIDEST
     }
 
-    /// Whether every row above the horizon is the mirror image of one below it.
+    /// Returns true if every row above the horizon is the mirror image of a row below it.
     pub(crate) fn is_symmetric(&self) -> bool {
         self.eye == 0.5 && 2.0 * self.horizon == self.height && self.rows().is_multiple_of(2)
     }
 
-    /// Whether the horizon is so near to the picture that the texels of walls are exact, except for
-    /// the first and the last row of a wall.
+    /// Returns true if the horizon is near enough to the picture for exact texels of walls. The first and the
+    /// last row of a wall may still be inexact.
     pub(crate) fn is_horizon_near(&self) -> bool {
         self.horizon.abs() <= 4096.0
     }
 
-    /// The direction of the camera, and the vector from there to the right edge of the picture at distance 1.
+    /// The direction of the camera.
     pub(crate) fn direction(&self) -> DVec2 {
         self.direction
     }
 
+    /// The vector from the middle of the picture to its right edge, at distance 1.
     pub(crate) fn plane(&self) -> DVec2 {
         self.plane
     }
 
-    /// The place of `column` across the picture, from −1 at the left edge to 1 at the right one.
+    /// The position of `column` across the picture, from −1 at the left edge to 1 at the right edge.
     #[inline]
     pub(crate) fn place_of(&self, column: u32) -> f64 {
         let width = f64::from(self.width);
-        // The quotient of two integers: a column and its mirror image have opposite ones.
+        // A quotient of two integers: a column and its mirror image have exactly opposite positions.
         (f64::from(column) * 2.0 + 1.0 - width) / width
     }
 
-    /// The direction of a ray `place` columns from the left edge, of which 0.5 is the middle of the first.
+    /// The direction of the ray at `place`, in columns from the left edge. The middle of the first column is at
+    /// 0.5.
     pub(crate) fn direction_at(&self, place: f64) -> DVec2 {
         let width = f64::from(self.width);
         self.direction + self.plane * ((place * 2.0 - width) / width)
@@ -163,7 +165,7 @@ impl Projection {
         self.first_row_below(self.horizon - rise / t)
     }
 
-    /// The same for each of `distances`, into `rows`.
+    /// Writes the row of `rise` at each of `distances` to `rows`, as `row_of` does for one distance.
     pub(crate) fn rows_of(&self, Rise(rise): Rise, distances: &[f64], rows: &mut [u32]) {
         if rise == 0.0 {
             rows.fill(self.first_row_of_ground());
@@ -174,7 +176,7 @@ impl Projection {
         }
     }
 
-    /// The same row for `height`, for callers that need it once.
+    /// The first row whose centre is not above a point at `height`, for callers that need it once.
     #[inline]
     pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {
         self.row_of(self.rise_to(height), t)
@@ -194,7 +196,7 @@ impl Projection {
         self.focal_length_across * width / depth
     }
 
-    /// The columns whose centres are between two positions, in columns from the left.
+    /// The columns whose centres are between two positions, in columns from the left edge.
     pub(crate) fn columns_between(&self, left: f64, right: f64) -> Range<u32> {
         let first = |x: f64| (x - 0.5).ceil().clamp(0.0, f64::from(self.width)) as u32;
         first(left)..first(right)
@@ -210,8 +212,8 @@ impl Projection {
         self.first_row_below(top)..self.first_row_below(bottom)
     }
 
-    /// The area of a wall's side, in square cells, that a pixel covers at the point that its ray
-    /// hits at `t`. Per unit of `t`, the ray approaches the side by `slope`.
+    /// The area of a wall's side, in square cells, that a pixel covers at the point where its ray hits the side
+    /// at `t`. Per unit of `t`, the ray approaches the side by `slope`.
     #[inline]
     pub(crate) fn pixel_area_on_wall(&self, t: f64, slope: f64) -> f64 {
         let down = t / self.focal_length;
@@ -219,7 +221,7 @@ impl Projection {
         down * across
     }
 
-    /// The width and the height of the part of a wall's side, in cells, that a pixel covers there.
+    /// The width and the height of the part of a wall's side, in cells, that a pixel covers at that point.
     #[inline]
     pub(crate) fn pixel_extent_on_wall(&self, t: f64, slope: f64) -> DVec2 {
         DVec2::new(t / (self.focal_length_across * slope.abs()), t / self.focal_length)
@@ -234,7 +236,7 @@ impl Projection {
     fn mapping_of(&self, row: u32, height: f64) -> SpanMapping {
         let slope = self.slope(row).abs();
         let distance = height / slope;
-        // The distance decreases by this from one row to the next further down.
+        // The decrease of the distance from a row to the one below it.
         let along = distance / slope / self.focal_length;
         SpanMapping {
             distance,
@@ -270,21 +272,21 @@ impl Projection {
     }
 }
 
-/// An eye further up or down has the same view as from here: no height is so far.
+/// The greatest height of an eye, up or down. An eye beyond it has the same view, because no height is as far.
 const FARTHEST: f64 = 4.0 * Heights::MAX;
 
-/// The number of rows from the middle of the picture down to the horizon: an integer, so that a
-/// change of pitch moves the picture by whole rows.
+/// The number of rows from the middle of the picture down to the horizon. It is an integer, so that a change of
+/// pitch moves the picture by whole rows.
 fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
-    /// Outside any picture, and within the integers that a double can count.
+    /// A number of rows that is outside any picture and exact as a double.
     const FAR: f64 = 1e9;
     let slope = camera.pitch.slope();
     if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
 }
 
 impl Projection {
-    /// The texels of a face from the height `bottom` to `top`: `count` for each cell of height, from one integer
-    /// height to the next.
+    /// The texels of a face from the height `bottom` to `top`. The texture has `count` texels per cell of
+    /// height, and starts again at each integer height.
     pub(crate) fn face_texels(&self, count: usize, (bottom, top): (f64, f64)) -> FaceTexels {
         // On old processors `f64::ceil` is a call.
         let above = ceil(top) as f64;

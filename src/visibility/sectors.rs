@@ -1,12 +1,13 @@
-//! Sectors: the gaps of tiles, by their heights.
+//! Sectors: the gaps of tiles, grouped by their heights.
 //!
-//! Neighbouring cells whose gaps have one bottom and one top are one room to the eye, whatever their floors look
-//! like: no face is between them, and a ray through them needs no clip range of its own for each. Such gaps share
-//! one sector, as neighbouring cells would in a map of Doom. Sectors are found once a frame, for the height of the eye.
+//! Neighbouring cells whose gaps have the same bottom and the same top look like one room, whatever their
+//! floors look like. There is no face between them, and a ray needs no new clip range from one to the next.
+//! Such gaps share one sector, as neighbouring cells would in a map of Doom. Sectors are found once per frame,
+//! for the height of the eye.
 //!
-//! Under the sky, a gap ends at the height above which there is nothing. It has the same sector as a room with a
-//! ceiling at that height, so that a level world under half a roof is a single sector. Seen from above that height,
-//! it has no top.
+//! A gap under the sky ends at the height above which the world is empty. It has the same sector as a room with
+//! a ceiling at that height, so a level world that is half roofed is a single sector. If the eye is above that
+//! height, the gap has no top.
 
 use super::Scene;
 use crate::world::sprite::builtin;
@@ -19,20 +20,20 @@ pub(crate) struct Sectors {
     of_tiles: Vec<TileSectors>,
 }
 
-/// A sector: an index into those of the frame.
+/// A sector, as an index into the sectors of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SectorId(u16);
 
-/// The gaps of one bottom and one top.
+/// All gaps with the same bottom, the same top and the same object.
 #[derive(Clone, Debug)]
 pub(crate) struct Sector {
     pub(crate) bottom: f64,
     /// The height of the top; infinite if there is none.
     pub(crate) top: f64,
     pub(crate) holds: Holds,
-    /// The floor and the ceiling of the first tile.
+    /// The floor and the ceiling of the first tile in the sector.
     surfaces: [Surface; 2],
-    /// Whether the floors and the ceilings of other cells may look different.
+    /// Whether the floors, and whether the ceilings, may differ between cells.
     vary: [bool; 2],
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct Sector {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileSectors {
     pub(crate) lower: SectorId,
-    /// The one above the roof, if there is a room below it.
+    /// The sector above the roof, if the tile has a room below the roof.
     pub(crate) upper: Option<SectorId>,
 }
 
@@ -48,9 +49,9 @@ pub(crate) struct TileSectors {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Holds {
     Nothing,
-    /// The leaf of a door, or a shape, which does not fill its cell.
+    /// The leaf of a door, or a shape. It does not fill its cell.
     Standing,
-    /// Glass or a mask of this tile, which fills the cell.
+    /// Glass or a mask of this tile. It fills the cell.
     Cube(TileId),
 }
 
@@ -62,7 +63,7 @@ pub(crate) struct Surface {
     pub(crate) light: Light,
 }
 
-/// A floor or a ceiling.
+/// The floor or the ceiling of a sector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PlaneSide {
     Floor,
@@ -122,7 +123,7 @@ impl Sectors {
         self.of_tiles[usize::from(tile)]
     }
 
-    /// The object that stands in the cells of `tile`, in the lower gap.
+    /// The object in the lower gap of the cells of `tile`.
     pub(crate) fn held_by(&self, tile: TileId) -> Holds {
         self.get(self.of(tile).lower).holds
     }
@@ -132,7 +133,7 @@ impl Sectors {
         &self.list[usize::from(id)]
     }
 
-    /// Whether rays in `sector` go on into a cell of `tile` without meeting anything.
+    /// Returns true if rays in `sector` continue into a cell of `tile` without meeting anything.
     #[inline]
     pub(crate) fn goes_on(&self, sector: SectorId, tile: TileId) -> bool {
         match sector {
@@ -141,8 +142,8 @@ impl Sectors {
         }
     }
 
-    /// The sector of an eye at this height in a cell of `tile`. In something solid, it is that of the map's own
-    /// floor.
+    /// The sector of an eye at this height in a cell of `tile`. If the eye is inside something solid, it is the
+    /// sector of the map's own floor at this height.
     pub(crate) fn of_eye(&self, tile: Option<TileId>, eye: f64) -> SectorId {
         let holds = |&id: &SectorId| {
             let Sector { bottom, top, .. } = *self.get(id);
@@ -177,7 +178,7 @@ impl Sectors {
         let index = match sector {
             _ if sector == lower => 0,
             _ if upper == Some(sector) => 1,
-            // Rounding puts the point into a cell beside the sector.
+            // Rounding has put the point into a cell outside the sector.
             _ => return self.get(sector).surfaces[side as usize],
         };
         let gap = tile.gaps().nth(index);
@@ -187,7 +188,7 @@ impl Sectors {
     }
 }
 
-/// The index of the sector of a gap in `list`, to which it is added if it is not there.
+/// Returns the sector of a gap, and adds it to `list` if it is missing.
 fn add(
     list: &mut Vec<Sector>,
     gap: Gap,
@@ -196,7 +197,7 @@ fn add(
     are_lamplit: bool,
 ) -> SectorId {
     let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (gap.bottom, gap.top, holds);
-    // The first two have no cells.
+    // The first two sectors, `BEYOND` and `SOLID`, have no cells.
     let known = list[2..].iter().position(is_it);
     if let Some(index) = known {
         let sector = &mut list[2 + index];
@@ -225,7 +226,7 @@ fn top_of_sky(scene: Scene<'_>) -> f64 {
 }
 
 impl TileSectors {
-    /// Whether a gap of the tile has `sector`.
+    /// Returns true if a gap of the tile belongs to `sector`.
     #[inline]
     pub(crate) fn have(self, sector: SectorId) -> bool {
         self.lower == sector || self.upper == Some(sector)
@@ -233,12 +234,12 @@ impl TileSectors {
 }
 
 impl Sector {
-    /// Whether `height` is between its bottom and its top.
+    /// Returns true if `height` is between its bottom and its top.
     pub(crate) fn is_inside(&self, height: f64) -> bool {
         self.bottom < height && height < self.top
     }
 
-    /// Whether it has a height in common with `other`.
+    /// Returns true if it has a height in common with `other`.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         self.bottom.max(other.bottom) < self.top.min(other.top)
     }

@@ -1,9 +1,8 @@
 //! Span mappings: from the pixels of a row of floor or ceiling to points on the map.
 //!
-//! All pixels of such a row are at one distance, and their centres are evenly spaced on a straight
-//! line. Each row's line is computed from the row's own index, and each pixel's point from the
-//! middle of its row, in fixed point that wraps around. No error accumulates, and a picture and its
-//! mirror image agree bit for bit.
+//! All pixels of such a row are at one distance, and their centres are evenly spaced on a straight line. The
+//! line is computed from the row's own index. Each pixel's point is computed from the middle of its row, in
+//! fixed point that wraps around. No error accumulates, and a picture and its mirror image agree bit for bit.
 
 use std::ops::Range;
 
@@ -28,11 +27,12 @@ pub(crate) struct SpanMapping {
 }
 
 impl SpanMapping {
-    /// The lines slightly nearer to `eye` and farther from it, from which a pixel's cell is looked up. For a point
-    /// on the line between two cells, they give the nearer cell and the farther one.
+    /// The line moved slightly towards `eye`, and the line moved slightly away from it, for looking up the
+    /// cells of pixels. At a point on the border between two cells, the first line is in the nearer cell and
+    /// the second in the farther one.
     pub(crate) fn before_and_behind(self, eye: DVec2) -> [Self; 2] {
-        /// As a fraction of the distance: more than the rounding error of a point, and too little
-        /// to be visible.
+        /// The shift as a fraction of the distance: more than the rounding error of a point, and too little to
+        /// be visible.
         const EPSILON: f64 = 1e-9;
         [-EPSILON, EPSILON].map(|moved| Self {
             middle: self.middle + (self.middle - eye) * moved,
@@ -41,7 +41,7 @@ impl SpanMapping {
         })
     }
 
-    /// The line on the map, for an image in mirrors.
+    /// The line on the map that is seen as this line in a mirror image.
     pub(crate) fn seen_in_mirrors(self, transform: MirrorTransform) -> Self {
         Self {
             middle: transform.to_map(self.middle),
@@ -50,8 +50,8 @@ impl SpanMapping {
         }
     }
 
-    /// The squares of the extents of a pixel along both axes of the map, in square cells: those of the box
-    /// whose points are as far from its middle in the mean.
+    /// The squared extents of a pixel along both axes of the map, in square cells: the extents of the box whose
+    /// points have the same mean square distance from the middle along each axis.
     pub(crate) fn squares_of_extent(&self) -> DVec2 {
         let across = 2.0 * self.half_step;
         let along = across.perp() * (self.pixel_area / across.length_squared());
@@ -63,10 +63,11 @@ impl SpanMapping {
         self.middle + self.half_step * self.half_steps_to(x) as f64
     }
 
-    /// The cells that the pixels in `columns` show, each by its north-west corner and with its
-    /// columns.
+    /// The cells that the pixels in `columns` show. Each item is the north-west corner of a cell and its
+    /// columns of pixels.
     ///
-    /// A cell costs a search for its end along one axis; its pixels are not looked up on the map one by one.
+    /// The cost per cell is a search for the cell's end along one axis. The pixels are not looked up on the map
+    /// one by one.
     #[inline]
     pub(crate) fn cells(
         self,
@@ -93,8 +94,8 @@ impl SpanMapping {
         })
     }
 
-    /// The positions of the pixels from column `x` on in a pattern that repeats `per_cell` times in
-    /// a cell, along both axes.
+    /// The positions of the pixels from column `x` on, in a pattern that repeats `per_cell` times per cell
+    /// along both axes.
     pub(crate) fn places(&self, x: usize, per_cell: f64) -> TexelPlaces {
         let along = |middle: f64, half_step: f64| {
             let half_step = fraction(half_step * per_cell);
@@ -106,7 +107,7 @@ impl SpanMapping {
         TexelPlaces { x, y, x_step, y_step }
     }
 
-    /// The number of half pixels from the middle of the row to the centre of a pixel.
+    /// The number of half steps from the middle of the row to the centre of the pixel in column `x`.
     fn half_steps_to(&self, x: usize) -> i64 {
         2 * x as i64 + 1 - i64::from(self.width)
     }
@@ -119,9 +120,9 @@ struct AxisCells {
     width: i64,
     /// The number of half steps in a cell.
     half_steps_in_cell: f64,
-    /// The column or row of the map.
+    /// The current column or row of the map.
     cell: f64,
-    /// The first pixel in another one, or the end.
+    /// The first pixel in another column or row of the map, or the end.
     next: usize,
 }
 
@@ -139,7 +140,7 @@ impl AxisCells {
     #[inline]
     fn enter(&mut self, x: usize, end: usize) {
         let here = self.at(x);
-        // Mostly it is the next one.
+        // The new cell is usually the neighbour of the last one.
         let beside = self.cell + if self.half_step > 0.0 { 1.0 } else { -1.0 };
         let is_beside = beside <= here && here < beside + 1.0;
         self.cell = if is_beside { beside } else { floor_double(here) };
@@ -153,7 +154,7 @@ impl AxisCells {
         let half_steps = (edge - self.middle) * self.half_steps_in_cell;
         let estimate = f64::midpoint(half_steps, (self.width - 1) as f64);
         let mut next = (estimate as usize).clamp(x + 1, end);
-        // The estimate may be wrong by a pixel through rounding; the points of the pixels decide.
+        // The estimate may be off by a pixel because of rounding; the points of the pixels decide.
         while next > x + 1 && is_beyond(next - 1) {
             next -= 1;
         }
@@ -164,7 +165,7 @@ impl AxisCells {
     }
 }
 
-/// Positions in a repeating pattern, one for each pixel, in 2⁻⁶⁴ths of a repeat along both axes.
+/// Positions in a repeating pattern, one for each pixel, in units of 2⁻⁶⁴ of a repeat along both axes.
 #[derive(Clone, Debug)]
 pub(crate) struct TexelPlaces {
     x: u64,
@@ -211,13 +212,13 @@ impl Iterator for TexelPlaces {
     }
 }
 
-/// The fractional part of `number`, in 2⁻⁶⁴ths; 0 for NaN.
+/// The fractional part of `number`, in units of 2⁻⁶⁴; 0 for NaN.
 ///
-/// It is the significand, shifted: conversions of doubles to integers saturate, which takes longer.
+/// The function shifts the significand, because conversions of doubles to integers saturate and take longer.
 #[inline]
 fn fraction(number: f64) -> u64 {
     const BITS: u32 = f64::MANTISSA_DIGITS - 1;
-    /// The exponent, as stored, of a number whose significand counts 2⁻⁶⁴ths.
+    /// The stored exponent of a number whose significand is in units of 2⁻⁶⁴.
     const OF_64THS: u32 = f64::MAX_EXP as u32 - 1 + BITS - u64::BITS;
     let exponent = (number.to_bits() >> BITS) as u32 & 0x7ff;
     let significand = number.to_bits() & ((1 << BITS) - 1) | 1 << BITS;

@@ -1,8 +1,8 @@
-//! Frame stats: the cost of a frame, counted where it arises.
+//! Frame stats: the cost of a frame, counted as the work is done.
 //!
-//! Whether the counts are kept is asked once for each span and each wall column, never for a pixel.
-//! Rejected: compiling all of drawing a second time, for counting. A fifth of the code of drawing was for
-//! explanations.
+//! Drawing checks whether the counts are kept once per span and once per wall column, never per pixel.
+//! Rejected: compiling all drawing code a second time, with counting. A fifth of the drawing code then served
+//! only explanations of frames.
 
 /// A kind of surface that pixels are written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,24 +21,24 @@ pub enum Pass {
     Things,
 }
 
-/// The cost of a frame or of a band, if it is counted.
+/// The cost of a frame or of a band, if counts are kept.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stats {
     counts: Option<FrameStats>,
 }
 
 impl Stats {
-    /// Counts from zero.
+    /// Stats that are kept, starting at zero.
     pub(crate) fn kept() -> Self {
         Self { counts: Some(FrameStats::default()) }
     }
 
-    /// Zeros, kept if these counts are.
+    /// The stats of a band, starting at zero. They are kept only if these are.
     pub(crate) fn of_band(&self) -> Self {
         Self { counts: self.counts.map(|_| FrameStats::default()) }
     }
 
-    /// Whether the counts are kept.
+    /// Returns true if the counts are kept.
     #[inline]
     pub(crate) fn are_kept(&self) -> bool {
         self.counts.is_some()
@@ -52,7 +52,7 @@ impl Stats {
     /// Applies `change` to the counts, if they are kept.
     #[inline]
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut FrameStats)) {
-        /// A call keeps what is left out of most frames small.
+        /// A separate function, because most frames do not count and the inlined part should stay small.
         #[cold]
         #[inline(never)]
         fn call(change: impl FnOnce(&mut FrameStats), counts: &mut FrameStats) {
@@ -63,7 +63,7 @@ impl Stats {
         }
     }
 
-    /// Adds the counts of a band. Visibility, which is found once a frame, is not among them.
+    /// Adds the counts of a band. A band has no walk counts, because visibility is found once per frame.
     pub(crate) fn add(&mut self, band: &Self) {
         let Self { counts: Some(band) } = band else { return };
         self.change(|counts| counts.add(band));
@@ -82,7 +82,7 @@ pub struct PassStats {
 /// The cost of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct FrameStats {
-    /// The cost of finding what is visible.
+    /// The cost of visibility.
     pub walk: WalkStats,
     /// The cost of ceilings.
     pub ceiling: PassStats,
@@ -96,30 +96,30 @@ pub struct FrameStats {
     pub see_through: PassStats,
     /// The cost of things and figures.
     pub things: PassStats,
-    /// The things in cells that may be in view, and all figures; in each image of a mirror again.
+    /// The things in cells that may be in view, plus all figures, counted again for each mirror image.
     pub things_considered: u64,
-    /// The things and figures in view.
+    /// The billboards of things and figures in view.
     pub things_drawn: u64,
     /// The spans of floor, ceiling and sky.
     pub spans: u64,
-    /// The pixel writes beyond the first for each pixel.
+    /// The number of pixel writes after the first write to each pixel.
     pub overwritten: u64,
 }
 
-/// The cost of finding what is visible.
+/// The cost of visibility: finding the surfaces in view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct WalkStats {
-    /// The rays cast: few of those of the columns.
+    /// The rays cast. Most columns need no ray of their own.
     pub rays: u64,
-    /// The cells that they entered.
+    /// The cells that the rays entered.
     pub cells: u64,
-    /// The lookups of a tile or of a clear distance: fewer than cells, if rays do not stop in each.
+    /// The lookups of a tile or of a clear distance. There are fewer lookups than cells if the rays skip cells.
     pub looks: u64,
-    /// The sectors entered, each by the rays of neighbouring columns.
+    /// The visits to sectors. One visit covers the rays of neighbouring columns.
     pub sectors: u64,
     /// The faces found.
     pub faces: u64,
-    /// The reflections in mirrors, each as wide as a pixel.
+    /// The reflections of rays in mirrors, one per column.
     pub bounces: u64,
 }
 

@@ -1,9 +1,9 @@
 //! The texture stepper: the texel of a face at the centre of each row of pixels.
 //!
-//! Texels are counted from eye height, so that, however near a face is, the rows above the horizon
-//! show the part of it above the eye. They are counted in fixed point and by the row's own index,
-//! so that no error accumulates and a step is one addition. Rejected: counting in doubles. A
-//! conversion and a floor for each pixel took half the time of a whole frame.
+//! Texels are counted from eye height. However near a face is, the rows above the horizon therefore show the
+//! part of it above the eye. Positions are in fixed point and computed from the row's own index, so no error
+//! accumulates and a step is one addition. Rejected: counting in doubles. A conversion and a floor for each
+//! pixel took half the time of a whole frame.
 
 use std::iter;
 use std::ops::Range;
@@ -13,27 +13,27 @@ use crate::numeric::rounding::{ceil, floor, rounded, rounded_to_even};
 /// The texels of an upright face in a picture, at any distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceTexels {
-    /// The texels of a texture, and the uppermost and the lowest one on the face, counted from the top of the
-    /// uppermost texture.
+    /// The number of texels per height of the texture, and the uppermost and the lowest texel on the face,
+    /// counted from the top of the uppermost texture.
     count: i64,
     range: (i64, i64),
-    /// The position of eye height.
+    /// The position of eye height, in fixed point.
     at_horizon: i64,
     horizon: Horizon,
-    /// The half of a step at distance 1.
+    /// Half of a step at distance 1.
     half_step_at_1: f64,
 }
 
 /// The horizon of a picture, for the steppers of its faces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Horizon {
-    /// The halves of a row from the horizon to the centre of row 0.
+    /// The number of half rows from the horizon to the centre of row 0.
     half_rows_to_first: i64,
-    /// The least half of a step.
+    /// The least size of half a step.
     least: i64,
 }
 
-/// The texels of an upright face, by rows of pixels.
+/// The texel of an upright face at each row of pixels, at one distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TextureStepper {
     /// The position at the centre of row 0, even if the row is not on the face.
@@ -46,9 +46,9 @@ pub(crate) struct TextureStepper {
 }
 
 impl FaceTexels {
-    /// `count` texels, at least one, for each cell of height, of a face from `top` to `bottom`, in cells down
-    /// from the top of its uppermost texture. `at_eye` is eye height, in the same unit. At distance 1, a row of
-    /// pixels covers `height_of_row` cells.
+    /// The texels of a face from `top` to `bottom`, in cells down from the top of its uppermost texture. The
+    /// texture has `count` texels per cell of height, at least one. `at_eye` is the position of eye height, in
+    /// cells down from the same point. At distance 1, a row of pixels covers `height_of_row` cells.
     pub(crate) fn new(
         count: usize,
         (top, bottom): (f64, f64),
@@ -73,8 +73,7 @@ impl FaceTexels {
         let &Self { count, range, at_horizon, horizon, half_step_at_1 } = self;
         let half_step = rounded_to_even((t * half_step_at_1).min(MAX_HALF_STEP));
         let half_step = half_step.max(horizon.least);
-        // Positions far above or below the face wrap around, and return to the same value at the
-        // face.
+        // Positions far above or below the face wrap around, and are correct again at the face.
         let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
         TextureStepper {
             first: at_horizon.wrapping_add(from_horizon),
@@ -86,10 +85,10 @@ impl FaceTexels {
 }
 
 impl Horizon {
-    /// The horizon `half_rows` halves of a row below the top of a picture.
+    /// The horizon `half_rows` half rows below the top of a picture.
     pub(crate) fn new(half_rows: f64) -> Self {
-        // A smaller step would not exceed `EPSILON`, and a row above the horizon would be below it.
-        // From a horizon far outside the picture, it would add up to texels beyond the face.
+        // With a smaller step, `EPSILON` would move a row above the horizon to a texel below it. If the horizon
+        // is far outside the picture, the least step would add up to texels beyond the face.
         let is_far = half_rows.abs() > FARTHEST_HORIZON;
         Self {
             half_rows_to_first: 1 - half_rows as i64,
@@ -99,14 +98,15 @@ impl Horizon {
 }
 
 impl TextureStepper {
-    /// The texel of the texture at the centre of `row`: the nearest one if rounding puts the centre
-    /// slightly above or below the face.
+    /// The texel of the texture at the centre of `row`. If rounding puts the centre slightly above or below the
+    /// face, it is the nearest texel of the face.
     #[inline]
     pub(crate) fn at(self, row: u32) -> usize {
         self.texel_at(self.place(row) >> TEXEL_BITS)
     }
 
-    /// The texels of the texture that `rows`, which are not empty, show, and perhaps others.
+    /// A range that contains the texels of the texture shown in `rows`, which must not be empty. It may contain
+    /// other texels.
     #[inline]
     pub(crate) fn texels_of(self, rows: &Range<u32>) -> Range<usize> {
         let [first, last] = [rows.start, rows.end - 1].map(|row| self.place(row) >> TEXEL_BITS);
@@ -114,30 +114,29 @@ impl TextureStepper {
         if is_inside { first as usize..last as usize + 1 } else { 0..self.count as usize }
     }
 
-    /// Whether the centres of the first and the last of `rows` are on the face, in spite of rounding.
+    /// Returns true if the centres of the first and the last of `rows` are on the face even after rounding.
     #[inline]
     pub(crate) fn has_ends_of(self, rows: &Range<u32>) -> bool {
         let (uppermost, lowest) = self.range;
         let size = ((lowest + 1 - uppermost) as u64) << TEXEL_BITS;
         let first = self.place(rows.start).wrapping_sub(uppermost << TEXEL_BITS);
         let last = first.wrapping_add(self.step.wrapping_mul(i64::from(rows.end - 1 - rows.start)));
-        // A place above the face is negative, and as large as any without its sign.
+        // A position above the face is negative, and therefore greater than `size` as an unsigned number.
         (first as u64) < size && (last as u64) < size
     }
 
-    /// The texel of the texture for the one at `place`, counted from the top of the uppermost
-    /// texture.
+    /// The texel of the texture at `place`, a texel counted from the top of the uppermost texture.
     #[inline]
     fn texel_at(self, place: i64) -> usize {
         let (uppermost, lowest) = self.range;
         let texel = place.clamp(uppermost, lowest);
-        // A division takes as long as all the other operations.
+        // A test comes first, because a division takes as long as all the other operations.
         let is_first = (0..self.count).contains(&texel);
         (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
     }
 
-    /// The texels at the centres of `rows`, counted from the top of the uppermost texture; `None`
-    /// if there is no row or the range wraps around.
+    /// The texels at the centres of `rows`, counted from the top of the uppermost texture; `None` if there is
+    /// no row or the positions overflow.
     #[inline]
     pub(crate) fn places(self, rows: &Range<u32>) -> Option<Range<i64>> {
         let further_down = i64::from(rows.end.checked_sub(rows.start + 1)?);
@@ -146,14 +145,14 @@ impl TextureStepper {
         Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
     }
 
-    /// Whether the face shows no texel beyond the uppermost texture.
+    /// Returns true if the face shows only the uppermost texture.
     #[inline]
     pub(crate) fn is_one_texture(self) -> bool {
         let (uppermost, lowest) = self.range;
         uppermost >= 0 && lowest < self.count
     }
 
-    /// Whether all `places` are on the face.
+    /// Returns true if all `places` are on the face.
     #[inline]
     fn has(self, places: &Range<i64>) -> bool {
         let (uppermost, lowest) = self.range;
@@ -179,8 +178,8 @@ impl TextureStepper {
         })
     }
 
-    /// The texel of the texture for the first of `places`, and the number of `places` that are
-    /// contiguous in the texture from there.
+    /// The texel of the texture at the first of `places`, and the number of `places` that are contiguous in the
+    /// texture from there.
     #[inline]
     fn texels_at(self, places: Range<i64>) -> (usize, usize) {
         let (uppermost, lowest) = self.range;
@@ -190,8 +189,8 @@ impl TextureStepper {
         (first, (end - places.start).min(self.count - first as i64) as usize)
     }
 
-    /// The position at the centre of `row` and the step to the next row, shifted so that the
-    /// uppermost `BITS` bits are the texel modulo 2 to the power of `BITS`.
+    /// The position at the centre of `row` and the step to the next row. Both are shifted so that the uppermost
+    /// `BITS` bits are the texel modulo 2 to the power of `BITS`.
     #[inline]
     pub(crate) fn in_uppermost<const BITS: u32>(self, row: u32) -> (u64, u64) {
         let to_the_top = u64::BITS - TEXEL_BITS - BITS;
@@ -207,12 +206,14 @@ impl TextureStepper {
 /// The size of a texel, in fixed point.
 const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
 const TEXEL_BITS: u32 = 40;
-/// The most, 65 536 texels from one row to the next: with more, only one row shows the face.
+/// The greatest half step: 65 536 texels from one row to the next. With a greater step, only one row shows the
+/// face.
 const MAX_HALF_STEP: f64 = 32_768.0 * TEXEL;
-/// The offset that puts a row's centre on the line between two texels on the lower one, however the
-/// step was rounded: the rounding of 4096 rows, by half a unit each, is half as much.
+/// The offset that moves a row's centre between two texels to the lower one, however the step was rounded. The
+/// rounding errors of 4096 rows, half a unit each, add up to half the offset.
 const EPSILON: i64 = 1 << 12;
-/// In halves of a row: as far from the horizon, the least step adds up to 1/32 of a texel.
+/// The farthest horizon for which the least step applies, in half rows. The least step adds up to 1/32 of a
+/// texel over this distance.
 const FARTHEST_HORIZON: f64 = (1_u64 << 22) as f64;
 
 #[cfg(test)]
@@ -221,8 +222,8 @@ mod tests {
 
     use super::*;
 
-    /// The stepper of a face with this number of texels a cell, between two depths below the top of its uppermost
-    /// texture, for an eye at such a depth. A row covers so much of it.
+    /// The stepper of a face with `count` texels per cell. `ends` and `at_eye` are in cells down from the top
+    /// of its uppermost texture. A row of pixels covers `height_of_row` cells of it.
     fn stepper(
         count: usize,
         (ends, at_eye): ((f64, f64), f64),
@@ -246,7 +247,7 @@ mod tests {
     fn however_far_the_horizon_is_a_row_on_the_wall_is_near_a_texel_of_it() {
         for (rows, at_eye) in (0..31).flat_map(|power| [(1_i64 << power, 0.02), (1 << power, 0.9)])
         {
-            // The top row of a picture in which the wall ends, and the horizon is `rows` below.
+            // The top row of a picture shows the end of the wall, and the horizon is `rows` rows below.
             let of_face = [0.0, f64::MIN_POSITIVE, at_eye / (rows as f64 + 0.5)];
             for height_of_row in of_face {
                 let half_rows = 2.0 * rows as f64;
@@ -272,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_high_face_repeats_its_texture_at_each_integer_height() {
-        // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
+        // A face from 0.25 to 2.5, seen from 1. The top of its uppermost texture is at 3.
         let texels = stepper(4, ((0.5, 2.75), 2.0), 12.0, 0.25);
         let seen: Vec<usize> = (0..9).map(|row| texels.at(row)).collect();
         assert_eq!(seen, [2, 3, 0, 1, 2, 3, 0, 1, 2]);

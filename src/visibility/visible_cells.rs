@@ -1,12 +1,13 @@
 //! The cells in view: an interval of columns for each row of the map.
 //!
-//! The visible area consists of the parts of rays in each sector. The outline of each is followed once,
-//! and the interval of each row that it crosses is extended to contain it. The time depends on the
-//! size of the area and not on the size of the map.
+//! The visible area consists of the parts of rays in each sector. The outline of each part is followed once,
+//! and extends the interval of each row that it crosses. The time depends on the size of the area, not on the
+//! size of the map.
 //!
-//! Rejected: the bounding rectangle, which contains everything on both sides of a diagonal
-//! corridor; and a list of the cells that rays enter, since listing each once needs a mark for
-//! every cell of the map.
+//! Rejected: the bounding rectangle. It contains everything on both sides of a diagonal corridor.
+//!
+//! Rejected: a list of the cells that rays enter. It needs a mark for every cell of the map to list each cell
+//! once.
 
 use std::ops::Range;
 
@@ -26,11 +27,11 @@ pub(crate) struct VisibleCells {
     row_count: u32,
     first_row: u32,
     intervals: Vec<Interval>,
-    /// Whether all things count as visible: they are so few that a lookup by cell takes longer.
+    /// `true` if all things count as visible, because they are so few that a lookup by cell takes longer.
     shows_all: bool,
 }
 
-/// The visible part of a row, and of a margin above and below it.
+/// The visible columns of a row of the map, within the margin north and south of the row's middle.
 #[derive(Clone, Copy, Debug)]
 struct Interval {
     low: f64,
@@ -46,7 +47,7 @@ impl Interval {
 }
 
 impl VisibleCells {
-    /// Makes all things of `world` count as visible, if they are few. Returns whether they do.
+    /// Makes all things of `world` count as visible if they are few. Returns whether they are few.
     pub(crate) fn shows_all_of(&mut self, world: &World) -> bool {
         const FEW: usize = 16;
         self.shows_all = world.things().len() <= FEW;
@@ -70,7 +71,7 @@ impl VisibleCells {
         self.intervals.reserve(missing);
     }
 
-    /// The things of which a part may be in view, row by row.
+    /// The things that may be at least partly in view, row by row.
     pub(crate) fn things<'a>(&self, world: &'a World) -> impl Iterator<Item = &'a Thing> {
         let all: &[Thing] = if self.shows_all { world.things() } else { &[] };
         let intervals: &[Interval] = if self.shows_all { &[] } else { &self.intervals };
@@ -84,8 +85,8 @@ impl VisibleCells {
         all.iter().chain(reached)
     }
 
-    /// Includes the straight line between two points: corners of the outline, or the ends of the
-    /// visible part of a ray.
+    /// Extends the intervals to include the straight line between two points. The points are corners of the
+    /// outline, or the ends of the visible part of a ray.
     pub(crate) fn follow(&mut self, one: DVec2, other: DVec2) {
         let (top, bottom) = if one.y <= other.y { (one, other) } else { (other, one) };
         let slope = (bottom.x - top.x) / (bottom.y - top.y);
@@ -99,10 +100,9 @@ impl VisibleCells {
         }
     }
 
-    /// The indices of the cells, of `count`, whose middle is between `low` and `high` or within the
-    /// margin.
+    /// The indices, among `count` cells, whose middle is between `low` and `high` or within the margin.
     fn reached(&self, low: f64, high: f64, count: u32) -> Range<u32> {
-        // Rounding up is a function call on older processors.
+        // On old processors `f64::ceil` is a call.
         let first_from = |place: f64| {
             let place = (place - 0.5).clamp(0.0, f64::from(count));
             let below = place as u32;

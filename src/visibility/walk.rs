@@ -1,15 +1,16 @@
-//! The walk: from sector to sector, as the rays of neighbouring columns see them.
+//! The walk: from sector to sector, along the rays of neighbouring columns.
 //!
-//! A visit is a sector and neighbouring columns whose rays enter it by one line, each with a clip range: the rows
-//! that no nearer surface covers. The [fan](super::fan) finds the faces by which the rays leave it. Floor and
-//! ceiling reduce the clip range; at the face, the rest is divided among the solid parts of the next cell and its
-//! gaps, which are visited next: mostly one, two if a roof is seen from below and above at once. A mirror is a visit
-//! of the same sector in another image, with the clip range of the mirror. Sectors and portals are those of the
-//! Build engine (Ken Silverman, 1995).
+//! A visit is a sector and a range of neighbouring columns whose rays enter the sector through one line. Each
+//! column has a clip range: the rows that no nearer surface covers. The [fan](super::fan) finds the faces
+//! through which the rays leave the sector. Floor and ceiling reduce the clip range. At each face, the solid
+//! parts of the next cell and its gaps divide the remaining rows, and the walk visits the gaps next. There is
+//! usually one gap, or two if a roof is seen from below and from above at once. A mirror is a visit to the same
+//! sector in another image, with the clip range of the mirror. Sectors and portals follow the Build engine (Ken
+//! Silverman, 1995).
 //!
-//! Everything that is found goes into the draw list, what is nearer earlier. Rejected: following the rays from cell
-//! to cell, alone or those of neighbouring columns together. In a hall, most cells that they cross look alike, and
-//! each costs every column that it is in.
+//! The walk adds everything that it finds to the draw list, nearer items first. Rejected: following rays from
+//! cell to cell, one by one or neighbouring rays together. In a hall, most cells that they cross look alike,
+//! and each cell costs time in every column that it covers.
 
 use std::mem;
 use std::ops::Range;
@@ -29,21 +30,21 @@ use crate::cast::{
 };
 use crate::world::{Cell, FaceLight, Glass, Paint, Pattern, Sky, Tile, TileId, TileKind};
 
-/// The most reflections of a ray. The mirror after the last one shows only its tint.
+/// The greatest number of reflections of a ray. The mirror after the last one shows only its tint.
 pub(crate) const MAX_BOUNCES: u32 = 8;
 
-/// Memory of walks, reused from frame to frame.
+/// Memory that walks reuse from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WalkMemory {
-    /// The visits that remain, and their clips and entries.
+    /// The remaining visits, with their clips and entries.
     visits: Vec<Visit>,
     clips: Vec<Clip>,
     entries: Vec<Entry>,
     fan: FanMemory,
     pub(crate) borders: Vec<Border>,
-    /// The places at which neighbouring borders share a column, for the filter by area.
+    /// The positions at which neighbouring borders share a column, for the area filter.
     pub(crate) joints: Vec<Option<Joint>>,
-    /// How the rays of a visit pass the object in its cell.
+    /// The passage of each ray of a visit through the cell of an object.
     passages: Vec<Passage>,
     /// Values of the current visit, by column.
     pub(crate) columns: ColumnMemory,
@@ -51,48 +52,48 @@ pub(crate) struct WalkMemory {
     next: [Next; 3],
 }
 
-/// A sector, as rays enter it.
+/// A sector, and the columns whose rays enter it.
 #[derive(Clone, Debug)]
 pub(crate) struct Visit {
     pub(crate) sector: SectorId,
     pub(crate) image: MirrorTransform,
     bounces: u32,
-    /// Whether the rays begin here.
+    /// `true` if the rays begin at the camera, in this sector.
     is_at_camera: bool,
     columns: Range<u32>,
-    /// The index of the clip of the first column, and of the first entry. The others follow.
+    /// The index of the first column's clip, and of the first entry. The others follow.
     first_clip: usize,
     first_entry: usize,
 }
 
-/// The part of a ray that a visit begins with.
+/// The clip range of a ray at the beginning of a visit, and the distance from which it applies.
 #[derive(Clone, Copy, Debug)]
 struct Clip {
     rows: Rows,
     from: f64,
 }
 
-/// The values of columns in the current visit.
+/// The values of each column in the current visit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ColumnMemory {
-    /// The rows that no nearer surface covers, and the distance from which on that holds.
+    /// The rows that no nearer surface covers, and the distance from which the rows are open.
     pub(crate) starts: Vec<u32>,
     pub(crate) ends: Vec<u32>,
     from: Vec<f64>,
-    /// The rows with which the visit began.
+    /// The clip ranges at the beginning of the visit, for the area filter.
     pub(crate) entered: Vec<Rows>,
-    /// The distance at which the ray leaves the sector, or meets an object in it.
+    /// The distance at which the ray leaves the sector or meets an object in it.
     pub(crate) t: Vec<f64>,
     pub(crate) u: Vec<f64>,
-    /// The rows of a bottom and of a top at this distance.
+    /// The row of a bottom and the row of a top at this distance.
     pub(crate) bottoms: Vec<u32>,
     pub(crate) tops: Vec<u32>,
-    /// The rows at which a face begins above them or ends below them, if it is blended over the planes there.
+    /// The limits of a face that is blended over the planes: the rows that it covers in part are inside.
     pub(crate) outer_bottoms: Vec<u32>,
     pub(crate) outer_tops: Vec<u32>,
 }
 
-/// A visit that is not complete yet: the next face may extend it.
+/// An incomplete visit, which the next face may extend.
 #[derive(Clone, Debug, Default)]
 struct Next {
     visit: Option<(Visit, CellFace)>,
@@ -100,16 +101,16 @@ struct Next {
     entries: Vec<Entry>,
 }
 
-/// Borders beside each other that look alike.
+/// Neighbouring borders that look alike.
 pub(crate) struct Group {
-    /// Their indices.
+    /// The indices of the borders.
     pub(crate) borders: Range<usize>,
     pub(crate) columns: Range<u32>,
-    /// The face of the first one.
+    /// The face of the first border.
     pub(crate) face: CellFace,
 }
 
-/// The places of the next visits.
+/// The kind of a next visit.
 #[derive(Clone, Copy)]
 enum Slot {
     Lower,
@@ -118,7 +119,7 @@ enum Slot {
 }
 
 impl ColumnMemory {
-    /// The columns of a face in `range`, in the open rows between `tops` and `bottoms`.
+    /// The columns of a face in `range`, with the open rows between `tops` and `bottoms`.
     #[inline]
     pub(crate) fn of_face(&self, range: &Range<u32>) -> impl Iterator<Item = FaceColumn> {
         let indices = range.start as usize..range.end as usize;
@@ -167,7 +168,7 @@ impl WalkMemory {
     }
 }
 
-/// Walks from the camera of `scene` to all that is in view, and puts it into `list`, whose sectors are known.
+/// Walks from the camera of `scene` to everything in view, and adds it to `list`, whose sectors must be known.
 pub(crate) fn walk(
     scene: Scene<'_>,
     caster: Option<&DynCaster>,
@@ -195,7 +196,7 @@ pub(crate) fn walk(
 pub(crate) struct Walk<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) fan: Fan<'a>,
-    /// Whether there is any thing or figure, or the player in a mirror.
+    /// `true` if billboards may show: things, figures, or the player in a mirror.
     has_things: bool,
     pub(crate) memory: &'a mut WalkMemory,
     pub(crate) list: &'a mut DrawList,
@@ -203,8 +204,8 @@ pub(crate) struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Stores the visits of the sector of the camera: several if it is on a line, which rays cross in different
-    /// directions.
+    /// Stores the visits to the sector of the camera. If the camera is on a grid line or off the map, there is
+    /// one visit for each range of columns whose directions have the same signs.
     fn begin(&mut self) {
         let Scene { world, projection, .. } = self.scene;
         let (grid, origin) = (world.grid(), projection.origin());
@@ -225,7 +226,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Stores a visit of the sector of the camera.
+    /// Stores a visit to the sector of the camera.
     fn store_first(&mut self, columns: Range<u32>) {
         let Scene { world, projection, .. } = self.scene;
         let ray = Ray::of_camera(projection.origin(), self.fan.directions.of(columns.start));
@@ -314,7 +315,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Finds the rows at which the rays of `range` meet `height`, in `bottoms` or `tops`.
+    /// Writes the rows at which the rays of `range` meet `height` to `tops` or `bottoms`.
     fn find_rows(&mut self, height: f64, range: &Range<u32>, is_top: bool) {
         let ColumnMemory { t, bottoms, tops, .. } = &mut self.memory.columns;
         let range = range.start as usize..range.end as usize;
@@ -323,15 +324,16 @@ impl Walk<'_> {
         self.scene.projection.rows_of(rise, &t[range.clone()], &mut rows[range]);
     }
 
-    /// Shows floor and ceiling of the sector in `range` up to the distances found, and removes their rows from the
-    /// clip ranges. The rays are leaving the sector, or meet an object in it.
+    /// Shows the floor and the ceiling of the sector in `range` up to the distances `t`, and removes their rows
+    /// from the clip ranges. `is_leaving` is true if the rays leave the sector there, and false if they meet an
+    /// object in it.
     fn close(&mut self, visit: &Visit, sector: &Sector, range: Range<u32>, is_leaving: bool) {
         let projection = self.scene.projection;
         let (eye, ground) = (projection.eye(), projection.first_row_of_ground());
         if self.has_things {
             self.add_part(visit, range.clone(), None);
         }
-        // An eye at the height of a plane sees the point of it where it is.
+        // At the height of a plane, the eye sees the point of the plane at its own position.
         let shows_floor = eye >= sector.bottom;
         let shows_ceiling = eye <= sector.top;
         if shows_floor {
@@ -380,7 +382,7 @@ impl Walk<'_> {
         from[indices.clone()].copy_from_slice(&t[indices]);
     }
 
-    /// Makes the distances found those of the columns of `range` in which anything is still in view.
+    /// Extends the distances of the columns in `range` to `t`, if they have open rows.
     fn extend_distances(&mut self, range: &Range<u32>) {
         let ColumnMemory { starts, ends, t, .. } = &self.memory.columns;
         for x in range.start as usize..range.end as usize {
@@ -391,7 +393,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Adds the floor or the ceiling of the sector in `range`, whose rows were found.
+    /// Adds the floor or the ceiling of the sector in `range`. Its rows are in `bottoms` or `tops`.
     fn add_plane(&mut self, visit: &Visit, sector: &Sector, range: &Range<u32>, side: PlaneSide) {
         let indices = range.start as usize..range.end as usize;
         let ColumnMemory { starts, ends, bottoms, tops, .. } = &self.memory.columns;
@@ -413,8 +415,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Shows the floor or the ceiling of the sector of the camera behind everything else, if it has one colour or
-    /// is a sky without texels. Returns whether it does.
+    /// Makes the floor or the ceiling of the camera's sector a backdrop, if it has one colour or is a sky
+    /// without texels. Returns whether it does.
     fn show_behind(&mut self, visit: &Visit, side: PlaneSide) -> bool {
         let Some(surface) = self.fan.sectors.even_surface(visit.sector, side) else { return false };
         let sector = self.fan.sectors.get(visit.sector);
@@ -430,7 +432,7 @@ impl Walk<'_> {
         backdrop.is_some()
     }
 
-    /// Adds the parts of the rays of `range` up to the distances found, in which billboards may show.
+    /// Adds the parts of the rays in `range` up to the distances `t`, in which billboards may show.
     fn add_part(&mut self, visit: &Visit, range: Range<u32>, top_below: Option<f64>) {
         let ColumnMemory { starts, ends, from, t, .. } = &self.memory.columns;
         let first = self.list.stretches.len();
@@ -444,7 +446,8 @@ impl Walk<'_> {
         self.list.passed.push(Layer::Part(part));
     }
 
-    /// Shows what is at the faces by which the rays leave the sector, and stores the visits behind them.
+    /// Shows the surfaces at the faces through which the rays leave the sector, and stores the visits behind
+    /// them.
     fn pass_borders(&mut self, visit: &Visit, sector: &Sector) {
         if self.blends() {
             self.show_shared_columns(visit, sector);
@@ -470,7 +473,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether two faces beside each other are one face of one tile in one light.
+    /// Returns true if two neighbouring faces are one face of one tile in one light.
     fn looks_like(&self, one: &Border, other: &Border) -> bool {
         let walls = self.scene.plan.walls;
         let tile = |border: &Border| border.into.map(|(_, tile)| tile);
@@ -481,8 +484,8 @@ impl Walk<'_> {
             && !tile(one).is_some_and(stands)
     }
 
-    /// Shows what is beyond the edge of the map: the side of the ground, seen from a lower floor, the sky, and below
-    /// the horizon the ground.
+    /// Shows the surfaces beyond the edge of the map: the side of the ground if the sector's floor is lower,
+    /// the sky, and the ground below the horizon.
     fn meet_edge(&mut self, visit: &Visit, sector: &Sector, group: &Group) {
         let ground = self.fan.sectors.get(SectorId::BEYOND).bottom;
         let range = &group.columns;
@@ -507,7 +510,8 @@ impl Walk<'_> {
         self.list.add_plane(ground, visit.image, range, below);
     }
 
-    /// Shows the solid parts of the cells of the tile `id` behind `group`, and visits their gaps.
+    /// Shows the solid parts of the cells of the tile `id` behind `group`, and prepares the visits to their
+    /// gaps.
     fn meet(&mut self, visit: &Visit, sector: &Sector, group: &Group, id: TileId) {
         let tile = &self.scene.world.tiles()[usize::from(id.0)];
         let TileSectors { lower, upper } = self.fan.sectors.of(id);
@@ -530,7 +534,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Finds the rows of `group` between two heights, where they are in `sector`: `tops` and `bottoms`.
+    /// Writes the rows of `group` between two heights to `tops` and `bottoms`. A height outside `sector` leaves
+    /// all rows or none.
     fn find_limits(&mut self, sector: &Sector, group: &Group, top: f64, bottom: f64) {
         let range = &group.columns;
         let indices = range.start as usize..range.end as usize;
@@ -553,7 +558,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Shows the solid part of `tile` up to `top` behind `group`: its face, or a mirror.
+    /// Shows the solid part of `tile` up to `top` behind `group`, as a face or as a mirror.
     fn meet_rock(
         &mut self,
         visit: &Visit,
@@ -583,7 +588,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The paint of a wall towards a door.
+    /// The paint of a wall that faces a door: the door's jamb.
     fn jamb(&self, visit: &Visit, group: &Group) -> Option<Paint> {
         let (_, before) = self.cell_before(visit, group)?;
         match self.scene.world.tiles()[usize::from(before.0)].kind {
@@ -592,13 +597,13 @@ impl Walk<'_> {
         }
     }
 
-    /// The cell from which the rays come to `border`.
+    /// The cell from which the rays come to `group`, and its tile.
     fn cell_before(&self, visit: &Visit, group: &Group) -> Option<(Cell, TileId)> {
         let [column, row] = visit.image.cell_to_map(group.face.place_before());
         self.scene.world.grid().cell(column, row)
     }
 
-    /// Stores the mirror image, in the rows of the mirror, behind its tint.
+    /// Shows the tint of a mirror, and prepares the visit to the mirror image in the rows of the mirror.
     fn reflect(&mut self, visit: &Visit, group: &Group, tint: Glass) {
         if !tint.is_clear() {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
@@ -618,7 +623,7 @@ impl Walk<'_> {
         self.extend(Slot::Mirror, visit.sector, (image, bounces), group);
     }
 
-    /// Visits a gap of the cells of `tile` behind `group`.
+    /// Prepares the visit to a gap of the cells of `tile` behind `group`, if it has open rows.
     fn open(
         &mut self,
         visit: &Visit,
@@ -671,7 +676,8 @@ impl Walk<'_> {
         self.show_face(visit, group, material, (bottom, top));
     }
 
-    /// Adds a face at `group` in the rows between `tops` and `bottoms`. An opaque one is the hit of its columns.
+    /// Adds a face at `group` in the rows between `tops` and `bottoms`. An opaque face becomes the hit of its
+    /// columns.
     fn show_face(
         &mut self,
         visit: &Visit,
@@ -706,8 +712,8 @@ impl Walk<'_> {
         });
     }
 
-    /// Makes the faces of `group` the hits of those of its columns that show them, from column `x` on, of which
-    /// `first` is the face column.
+    /// Stores the faces of `group` as hits of the columns that show them, from column `x` on. `first` is the
+    /// index of the face column of `x`.
     pub(crate) fn set_hits(&mut self, visit: &Visit, group: &Group, x: u32, first: usize) {
         if visit.bounces > 0 {
             return;
@@ -717,7 +723,7 @@ impl Walk<'_> {
             let columns = range.start.max(x) as usize..range.end.max(x) as usize;
             for (column, shown) in self.list.columns[columns].iter_mut().zip(&mut shown) {
                 let &FaceColumn { rows, t, u } = shown;
-                // A wall above or below the picture is a hit, too.
+                // A wall above or below the picture is also a hit.
                 if !rows.is_empty() || column.hit.is_none() {
                     let hit = into.map(|(cell, _)| Hit { cell, side: face.side, t, u });
                     column.hit = hit.or(column.hit);
@@ -726,14 +732,14 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether there is glass or a mask behind `group`.
+    /// Returns true if there is glass or a mask behind `group`.
     fn is_cube(&self, group: &Group) -> bool {
         let into = self.memory.borders[group.borders.start].into;
         into.is_some_and(|(_, id)| matches!(self.fan.sectors.held_by(id), Holds::Cube(_)))
     }
 
-    /// The light on the faces of `group`, seen from the cell before the first: that of their tile if it is solid and
-    /// has one, else the light there.
+    /// The light on the faces of `group`: the light of their tile if it is solid and has its own, else the
+    /// light in the cell in front of the first face.
     pub(crate) fn light_on_face(&self, visit: &Visit, group: &Group) -> FaceLight {
         let world = self.scene.world;
         if !self.scene.plan.walls.faded {
@@ -748,13 +754,14 @@ impl Walk<'_> {
         let Some((before, _)) = self.cell_before(visit, group) else { return FaceLight::FULL };
         let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
         match into {
-            // The step below a door has the same light everywhere, as its leaf has.
+            // The step below a door has the same light everywhere, like the door's leaf.
             Some((cell, _)) if !is_door => world.face_light(cell, before),
             _ => FaceLight::even(world.light_in(before)),
         }
     }
 
-    /// Extends the visit in `slot` by the cells behind `group`, or stores it and begins another one.
+    /// Extends the visit in `slot` by the cells behind `group`. If they do not continue that visit, it is
+    /// stored and another one begins.
     fn extend(
         &mut self,
         slot: Slot,
@@ -790,7 +797,7 @@ impl Walk<'_> {
         *visit = Some((new, *face));
     }
 
-    /// Stores the visit in `slot`, without the columns in which nothing of it shows.
+    /// Stores the visit in `slot`, without the columns that have no open rows.
     fn store(&mut self, slot: Slot) {
         let WalkMemory { visits, clips, entries, next, columns, .. } = &mut *self.memory;
         let Next { visit, rows, entries: of_visit } = &mut next[slot as usize];
@@ -813,7 +820,7 @@ impl Walk<'_> {
         of_visit.clear();
     }
 
-    /// Shows the object in the cell at `place` along the straight rays. The rows above it remain open.
+    /// Shows the object in the cell at `place` along the straight rays. The rows above the object remain open.
     fn meet_standing(&mut self, visit: &Visit, sector: &Sector, place: [i64; 2]) {
         let world = self.scene.world;
         let [column, row] = visit.image.cell_to_map(place);
@@ -825,7 +832,7 @@ impl Walk<'_> {
             let direction = self.fan.directions.of(column);
             let ray = on_map(visit.image, self.scene.projection.origin(), direction);
             let passage = Passage::of_tile(&ray, world, cell, tile.kind);
-            // The ray after a reflection in this cell starts at the mirror: an earlier hit is not on its path.
+            // After a reflection in this cell, the ray starts at the mirror. An earlier hit is not on its path.
             let is_before_mirror =
                 |hit: Hit| visit.bounces > 0 && hit.t < columns.from[column as usize];
             if passage.hit.is_some_and(is_before_mirror) { Passage::NONE } else { passage }
@@ -856,7 +863,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Shows the face of a leaf or a shape, which all rays of `range` hit.
+    /// Shows the face of a leaf or a shape that all rays of `range` hit.
     fn meet_side(
         &mut self,
         visit: &Visit,
@@ -876,14 +883,14 @@ impl Walk<'_> {
         let hits = range.clone().filter_map(|column| passages[(column - first) as usize].hit);
         let Some(hit) = hits.clone().next() else { return };
         let (paint, facing, before) = match tile.kind {
-            // The cell in front of a leaf's cell, on the side from which the rays come.
+            // A leaf takes its light from the cell in front, on the side from which the rays come.
             TileKind::Door(door) => {
                 let direction = self.fan.directions.of(range.start);
                 let direction = visit.image.direction_to_map(direction);
                 let before = cell_in_front(world.grid(), direction, &hit);
                 (door.leaf, Facing::Side(hit.side), before.map(|(cell, _)| cell))
             }
-            // A shape stands in a cell of its own.
+            // A shape takes its light from its own cell.
             TileKind::Shape(it) => (it.paint, Facing::of_shape(it.outline, cell), Some(cell)),
             _ => return,
         };
@@ -921,7 +928,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Shows the top of a pillar of the tile `id`, on which the rays of `range` go down.
+    /// Shows the top of a pillar of the tile `id`, as the rays of `range` see it from above.
     fn look_down_at(&mut self, visit: &Visit, range: Range<u32>, id: TileId, top: f64) {
         let projection = self.scene.projection;
         let first = visit.columns.start;
@@ -930,7 +937,7 @@ impl Walk<'_> {
             let end = passages[(column - first) as usize].end;
             columns.t[column as usize] = end.unwrap_or_default();
         }
-        // What stands on the top is in front of it.
+        // Things on the top are in front of it.
         if self.has_things {
             self.add_part(visit, range.clone(), Some(top));
         }
@@ -946,14 +953,14 @@ impl Walk<'_> {
     }
 }
 
-/// Finds the texture coordinates where the rays meet `border` in this image.
+/// Finds the texture coordinates at which the rays meet `border` in this image.
 fn find_texture_coordinates(
     image: MirrorTransform,
     fan: &Fan<'_>,
     border: &Border,
     columns: &mut ColumnMemory,
 ) {
-    /// As in [`along_line`].
+    /// The same limit as in [`along_line`].
     const FAR: f64 = 1024.0;
     let Border { columns: range, face, .. } = border;
     let origin = fan.scene.projection.origin();
@@ -1001,7 +1008,8 @@ pub(crate) fn texture_coordinate_at(
     (t, texture_coordinate(along, is_mirrored, is_from_left))
 }
 
-/// The texture coordinate of a point this far along a face, from its north or west end in the straight picture.
+/// The texture coordinate of a point `along` cells from the north or west end of a face, seen along the
+/// straight rays.
 #[inline]
 fn texture_coordinate(along: f64, is_mirrored: bool, is_from_left: bool) -> f64 {
     let along = along.clamp(0.0, 1.0);

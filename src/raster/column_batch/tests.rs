@@ -11,7 +11,7 @@ use crate::world::{Camera, FieldOfView, Heading, Texture};
 
 const HEIGHT: u32 = 90;
 
-/// A column of a wall: its distance, its side, and its visible texels; or `None`.
+/// A column of a wall, or `None`: its distance, its side, and its visible texels.
 fn column() -> impl Strategy<Value = Option<(f64, Side, Range<usize>)>> {
     let side = prop::sample::select(&[Side::X, Side::Y][..]);
     let texels = prop::sample::select(&[0..64, 64..128, 0..1, 128..1128, 0..9000][..]);

@@ -21,7 +21,7 @@ fn world(cells: &[usize]) -> World {
     map::parse_str(&text).unwrap()
 }
 
-/// Calls `test` with the fan of a picture of this width, and the view from the camera.
+/// Calls `test` with the fan of a picture of this width and the view from the camera.
 fn with_fan<T>(
     world: &World,
     camera: &Camera,
@@ -47,8 +47,8 @@ fn with_fan<T>(
     test(&fan, view)
 }
 
-/// Whether the fan of `view` finds the faces that each ray by itself hits, and so do the fans behind them, up to
-/// this depth.
+/// Returns true if the fan of `view` finds the face that each ray hits when it is cast alone, and if the same
+/// is true for the fans behind these faces, up to this depth.
 fn finds_all(fan: &Fan<'_>, view: View<'_>, columns: Range<u32>, depth: u32) -> bool {
     let (mut memory, mut borders, mut of_each) = (FanMemory::new(), Vec::new(), Vec::new());
     fan.find(view, columns.clone(), &mut memory, &mut borders);
@@ -99,7 +99,7 @@ proptest! {
     }
 }
 
-/// The number of rays for a picture of a room, and the number of faces in it.
+/// The number of rays cast for a picture of `room`, and the number of faces found.
 fn rays_and_faces(room: &[&str], degrees: f64) -> (u64, usize) {
     let grid = room.join("\n");
     let text = format!(

@@ -10,8 +10,7 @@ use crate::world::{Camera, FieldOfView, Heading};
 
 const SIDE: usize = 12;
 
-/// A map of walls, mirrors, steps and plants, some of them so high that they are wider than a
-/// cell.
+/// A map of walls, mirrors, steps, plants and tables. The tables are so high that they are wider than a cell.
 fn world(cells: &[char]) -> World {
     let rows: String =
         cells.chunks(SIDE).map(|row| row.iter().collect::<String>() + "\n").collect();
