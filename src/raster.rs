@@ -27,12 +27,13 @@ mod target;
 mod texel_runs;
 
 pub(crate) use band::Band;
+use blended::WholeColumns;
 use column_batch::BatchMemory;
 use planes::PlaneMemory;
 pub(crate) use sky::{SkyMemory, SkyView};
 pub(crate) use target::{SurfaceBuffer, Target};
 
-use crate::visibility::{DrawList, FaceColumn, Filter, Scene};
+use crate::visibility::{DrawList, Filter, Scene};
 use sampling::{Means, MipLevels, Sampling};
 
 /// The memory of a drawing thread, reused from frame to frame.
@@ -40,8 +41,7 @@ use sampling::{Means, MipLevels, Sampling};
 pub(crate) struct RasterMemory {
     planes: PlaneMemory,
     batch: BatchMemory,
-    /// The columns of a face, reduced to the rows in which it covers whole pixels.
-    whole_columns: Vec<FaceColumn>,
+    wholes: WholeColumns,
 }
 
 /// Draws the rows of `list` that `target` covers.
@@ -70,6 +70,6 @@ fn draw_surfaces<M: Sampling>(
     target: &mut Target<'_>,
 ) {
     planes::draw::<M>(scene, list, sky, &mut memory.planes, target);
-    let RasterMemory { batch, whole_columns, .. } = memory;
-    faces::draw::<M>(scene, list, (batch, whole_columns), target);
+    let RasterMemory { batch, wholes, .. } = memory;
+    faces::draw::<M>(scene, list, (batch, wholes), target);
 }

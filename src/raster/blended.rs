@@ -13,17 +13,41 @@ use crate::visibility::{
     Face, FaceColumn, FaceEdges, Faded, Lighting, Projection, Rows, SlopedEdge, TextureStepper,
 };
 
-/// The rows of a column in which a face covers whole pixels.
-pub(crate) fn whole_rows(
-    projection: &Projection,
-    face: &Face,
-    edges: &FaceEdges,
-    x: u32,
-    column: &FaceColumn,
-) -> Rows {
-    let [top, bottom] = edges.limits(projection, face, x).map(|edge| edge.rows(projection.rows()));
-    let Rows { start, end } = column.rows;
-    Rows { start: start.max(top.end), end: end.min(bottom.start) }
+/// The columns of a face, reduced to the rows in which it covers whole pixels, and the top and bottom of each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WholeColumns {
+    pub(crate) columns: Vec<FaceColumn>,
+    pub(crate) limits: Vec<[SlopedEdge; 2]>,
+}
+
+impl WholeColumns {
+    /// Finds the whole rows of `face`, whose `columns` have the rows that it covers at least in part.
+    pub(crate) fn find(
+        &mut self,
+        projection: &Projection,
+        (face, edges): (&Face, &FaceEdges),
+        columns: &[FaceColumn],
+    ) {
+        let Self { columns: wholes, limits } = self;
+        wholes.clear();
+        wholes.reserve(projection.columns());
+        limits.clear();
+        limits.reserve(projection.columns());
+        let [tops, bottoms] = [face.top, face.bottom]
+            .map(|height| edges.edges_in(projection, height, face.columns.clone()));
+        limits.extend(tops.zip(bottoms).map(|(top, bottom)| [top, bottom]));
+        let whole = |(column, limits): (&FaceColumn, &[SlopedEdge; 2])| FaceColumn {
+            rows: whole_rows(projection, *limits, column.rows),
+            ..*column
+        };
+        wholes.extend(columns.iter().zip(&*limits).map(whole));
+    }
+}
+
+/// The part of `rows` whose pixels are between a top and a bottom as a whole.
+pub(crate) fn whole_rows(projection: &Projection, limits: [SlopedEdge; 2], rows: Rows) -> Rows {
+    let [top, bottom] = limits.map(|edge| edge.rows(projection.rows()));
+    Rows { start: rows.start.max(top.end), end: rows.end.min(bottom.start) }
 }
 
 /// The colours of a column of a face.
@@ -57,14 +81,12 @@ impl FaceColors<'_> {
 /// Blends a column of a face over the pixels that it covers in part: the pixels of `rows` outside
 /// `whole`.
 pub(crate) fn draw_ends(
-    projection: &Projection,
-    (face, edges): (&Face, &FaceEdges),
-    x: u32,
-    (rows, whole): (Range<u32>, Rows),
+    (x, rows): (u32, Range<u32>),
+    whole: Rows,
+    limits: [SlopedEdge; 2],
     colors: &FaceColors<'_>,
     band: &mut Band<'_>,
 ) {
-    let limits = edges.limits(projection, face, x);
     let whole = if whole.is_empty() { rows.end..rows.end } else { whole.start..whole.end };
     let above = rows.start..whole.start.clamp(rows.start, rows.end);
     let below = whole.end.clamp(above.end, rows.end)..rows.end;

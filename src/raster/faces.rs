@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::blended::{FaceColors, SharedPart, draw_ends, draw_shared, whole_rows};
+use super::blended::{FaceColors, SharedPart, WholeColumns, draw_ends, draw_shared, whole_rows};
 use super::column_batch::{BatchMemory, ColumnBatch};
 use super::direct_columns::{self, DirectColumns};
 use super::sampling::Sampling;
@@ -19,8 +19,8 @@ use super::target::Target;
 use crate::cast::Side;
 use crate::color::Rgb;
 use crate::visibility::{
-    DrawList, Face, FaceColumn, FaceEdges, FaceTexels, Facing, Faded, Lighting, Material, Pass,
-    Scene, SideLit, Surface,
+    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, Lighting, Material, Pass, Scene,
+    SideLit, Surface,
 };
 use crate::world::texture::MipLevel;
 use crate::world::{Glass, Paint, TextureId};
@@ -29,7 +29,7 @@ use crate::world::{Glass, Paint, TextureId};
 pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
-    (memory, whole_columns): (&mut BatchMemory, &mut Vec<FaceColumn>),
+    (memory, wholes): (&mut BatchMemory, &mut WholeColumns),
     target: &mut Target<'_>,
 ) {
     let are_direct = direct_columns::are_for(scene, target.band_mut());
@@ -48,15 +48,9 @@ pub(crate) fn draw<M: Sampling>(
             continue;
         }
         if let Some(edges) = &face.edges {
-            let whole = shown.columns.iter().zip(face.columns.clone()).map(|(column, x)| {
-                let rows = whole_rows(scene.projection, face, edges, x, column);
-                FaceColumn { rows, ..*column }
-            });
-            whole_columns.clear();
-            whole_columns.reserve(scene.projection.columns());
-            whole_columns.extend(whole);
-            shown.draw_ends::<M>(paint, edges, whole_columns, target);
-            shown.columns = whole_columns;
+            wholes.find(scene.projection, (face, edges), shown.columns);
+            shown.draw_ends::<M>(paint, wholes, target);
+            shown.columns = &wholes.columns;
         }
         let lighting = if scene.plan.walls.faded { None } else { shown.side() };
         if let Some(side) = lighting {
@@ -93,10 +87,11 @@ fn draw_shared_column<M: Sampling>(
             };
             let x = face.columns.start;
             let across = edges.across(x);
+            let limits = edges.limits(scene.projection, face, x);
             *part = Some(SharedPart {
-                limits: edges.limits(scene.projection, face, x),
+                limits,
                 width: across.end - across.start,
-                whole: whole_rows(scene.projection, face, &edges, x, column),
+                whole: whole_rows(scene.projection, limits, column.rows),
                 colors,
             });
         }
@@ -183,21 +178,15 @@ impl<'a> ShownFace<'a> {
     }
 
     /// Blends the face over the pixels that it covers in part.
-    fn draw_ends<M: Sampling>(
-        &self,
-        paint: Paint,
-        edges: &FaceEdges,
-        whole: &[FaceColumn],
-        target: &mut Target<'_>,
-    ) {
-        let projection = self.scene.projection;
+    fn draw_ends<M: Sampling>(&self, paint: Paint, wholes: &WholeColumns, target: &mut Target<'_>) {
         let rows = target.rows();
         let band = target.band_mut();
         let mut draw = |index: usize, colors: &dyn Fn() -> FaceColors<'a>| {
-            let (rows, whole) = (self.columns[index].rows.within(&rows), whole[index].rows);
+            let rows = self.columns[index].rows.within(&rows);
+            let whole = wholes.columns[index].rows;
             if whole.start > rows.start || whole.end < rows.end {
                 let x = self.face.columns.start + index as u32;
-                draw_ends(projection, (self.face, edges), x, (rows, whole), &colors(), band);
+                draw_ends((x, rows), whole, wholes.limits[index], &colors(), band);
             }
         };
         match paint {

@@ -10,6 +10,7 @@
 //!
 //! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long.
 
+use std::mem;
 use std::ops::Range;
 
 use glam::DVec2;
@@ -75,17 +76,35 @@ impl FaceEdges {
     /// The edge at `height` between two positions.
     #[inline]
     fn edge(&self, projection: &Projection, height: f64, across: &Range<f64>) -> SlopedEdge {
-        let row =
-            |place: f64| projection.horizon() + (projection.eye() - height) * self.rows_at(place);
-        SlopedEdge { ends: [row(across.start), row(across.end)] }
+        SlopedEdge { ends: [across.start, across.end].map(|it| self.row(projection, height, it)) }
+    }
+
+    /// The row of `height` at `place`.
+    #[inline]
+    fn row(&self, projection: &Projection, height: f64, place: f64) -> f64 {
+        projection.horizon() + (projection.eye() - height) * self.rows_at(place)
+    }
+
+    /// The edge at `height` in each of `columns`.
+    #[inline]
+    pub(crate) fn edges_in(
+        &self,
+        projection: &Projection,
+        height: f64,
+        columns: Range<u32>,
+    ) -> impl Iterator<Item = SlopedEdge> {
+        let mut left = self.row(projection, height, f64::from(columns.start));
+        columns.map(move |x| {
+            let right = self.row(projection, height, f64::from(x + 1));
+            SlopedEdge { ends: [mem::replace(&mut left, right), right] }
+        })
     }
 
     /// The rows that the edge at `height` crosses in column `x`.
     #[inline]
-    fn rows_of(&self, projection: &Projection, height: f64, x: u32) -> [u32; 2] {
+    fn rows_of(&self, projection: &Projection, height: f64, x: u32) -> Range<u32> {
         let across = f64::from(x)..f64::from(x) + 1.0;
-        let Range { start, end } = self.edge(projection, height, &across).rows(projection.rows());
-        [start, end]
+        self.edge(projection, height, &across).rows(projection.rows())
     }
 
     /// The part of column `x` that the face covers.
@@ -104,7 +123,7 @@ impl Walk<'_> {
 
     /// Finds the positions at which neighbouring walls of the current visit share a column of pixels.
     pub(crate) fn find_joints(&mut self, visit: &Visit, sector: &Sector) {
-        let mut joints = std::mem::take(&mut self.memory.joints);
+        let mut joints = mem::take(&mut self.memory.joints);
         joints.clear();
         let pairs = self.memory.borders.array_windows();
         joints.extend(pairs.map(|[left, right]| self.joint(visit, sector, left, right)));
@@ -205,19 +224,23 @@ impl Walk<'_> {
                 &mut self.memory.columns;
             let columns = border.columns.start as usize..border.columns.end as usize;
             outer_bottoms[columns.clone()].copy_from_slice(&bottoms[columns.clone()]);
-            outer_tops[columns.clone()].copy_from_slice(&tops[columns]);
+            outer_tops[columns.clone()].copy_from_slice(&tops[columns.clone()]);
+            let height = projection.rows();
             if above_floor && projection.eye() > sector.bottom {
-                for x in border.columns.clone() {
-                    let [first, end] = edges.rows_of(projection, sector.bottom, x);
-                    bottoms[x as usize] = first.max(ground);
-                    outer_bottoms[x as usize] = end;
+                let edges = edges.edges_in(projection, sector.bottom, border.columns.clone());
+                let rows =
+                    bottoms[columns.clone()].iter_mut().zip(&mut outer_bottoms[columns.clone()]);
+                for (edge, (bottom, outer)) in edges.zip(rows) {
+                    let Range { start, end } = edge.rows(height);
+                    (*bottom, *outer) = (start.max(ground), end);
                 }
             }
             if below_ceiling && projection.eye() < sector.top {
-                for x in border.columns {
-                    let [first, end] = edges.rows_of(projection, sector.top, x);
-                    tops[x as usize] = end.min(ground);
-                    outer_tops[x as usize] = first;
+                let edges = edges.edges_in(projection, sector.top, border.columns);
+                let rows = tops[columns.clone()].iter_mut().zip(&mut outer_tops[columns]);
+                for (edge, (top, outer)) in edges.zip(rows) {
+                    let Range { start, end } = edge.rows(height);
+                    (*top, *outer) = (end.min(ground), start);
                 }
             }
         }
@@ -250,11 +273,11 @@ impl Walk<'_> {
             for border in &self.memory.borders[index..=index + 1] {
                 let edges = FaceEdges::new(projection, &border.face);
                 if projection.eye() > sector.bottom {
-                    let [first, _] = edges.rows_of(projection, sector.bottom, x);
-                    *bottom = (*bottom).min(first.max(ground));
+                    let Range { start, .. } = edges.rows_of(projection, sector.bottom, x);
+                    *bottom = (*bottom).min(start.max(ground));
                 }
                 if projection.eye() < sector.top && sector.top < f64::INFINITY {
-                    let [_, end] = edges.rows_of(projection, sector.top, x);
+                    let Range { end, .. } = edges.rows_of(projection, sector.top, x);
                     *top = (*top).max(end.min(ground));
                 }
             }
@@ -273,12 +296,19 @@ impl Walk<'_> {
         let projection = self.scene.projection;
         let edges = FaceEdges::new(projection, &group.face);
         let ColumnMemory { bottoms, tops, .. } = &mut self.memory.columns;
-        for x in group.columns.clone() {
-            if sector.is_inside(top) {
-                [tops[x as usize], _] = edges.rows_of(projection, top, x);
+        let columns = group.columns.start as usize..group.columns.end as usize;
+        let rows_in = |height: f64| {
+            let edges = edges.edges_in(projection, height, group.columns.clone());
+            edges.map(|edge| edge.rows(projection.rows()))
+        };
+        if sector.is_inside(top) {
+            for (top, rows) in tops[columns.clone()].iter_mut().zip(rows_in(top)) {
+                *top = rows.start;
             }
-            if sector.is_inside(bottom) {
-                [_, bottoms[x as usize]] = edges.rows_of(projection, bottom, x);
+        }
+        if sector.is_inside(bottom) {
+            for (bottom, rows) in bottoms[columns].iter_mut().zip(rows_in(bottom)) {
+                *bottom = rows.end;
             }
         }
     }
@@ -332,8 +362,8 @@ impl Walk<'_> {
         let border = &self.memory.borders[border];
         let (t, u) = texture_coordinate_at(visit.image, projection, border, direction);
         let Rows { start, end } = self.memory.columns.entered[x as usize];
-        let [top, _] = edges.rows_of(projection, top, x);
-        let [_, bottom] = edges.rows_of(projection, bottom, x);
+        let top = edges.rows_of(projection, top, x).start;
+        let bottom = edges.rows_of(projection, bottom, x).end;
         FaceColumn { rows: Rows { start: start.max(top), end: end.min(bottom) }, t, u }
     }
 
