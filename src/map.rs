@@ -25,6 +25,7 @@
 //! Rows of unequal length are a fault. Rejected: padding short rows. A lost character would
 //! silently move half a wall.
 
+mod art;
 pub mod builtin;
 mod checks;
 mod definitions;
@@ -53,6 +54,7 @@ use crate::world::{
     Ceiling, Covering, Grid, Heights, Mission, Paint, Parts, Sky, Start, Tile, TileId, TileKind,
     World,
 };
+pub use art::{ArtError, replace_art};
 use checks::Cells;
 use definitions::Definitions;
 pub use drawing::MAX_SIDE;

@@ -35,7 +35,9 @@ use crate::app::App;
 use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen;
-use crate::app::setting::{At, Choice, FRAME_RATE, MapDisplay, Preferences, Setting, toml_string};
+use crate::app::setting::{
+    At, Choice, FRAME_RATE, Field, MapDisplay, Preferences, Setting, toml_string,
+};
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::fault::{Fault, Faults, quoted};
@@ -150,6 +152,8 @@ pub struct Configuration {
     pub minimap: MapDisplay,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
+    /// A folder whose pictures replace the built-in ones, relative to the file.
+    pub art: Option<String>,
 }
 
 impl Default for Configuration {
@@ -164,12 +168,13 @@ impl Default for Configuration {
             mouse: false,
             minimap: MapDisplay::default(),
             fidelity: None,
+            art: None,
         }
     }
 }
 
 /// The settings, in the order of the file. The table of keys comes after them.
-const SETTINGS: [Setting<Configuration>; 8] = [
+const SETTINGS: [Setting<Configuration>; 9] = [
     Setting {
         key: "preset",
         about: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
@@ -213,7 +218,35 @@ const SETTINGS: [Setting<Configuration>; 8] = [
                   tolerance from 0 to 255, or \"auto\" for what the link allows",
         value: &At(|it: &mut Configuration| &mut it.fidelity),
     },
+    Setting {
+        key: "art",
+        about: "a folder, beside this file, whose PNG files replace the built-in pictures with\ntheir names; \"\" for none",
+        value: &ArtFolder,
+    },
 ];
+
+/// The field [`Configuration::art`].
+struct ArtFolder;
+
+impl Field<Configuration> for ArtFolder {
+    fn read(&self, entry: &Entry<'_, '_>, into: &mut Configuration) {
+        if let Some(folder) = entry.string("art = \"my-art\"") {
+            into.art = Some(folder.to_owned()).filter(|folder| !folder.is_empty());
+        }
+    }
+
+    fn write(&self, of: &Configuration) -> String {
+        toml_string(of.art.as_deref().unwrap_or_default())
+    }
+
+    fn differs(&self, one: &Configuration, other: &Configuration) -> bool {
+        one.art != other.art
+    }
+
+    fn copy(&self, from: &Configuration, into: &mut Configuration) {
+        into.art.clone_from(&from.art);
+    }
+}
 
 impl Configuration {
     /// Parses a configuration file. Faults refer to the file as `name`.

@@ -29,7 +29,7 @@ pub(crate) struct Config {
 /// The current configuration, and the path of its file.
 pub(crate) struct InForce {
     pub(crate) configuration: Configuration,
-    path: Option<PathBuf>,
+    pub(crate) path: Option<PathBuf>,
     /// `true` if the file exists.
     is_there: bool,
 }

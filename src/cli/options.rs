@@ -2,16 +2,19 @@
 
 use std::ffi::OsString;
 use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use ratatui::layout::Size;
 
+use super::Error;
 use super::parse::Takes;
 use crate::app::parts::Choice;
 use crate::color::palette::ColorDepth;
 use crate::generate::{Extent, Generator, Site};
+use crate::map;
 use crate::render::Filter;
 use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphSet};
@@ -69,6 +72,9 @@ pub(crate) struct Look {
     /// that they cover, with smooth edges (area)
     #[arg(long, value_name = "FILTER", default_value = Filter::default().name(), value_parser = filter())]
     pub(crate) filter: Filter,
+    /// Show the PNG files of a folder in place of the built-in pictures with their names, as in maps/art
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) art: Option<PathBuf>,
     /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS,
     /// table:ANGLES or march:STEP
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
@@ -86,6 +92,12 @@ pub(crate) struct View {
     /// How many colours there are [default: true; when playing, what the terminal has]
     #[arg(long = "colors", value_name = "DEPTH", value_parser = choice::<ColorDepth>())]
     pub(crate) depth: Option<ColorDepth>,
+}
+
+/// Replaces the built-in art by that in `folder`.
+pub(crate) fn replace_art(folder: Option<&Path>) -> Result<(), Error> {
+    let Some(folder) = folder else { return Ok(()) };
+    map::replace_art(folder).map_err(|error| Error::mistake(error.to_string()))
 }
 
 /// The name of the only caster in this program.

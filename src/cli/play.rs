@@ -8,8 +8,9 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 
+use super::config::InForce;
 use super::machine::{data_folder, open_store, today};
-use super::options::{Look, Place, STANDARD_INPUT, choice, fidelity, frames};
+use super::options::{Look, Place, STANDARD_INPUT, choice, fidelity, frames, replace_art};
 use super::parse::Takes;
 use super::recording::RecordingFile;
 use super::{Error, config, level};
@@ -97,8 +98,12 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
         None => level::name(options.place.map.as_deref()),
         Some(_) => None,
     };
-    let Look { cell_aspect, glyphs, filter, view, .. } = options.look;
-    let configuration = config::load(options.config)?.configuration;
+    let Look { cell_aspect, glyphs, filter, art, view, .. } = options.look;
+    let InForce { configuration, path, .. } = config::load(options.config)?;
+    // The folder in a configuration file is relative to the file.
+    let beside = path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+    let configured = configuration.art.as_ref().map(|folder| beside.join(folder));
+    replace_art(art.or(configured).as_deref())?;
     let frames_per_second = options.frames_per_second.unwrap_or(configuration.frames_per_second);
     let usual = Configuration::default().frames_per_second;
     let given = Given {

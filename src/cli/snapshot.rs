@@ -20,7 +20,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use self::format::Format;
-use super::options::{Look, Place, size, within};
+use super::options::{Look, Place, replace_art, size, within};
 use super::parse::Takes;
 use super::{Error, level};
 use crate::fault::{Faults, printable, printable_lines};
@@ -117,6 +117,7 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
              \"cellcaster snapshot --format png > picture.png\"",
         ));
     }
+    replace_art(options.look.art.as_deref())?;
     if options.watch {
         return watch(options, caster);
     }

@@ -127,6 +127,18 @@ impl Picture {
         self.part(0, 0, self.width, self.height)
     }
 
+    /// The width and height in texels.
+    pub(crate) fn size(&self) -> [NonZeroU32; 2] {
+        [self.width, self.height]
+    }
+
+    /// The colour and alpha of each texel, row by row from the top.
+    pub(crate) fn texels(&self) -> impl Iterator<Item = (Rgb, u8)> {
+        let rows = self.samples.chunks_exact(self.row_size);
+        let count = self.color_type.samples();
+        rows.flat_map(move |row| row.chunks_exact(count).map(|it| texel(self.color_type, it)))
+    }
+
     /// The part with its top left corner at `(left, top)`, as a texture. It must be inside the
     /// picture.
     pub(crate) fn part(

@@ -3,8 +3,13 @@
 //! A sheet has its frames from left to right and its facings from top to bottom, as the sheets of
 //! maps do. It is decoded when one of its texels is first read, because most levels show only a few
 //! sheets.
+//!
+//! A program can [replace](replace) sheets by others, once and for the whole process. Rejected: a field of each world.
+//! Rules place sprites deep inside a game, and every function on the way would pass it on.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
+use std::iter;
 use std::num::NonZeroU32;
 use std::sync::{Arc, OnceLock};
 
@@ -27,6 +32,15 @@ pub(crate) use art;
 pub(crate) struct Art {
     pub(crate) name: &'static str,
     pub(crate) file: &'static [u8],
+}
+
+/// The sheets that replace built-in ones, by name.
+static REPLACEMENTS: OnceLock<BTreeMap<&'static str, Sheet>> = OnceLock::new();
+
+/// Shows each of `sheets` in place of the built-in art with its name, in all worlds of this process that are read from
+/// now on. Returns false, and replaces nothing, if art was replaced before.
+pub(crate) fn replace(sheets: BTreeMap<&'static str, Sheet>) -> bool {
+    REPLACEMENTS.set(sheets).is_ok()
 }
 
 impl Art {
@@ -65,8 +79,18 @@ impl Art {
             .collect()
     }
 
-    /// The width and height in texels, which are at a fixed place in every PNG file.
+    /// The sheet that replaces it.
+    fn replacement(self) -> Option<&'static Sheet> {
+        REPLACEMENTS.get()?.get(self.name)
+    }
+
+    /// The width and height of the sheet, in texels.
     fn size(self) -> [NonZeroU32; 2] {
+        self.replacement().map_or_else(|| self.built_in_size(), |sheet| sheet.size)
+    }
+
+    /// The width and height of the built-in sheet in texels, which are at a fixed place in every PNG file.
+    pub(crate) fn built_in_size(self) -> [NonZeroU32; 2] {
         [16, 20].map(|start| {
             let bytes = self.file[start..start + 4].try_into().unwrap_or_default();
             NonZeroU32::new(u32::from_be_bytes(bytes)).unwrap_or(NonZeroU32::MIN)
@@ -74,45 +98,54 @@ impl Art {
     }
 
     fn decoded(self, recolored: impl Fn(Rgb) -> Rgb) -> Sheet {
-        let mut sheet = Sheet::decode(self.file).expect("a test decodes all files of the art");
-        for (color, _) in sheet.palette.iter_mut().flatten() {
+        let mut sheet = match self.replacement() {
+            Some(sheet) => sheet.clone(),
+            None => self.decode().expect("a test decodes all files of the art"),
+        };
+        for (color, _) in &mut sheet.colors {
             *color = recolored(*color);
         }
         sheet
     }
-}
 
-/// A decoded PNG file.
-struct Sheet {
-    width: usize,
-    samples: Vec<u8>,
-    /// The colours and alphas of indices; `None` if each texel has samples of red, green and blue.
-    palette: Option<Vec<(Rgb, u8)>>,
-}
-
-impl Sheet {
-    fn decode(file: &[u8]) -> Result<Self, DecodingError> {
-        let mut reader = Decoder::new(Cursor::new(file)).read_info()?;
+    /// The built-in sheet.
+    fn decode(self) -> Result<Sheet, DecodingError> {
+        let mut reader = Decoder::new(Cursor::new(self.file)).read_info()?;
         let mut samples = vec![0; reader.output_buffer_size().unwrap_or_default()];
         reader.next_frame(&mut samples)?;
         let info = reader.info();
-        let palette = (info.color_type == ColorType::Indexed).then(|| {
-            let colors = info.palette.as_deref().unwrap_or_default().as_chunks().0.iter();
-            let alphas = info.trns.as_deref().unwrap_or_default().iter().copied();
-            let alphas = alphas.chain(std::iter::repeat(u8::MAX));
-            let colors = colors.map(|&[red, green, blue]| Rgb::new(red, green, blue));
-            colors.zip(alphas).collect()
-        });
-        Ok(Self { width: info.width as usize, samples, palette })
+        let color = |&[red, green, blue]: &[u8; 3]| Rgb::new(red, green, blue);
+        if info.color_type != ColorType::Indexed {
+            let colors = samples.as_chunks().0.iter().map(|channels| (color(channels), u8::MAX));
+            return Ok(Sheet::new(self.built_in_size(), colors.collect()));
+        }
+        let colors = info.palette.as_deref().unwrap_or_default().as_chunks().0.iter().map(color);
+        let alphas = info.trns.as_deref().unwrap_or_default().iter().copied();
+        let colors = colors.zip(alphas.chain(iter::repeat(u8::MAX))).collect();
+        Ok(Sheet { size: self.built_in_size(), colors, indices: samples })
+    }
+}
+
+/// A decoded sheet.
+#[derive(Clone, Debug)]
+pub(crate) struct Sheet {
+    size: [NonZeroU32; 2],
+    /// Colours and alphas.
+    colors: Vec<(Rgb, u8)>,
+    /// The index of each texel's colour; empty if there is one colour for each texel.
+    indices: Vec<u8>,
+}
+
+impl Sheet {
+    /// A sheet of this width and height with these colours and alphas, row by row from the top.
+    pub(crate) fn new(size: [NonZeroU32; 2], colors: Vec<(Rgb, u8)>) -> Self {
+        Self { size, colors, indices: Vec::new() }
     }
 
     /// The colour and alpha of a texel inside the sheet.
     fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
-        let index = y as usize * self.width + x as usize;
-        if let Some(palette) = &self.palette {
-            return palette[usize::from(self.samples[index])];
-        }
-        let [red, green, blue] = [0, 1, 2].map(|channel| self.samples[3 * index + channel]);
-        (Rgb::new(red, green, blue), u8::MAX)
+        let index = y as usize * self.size[0].get() as usize + x as usize;
+        let index = if self.indices.is_empty() { index } else { usize::from(self.indices[index]) };
+        self.colors[index]
     }
 }

@@ -1,6 +1,7 @@
 //! The command line, from arguments to standard output.
 
 mod arguments;
+mod art;
 mod descents;
 mod full_disk;
 mod hostile;

@@ -89,6 +89,7 @@ proptest! {
         (colors, glyphs, minimap) in (0..5_usize, 0..7_usize, 0..3_usize),
         (fov, fps, mouse) in (0.001..179.9, 1..=240_u32, any::<bool>()),
         fidelity in prop::option::of(any::<u8>()),
+        art in prop::option::of("[a-z/ ü\"\\\\]{1,8}"),
         actions in prop::collection::vec(0..Action::ALL.len(), 0..6),
         keys in prop::collection::vec(key(), 0..12),
     ) {
@@ -110,6 +111,7 @@ proptest! {
         configuration.frames_per_second = NonZeroU32::new(fps).unwrap();
         configuration.mouse = mouse;
         configuration.fidelity = fidelity.map(Fidelity::new);
+        configuration.art = art;
         let printed = configuration.to_string();
         prop_assert_eq!(parse(&printed), configuration, "{}", printed);
     }

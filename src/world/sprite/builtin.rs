@@ -35,6 +35,11 @@ pub fn named(name: &str) -> Option<Sprite> {
     DESIGNS.iter().find(|design| design.art.name == name)?.recolored(|color| color)
 }
 
+/// The sheets of all sprites.
+pub(crate) fn sheets() -> impl Iterator<Item = Art> {
+    DESIGNS.iter().chain([&TRAVELLER]).map(|design| design.art)
+}
+
 /// All built-in sprites except the players.
 const DESIGNS: &[Design] = &[
     Design::figure(art!("archer"), 0.82, 8),

@@ -27,6 +27,11 @@ pub fn panorama(name: &str) -> Option<Texture> {
     (name == HILLS.name).then(|| HILLS.texture(false))
 }
 
+/// The sheets of all textures and panoramas.
+pub(crate) fn sheets() -> impl Iterator<Item = Art> {
+    TEXTURES.into_iter().chain([HILLS])
+}
+
 const TEXTURES: [Art; 16] = [
     art!("brick"),
     art!("stone"),
