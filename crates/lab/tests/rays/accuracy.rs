@@ -1,4 +1,4 @@
-//! `cellcaster-lab accuracy`: its formats, its results, and the figures of ACCURACY.md.
+//! `cellcaster-lab accuracy`: its formats, its results, and the figures of docs/accuracy.md.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -171,10 +171,10 @@ fn cells(block: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Compares the figures of ACCURACY.md with the figures of the program, except times.
+/// Compares the figures of docs/accuracy.md with the figures of the program, except times.
 fn assert_page_is_current(part: &str) {
     let page =
-        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../ACCURACY.md")).unwrap();
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/accuracy.md")).unwrap();
     let page = tables_of_page(&page);
     let arguments = ["accuracy", "--part", part, "--rounds", "0", "--format", "markdown"];
     let report = String::from_utf8(output_of(&arguments)).unwrap();
