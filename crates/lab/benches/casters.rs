@@ -37,8 +37,7 @@ fn casters(criterion: &mut Criterion) {
     for Set { name, grid, rays } in accuracy::ordinary(1, RAYS) {
         let mut group = criterion.benchmark_group(name);
         group.throughput(Throughput::Elements(rays.len() as u64));
-        for method in Method::NAMES {
-            let method: Method = method.parse().expect("these are the names of all methods");
+        for method in Method::all() {
             let id = BenchmarkId::from_parameter(&method);
             group.bench_function(id, |bencher| {
                 method.accept(Measure { grid: &grid, rays: &rays, bencher });

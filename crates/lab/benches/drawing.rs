@@ -1,4 +1,4 @@
-//! Compares drawing with the classic loop and with a fill, at eight sizes.
+//! Compares drawing with the classic loop and with a fill, at six sizes.
 //!
 //! `cargo bench -p cellcaster-lab --bench drawing` measures the drawing table of `cellcaster-lab bench`
 //! with more cameras and more repetitions, and writes it as Markdown.

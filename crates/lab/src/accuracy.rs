@@ -13,7 +13,7 @@ mod rays;
 mod reference;
 mod sets;
 
-pub use rays::{RAYS, SEED, all_methods, is_measured};
+pub use rays::{RAYS, SEED};
 pub use reference::{Truth, cast};
 pub use sets::{Set, ordinary, plain, random_ray, sets};
 
@@ -135,7 +135,7 @@ pub fn set_names() -> Vec<&'static str> {
 
 fn ray_tables(plan: &Plan, map: Option<&World>) -> Option<Vec<Table>> {
     let &Plan { rays: count, seed, rounds, .. } = plan;
-    let methods = if plan.methods.is_empty() { all_methods() } else { plan.methods.clone() };
+    let methods = if plan.methods.is_empty() { Method::all().into() } else { plan.methods.clone() };
     let mut pictured = None;
     let sets_of_rays = match (plan.set.as_deref(), map) {
         (Some("plain-4096"), _) => vec![plain(seed, count)],

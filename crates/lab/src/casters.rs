@@ -72,6 +72,14 @@ impl Method {
     /// The names of all methods, the default first.
     pub const NAMES: [&str; 7] = ["exact", "dda", "dda32", "accumulate", "fixed", "table", "march"];
 
+    /// All methods, each with the default value of its parameter.
+    ///
+    /// # Panics
+    /// Never: the names are valid, and a test parses them.
+    pub fn all() -> [Self; 7] {
+        Self::NAMES.map(|name| name.parse().expect("these are the names of all methods"))
+    }
+
     /// Passes the caster to `visitor`.
     pub fn accept<V: Visitor>(&self, visitor: V) -> V::Output {
         match self {

@@ -2,8 +2,7 @@
 //!
 //! With `--update`, the command replaces tables in a page whose other text is written by hand. A
 //! table stands between two lines of the page: `<!-- accuracy NAME -->` and `<!-- end -->`. The run
-//! that produced it is named below the table, and so is the plot, a file in the folder `docs`
-//! beside the page. Tables and plots of a page therefore come from one run.
+//! that produced it is named below the table. Its plot is a file beside the page, from the same run.
 
 use std::ffi::OsString;
 use std::fs;
@@ -35,7 +34,7 @@ pub(crate) struct Accuracy {
     /// How the report is written
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Replace the tables between the marks of this page, and the plots in docs/ beside it
+    /// Replace the tables between the marks of this page, and the plots beside it
     #[arg(long = "update", value_name = "FILE", value_hint = ValueHint::FilePath)]
     page: Option<PathBuf>,
 }
@@ -85,9 +84,9 @@ fn begin(table: &Table) -> String {
     format!("<!-- accuracy {} -->", table.name)
 }
 
-/// The file of the plot, relative to the page.
+/// The file of the plot, beside the page.
 fn plot_of(table: &Table) -> String {
-    format!("docs/accuracy-{}.svg", table.name)
+    format!("accuracy-{}.svg", table.name)
 }
 
 /// Returns `page` with the new `table`; `None` if it has no place for it.

@@ -19,7 +19,7 @@ use cellcaster::game::{Intents, STEPS_PER_SECOND, Script};
 use cellcaster::terminal::{CellWriter, Fidelity};
 
 /// The windows that are measured.
-const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200, 60)];
+const WINDOWS: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
 /// The speeds of the links for which frame rates are reported, in megabits per second.
 const LINKS: [f64; 3] = [1.0, 10.0, 100.0];
 /// The number of frames drawn per second.

@@ -15,7 +15,7 @@ fn one_run_gives_all_figures_and_plots_of_them() {
     has_every_encoder(&report);
     has_a_footprint(&report);
     let plot = fs::read_to_string(plot).unwrap();
-    for words in ["drawing", "classic", "3840", "ns/ray", "plain", "4096", "pipeline", "stock"] {
+    for words in ["drawing", "classic", "2073600", "ns/ray", "plain", "4096", "pipeline", "stock"] {
         assert!(plot.contains(words), "no {words} in\n{plot}");
     }
 }
@@ -36,12 +36,13 @@ fn numbers(rows: &[Value], key: &str, name: &str, column: &str) -> Vec<u64> {
 
 fn has_every_size(report: &Value) {
     let drawing = rows(report, "drawing");
-    for scene in ["planes", "walls"] {
+    let all = &[3840, 9600, 14_400, 24_000, 64_000, 2_073_600][..];
+    for (scene, sizes) in [("planes", all), ("walls", &all[..1])] {
         let of_scene: Vec<Value> =
             drawing.iter().filter(|row| row["scene"] == scene).cloned().collect();
         for renderer in ["ours", "classic", "fill"] {
             let pixels = numbers(&of_scene, "renderer", renderer, "pixels");
-            assert_eq!(pixels, [3840, 9600, 14_400, 24_000, 64_000, 307_200, 2_073_600, 8_294_400]);
+            assert_eq!(pixels, sizes);
         }
         let threads = numbers(&of_scene, "renderer", "by threads", "threads");
         let pixels = numbers(&of_scene, "renderer", "by threads", "pixels");
@@ -49,7 +50,7 @@ fn has_every_size(report: &Value) {
         assert!(pixels.iter().all(|&count| count > 1_000_000), "{pixels:?}");
     }
     for row in drawing {
-        for figure in ["time, ns a pixel", "over ours", "over fill"] {
+        for figure in ["time, ns a pixel", "over ours"] {
             assert!(is_positive(&row[figure]), "{figure}: {row}");
         }
     }
@@ -59,9 +60,9 @@ fn has_every_map(report: &Value) {
     let maps = rows(report, "maps");
     for ground in ["hall", "plain"] {
         let sides = numbers(maps, "ground", ground, "cells");
-        assert_eq!(sides, [16, 64, 256, 1024, 4096]);
+        assert_eq!(sides, [64, 1024, 4096]);
         let maps: Vec<&Value> = maps.iter().filter(|row| row["ground"] == ground).collect();
-        let ratios = (&maps[1]["ray ratio"], &maps[1]["frame ratio"]);
+        let ratios = (&maps[0]["ray ratio"], &maps[0]["frame ratio"]);
         assert_eq!(ratios, (&1.0.into(), &1.0.into()));
         for row in maps {
             assert!(is_positive(&row["time, ns/ray"]), "{row}");
@@ -93,7 +94,7 @@ fn has_every_encoder(report: &Value) {
             assert!(row["frames"].as_u64().unwrap() >= 20 && is_positive(&row["time, µs/frame"]));
         }
     }
-    assert_eq!(pipeline.len(), 12);
+    assert_eq!(pipeline.len(), 8);
 }
 
 fn has_a_footprint(report: &Value) {
@@ -109,7 +110,7 @@ fn has_a_footprint(report: &Value) {
 #[test]
 fn a_table_is_for_people() {
     let table = String::from_utf8(output_of(&["bench", "--seconds", "1"])).unwrap();
-    for word in ["classic", "3840x2160", "200x60", "stock", "Mbit/s", "first frame", "100000"] {
+    for word in ["classic", "1920x1080", "200x60", "stock", "Mbit/s", "first frame", "100000"] {
         assert!(table.contains(word), "no {word} in\n{table}");
     }
     // The last line describes the origin of the figures.

@@ -1,4 +1,4 @@
-//! `cellcaster-lab accuracy`: its formats, its results, and the figures of ACCURACY.md.
+//! `cellcaster-lab accuracy`: its formats, its results, and the figures of docs/accuracy.md.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -46,16 +46,16 @@ fn the_exact_method_is_right_about_everything() {
         assert_eq!((&exact["method"], &exact["wrong rays"]), (&"exact".into(), &0.0.into()));
         assert!(exact["time, ns a ray"]["median"].as_f64().unwrap() > 0.0);
     }
-    let wrong = |row: &&Value| row["wrong"] != 0.0;
+    let wrong = |row: &&Value| row["wrong pixels"] != 0.0;
     let wrong: Vec<&Value> = rows(&report, "pixels").iter().filter(wrong).collect();
-    assert!(wrong.len() > 10, "coarse methods change pixels");
+    assert!(wrong.len() > 2, "coarse methods change pixels");
     assert!(wrong.iter().all(|row| row["method"] != "exact"));
     let sets = rows(&report, "stiff");
     assert!(sets.len() >= 20);
     for set in sets {
-        assert_eq!(set["exact: wrong"], 0.0, "{set}");
-        assert!(set["exact: worst"].as_f64().unwrap() < 1e-15, "{set}");
+        assert_eq!(set["exact"], 0.0, "{set}");
     }
+    assert!(sets.iter().any(|set| set["dda"] != 0.0), "a double alone can't order every line");
 }
 
 /// The table, Markdown, CSV and SVG contain every row of JSON.
@@ -80,13 +80,13 @@ fn every_format_holds_every_figure() {
     let figures_only = lines.iter().filter(|line| !line.starts_with("run,")).map(columns);
     assert_eq!(figures_only.collect::<BTreeSet<usize>>().len(), 1);
     for format in [&table, &markdown] {
-        for word in ["exact", "march", "0.1", "400x120", "wrong rays", "ulp", "commit"] {
+        for word in ["exact", "march", "0.1", "160x90", "wrong rays", "ulp", "commit"] {
             assert!(format.contains(word), "no {word} in\n{format}");
         }
     }
     let of_table = |text: &str| text.lines().filter(|line| line.contains("march")).count();
     // The last of these lines contains the command.
-    assert_eq!((of_table(&table), of_table(&markdown)), (4, 4));
+    assert_eq!((of_table(&table), of_table(&markdown)), (3, 3));
 
     let without_run = |text: &str| -> Vec<String> {
         let lines = text.lines().filter(|line| !line.starts_with("run,"));
@@ -139,7 +139,9 @@ fn a_set_can_be_looked_at_alone() {
 fn the_motion_is_that_of_the_requested_player() {
     let report =
         json(&["--part", "motion", "--rounds", "0", "--friction", "7", "--steps-per-second", "25"]);
-    let is_players = |row: &&Value| row["friction, per s"] == "7" && row["step, s"] == "1/25";
+    let title = report["tables"]["motion"]["title"].as_str().unwrap();
+    assert!(title.contains(" friction of 7 per second "), "{title}");
+    let is_players = |row: &&Value| row["rate × step"] == 7.0 / 25.0 && row["step, s"] == "1/25";
     assert_eq!(rows(&report, "motion").iter().filter(is_players).count(), 5);
     let orders: Vec<f64> =
         rows(&report, "orders").iter().filter_map(|row| row["slope, velocity"].as_f64()).collect();
@@ -171,10 +173,10 @@ fn cells(block: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Compares the figures of ACCURACY.md with the figures of the program, except times.
+/// Compares the figures of docs/accuracy.md with the figures of the program, except times.
 fn assert_page_is_current(part: &str) {
     let page =
-        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../ACCURACY.md")).unwrap();
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/accuracy.md")).unwrap();
     let page = tables_of_page(&page);
     let arguments = ["accuracy", "--part", part, "--rounds", "0", "--format", "markdown"];
     let report = String::from_utf8(output_of(&arguments)).unwrap();

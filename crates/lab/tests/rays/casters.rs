@@ -24,8 +24,7 @@ impl Visitor for Cast<'_> {
 /// Every method, with the default value and with both ends of its parameter's range.
 fn methods() -> impl Iterator<Item = Method> {
     let ends = ["fixed:4", "fixed:26", "table:8", "table:65536", "march:1"];
-    let names = Method::NAMES.into_iter().chain(ends);
-    names.map(|name| name.parse().expect("these are names of methods"))
+    Method::all().into_iter().chain(ends.map(|name| name.parse().unwrap()))
 }
 
 fn is_sane(grid: &Grid, hit: &Hit) -> bool {

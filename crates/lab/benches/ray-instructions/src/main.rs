@@ -7,8 +7,8 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Ray};
-use cellcaster_lab::accuracy::{RAYS, SEED, all_methods, is_measured, ordinary, plain};
-use cellcaster_lab::casters::Visitor;
+use cellcaster_lab::accuracy::{RAYS, SEED, ordinary, plain};
+use cellcaster_lab::casters::{Method, Visitor};
 use cellcaster::world::Grid;
 
 struct Rays<'a> {
@@ -27,7 +27,7 @@ impl Visitor for Rays<'_> {
 fn main() {
     let sets = ordinary(SEED, RAYS).into_iter().chain([plain(SEED, RAYS)]);
     for set in sets {
-        for method in all_methods().iter().filter(|method| is_measured(set.name, method)) {
+        for method in Method::all() {
             method.accept(Rays { grid: &set.grid, rays: &set.rays });
             println!("{} {method} {}", set.name, set.rays.len());
         }

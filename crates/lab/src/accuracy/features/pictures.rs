@@ -3,8 +3,8 @@
 //!
 //! Heights are compared with the 3-D caster, which treats each cell as a box and shares no code
 //! with them. A mirror is compared with a copy of the room behind it, built in reverse. A sprite is
-//! a rectangle on the plane through its place that faces the camera. Light and fog are compared by
-//! channel with their definition in real numbers.
+//! a rectangle on the plane through its place that faces the camera. Light and fog are compared with
+//! their definition in real numbers.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -29,17 +29,12 @@ const PICTURES: usize = 12;
 const HEADINGS: [f64; 6] = [0.0, 33.0, 101.0, 170.0, 222.0, 295.0];
 
 pub(crate) fn features(seed: u64) -> Vec<Feature> {
-    let fog = Fog::new(FOG, FOG_DISTANCE);
     vec![
         heights(seed),
         mirrors(seed),
         sprites(seed),
-        lit("light: red", 0, None),
-        lit("light: green", 1, None),
-        lit("light: blue", 2, None),
-        lit("fog: red", 0, fog),
-        lit("fog: green", 1, fog),
-        lit("fog: blue", 2, fog),
+        lit("light", None),
+        lit("fog", Fog::new(FOG, FOG_DISTANCE)),
         mip_levels(),
     ]
 }
@@ -308,9 +303,9 @@ const FOG: Rgb = Rgb::new(0x30, 0x48, 0x6b);
 const FOG_DISTANCE: f64 = 4.0;
 const LIGHT: f64 = 0.37;
 
-/// The error of one channel of walls and floors. The definition in real numbers is
+/// The largest error of the three channels of walls and floors. The definition in real numbers is
 /// `own · light · clearness + fog · (1 − clearness)`, in which the light of a y-side is halved.
-fn lit(name: &'static str, channel: usize, fog: Option<Fog>) -> Feature {
+fn lit(name: &'static str, fog: Option<Fog>) -> Feature {
     let fog_text = fog.map_or(String::new(), |fog| {
         format!("fog = {{ color = '{}', distance = {FOG_DISTANCE} }}\n", fog.color)
     });
@@ -318,17 +313,21 @@ fn lit(name: &'static str, channel: usize, fog: Option<Fog>) -> Feature {
         "floor = '{FLOOR}'\nceiling = '{FLOOR}'\nlight = {LIGHT}\n{fog_text}{ROOM}[tiles]\n'#' = {{ wall = '{WALL}' }}\n"
     ));
     let cameras = cameras_at_start(&world);
-    feature((name, "channel of a pixel", "of 255"), world, cameras, |picture, (x, y)| {
+    feature((name, "worst channel of a pixel", "of 255"), world, cameras, |picture, (x, y)| {
         let (own, share, distance) = match picture.renderer.surface(x, y) {
             Some(Surface::WallX) => (WALL, 1.0, picture.distance(x)),
             Some(Surface::WallY) => (WALL, 0.5, picture.distance(x)),
             _ => (FLOOR, 1.0, distance_of_row(picture.camera, y)),
         };
         let clearness = fog.map_or(1.0, |fog| fog.clearness(distance));
-        let [own, fog, shown] =
-            [own, FOG, picture.frame.pixel(x, y)].map(|color| f64::from(color.channels()[channel]));
-        let expected = own * LIGHT * share * clearness + fog * (1.0 - clearness);
-        Some((false, Some((shown - expected).abs())))
+        let shown = picture.frame.pixel(x, y);
+        let error = |channel: usize| {
+            let [own, fog, shown] =
+                [own, FOG, shown].map(|color| f64::from(color.channels()[channel]));
+            let expected = own * LIGHT * share * clearness + fog * (1.0 - clearness);
+            (shown - expected).abs()
+        };
+        Some((false, (0..3).map(error).reduce(f64::max)))
     })
 }
 
