@@ -1,24 +1,9 @@
-//! Cellcaster: a raycaster whose picture is made of terminal cells.
+//! Cellcaster draws levels through the player's eyes, in the cells of a terminal or in pixels, and plays a stealth game
+//! in them. It is a library for ratatui programs, and the program `cellcaster` is built on it.
 //!
-//! Data goes one way, and each stage is a module that can be called alone:
+//! This page is a guide. Read it from top to bottom, and leave it where you have what you need.
 //!
-//! ```text
-//! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ visibility ─▶ DrawList ─ raster ─▶ Frame ─ tui ─▶ Canvas ─ terminal ─▶ bytes
-//!   (text)            (what exists)   (what happens)                (what shows)         (pixels)       (cells)
-//! ```
-//!
-//! # Where to start
-//!
-//! | to | start with |
-//! |---|---|
-//! | read a map | [`map::load`], [`map::parse`], or [`map::builtin::LEVELS`] |
-//! | draw a frame | [`render::Renderer::render`], into a [`render::Frame`] |
-//! | show a frame in a ratatui program | `tui::FirstPerson`, beside `tui::Minimap` |
-//! | move a player | [`game::Game::step`], with the [`game::Intents`] of each step |
-//! | track held keys, with or without key releases | `tui::HeldKeys` |
-//! | send cells to a terminal in few bytes | `terminal::CellWriter` |
-//! | cast single rays | [`cast::Exact`] and the [`cast::Caster`] trait |
-//! | generate levels | [`generate::Generator`] and [`generate::Window`] |
+//! # A picture
 //!
 //! ```
 //! use cellcaster::map::builtin;
@@ -33,14 +18,129 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! ARCHITECTURE.md in the repository lists the modules from the bottom up and the invariants that
-//! code may rely on.
+//! A [`World`](world::World) is a grid of tiles and the things that stand on it. A [`Camera`](world::Camera) is a place
+//! in it, a heading and a field of view. A [`Frame`](render::Frame) is the pixels. Keep the
+//! [`Renderer`](render::Renderer) from frame to frame: it owns the memory of drawing, so later frames allocate nothing.
+//! The same world, camera and time give the same pixels on every machine.
 //!
-//! # Features
+//! # A map
 //!
-//! Each feature needs the one before it: `tui` (the ratatui widgets), `terminal` (the terminal, and
-//! the game in it) and `cli` (the command line), which is the default. Without features, the crate
-//! is the engine alone, which uses no terminal crate.
+//! Worlds come from map files, whose grid is the floor plan. [`map::load`] reads a file, and [`map::parse_str`] text:
+//!
+//! ```
+//! use cellcaster::map;
+//!
+//! let text = r#"
+//! grid = '''
+//! %%%%%
+//! %@.X%
+//! %%%%%
+//! '''
+//! [tiles]
+//! "%" = { wall = "brick" }
+//! [things]
+//! "@" = { start = 0 }
+//! "X" = { exit = true }
+//! "#;
+//! let world = map::parse_str(text).unwrap();
+//! assert_eq!(world.grid().width(), 5);
+//!
+//! let faults = map::parse_str(&text.replace("brick", "brik")).unwrap_err();
+//! assert!(faults.to_string().contains("brick"), "a fault says what to write instead");
+//! ```
+//!
+//! A world is valid by construction: what can be wrong with a map is a fault, with its place. All faults are reported
+//! at once.
+//!
+//! # A game
+//!
+//! A [`Game`](game::Game) is a world with a player in it. It goes on by steps of a sixtieth of a second, each with the
+//! [`Intents`](game::Intents) of the player:
+//!
+//! ```
+//! # use cellcaster::map::builtin;
+//! use cellcaster::game::{Game, Intent};
+//!
+//! let mut game = Game::new(builtin::LEVELS[0].world()?);
+//! let mut same = game.clone();
+//! for _ in 0..60 {
+//!     let intents = [Intent::Forward, Intent::TurnLeft].into_iter().collect();
+//!     game.step(intents);
+//!     same.step(intents);
+//! }
+//! assert_eq!(game.elapsed(), 1.0);
+//! assert_eq!(game.checksum(), same.checksum());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A game has no clock, and no other input than the intents. So a list of intents is a recording, and a test can play a
+//! level. [`Game::camera`](game::Game::camera) and [`Game::world`](game::Game::world) are what to draw.
+//!
+//! # In a terminal
+//!
+//! The feature `tui` adds [widgets](tui) for ratatui. They fill any area, in any number of colours:
+//!
+//! ```
+//! # #[cfg(feature = "tui")] {
+//! # use cellcaster::{game::Game, map::builtin, world::FieldOfView};
+//! # use ratatui::layout::{Constraint, Layout};
+//! use cellcaster::tui::{FirstPerson, Minimap, View};
+//!
+//! # let game = Game::new(builtin::LEVELS[0].world()?);
+//! # let mut terminal = ratatui::Terminal::new(ratatui::backend::TestBackend::new(80, 24))?;
+//! let mut view = View::default();
+//! terminal.draw(|frame| {
+//!     let panels = [Constraint::Fill(1), Constraint::Length(24)];
+//!     let [left, right] = Layout::horizontal(panels).areas(frame.area());
+//!     let (world, camera) = (game.world(), game.camera(FieldOfView::default()));
+//!     frame.render_stateful_widget(FirstPerson::new(world, &camera), left, &mut view);
+//!     frame.render_widget(Minimap::new(world, &camera).seen(view.columns()), right);
+//! })?;
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`HeldKeys`](tui::HeldKeys) turns the keys of any terminal into intents, also where the terminal reports no
+//! releases. The example `walk` in the repository is a whole program.
+//!
+//! # Over a link
+//!
+//! The feature `terminal` adds what the program itself uses in place of ratatui's backend. A
+//! [`CellWriter`](terminal::CellWriter) is a ratatui backend that sends fewer bytes. A [`Session`](terminal::Session)
+//! detects what the terminal can do and restores it at every end; a [`Protocol`](terminal::Protocol) does the same over
+//! any reader and writer, such as a channel of an SSH server.
+//!
+//! # The flow
+//!
+//! Data goes one way, and each stage is a module that can be called alone:
+//!
+//! ```text
+//! maps/*.toml ─ map ─▶ World ─ game ─▶ World + Camera ─ render ─▶ Frame ─ tui ─▶ Canvas ─ terminal ─▶ bytes
+//!   (text)            (what exists)   (what happens)             (pixels)      (cells)
+//! ```
+//!
+//! | feature | adds |
+//! |---|---|
+//! | none | the engine, up to the frame, without any terminal crate |
+//! | `tui` | the widgets, and held keys |
+//! | `terminal` | the terminal, and the game in it ([`app`]) |
+//! | `cli` (default) | the command line |
+//!
+//! Each feature needs the one before it.
+//!
+//! # Where to go next
+//!
+//! - Single rays: [`cast`], whose [`Exact`](cast::Exact) hits what rational arithmetic says.
+//! - Levels without an end, and your own generators: [`generate`].
+//! - Spheres, planes and boxes in place of a grid: [`space`].
+//! - How a frame is drawn: [`render`].
+//! - `docs/` in the repository has a page for each subject, and ARCHITECTURE.md the table of all modules, their
+//!   invariants and a glossary.
+
+#![cfg_attr(
+    not(feature = "terminal"),
+    allow(rustdoc::broken_intra_doc_links, reason = "the guide links to all features")
+)]
 
 #[cfg(test)]
 extern crate self as cellcaster;

@@ -1,11 +1,61 @@
-//! Measurements of Cellcaster. Playing and drawing need none of them.
+//! `cellcaster-lab` measures what Cellcaster claims: how exact, how fast, how few bytes, how many players. Playing and
+//! drawing need none of it.
 //!
-//! - [`casters`]: casters to compare with the exact one.
-//! - [`accuracy`]: rational arithmetic as the reference, and rays that are difficult for a caster.
-//! - [`speed`]: scenes, and the loops with which drawing is compared.
-//! - [`wire`]: bytes and colour errors of encoders for a game's frames.
-//! - [`report`]: tables of figures, and their formats.
-//! - [`cli`]: the command line, which reports the figures.
+//! Every figure of docs/accuracy.md, docs/performance.md and docs/wire.md comes from one of its commands:
+//!
+//! ```text
+//! cellcaster-lab accuracy    errors against run time, of rays, pictures and motion
+//! cellcaster-lab bench       speed, beside the loop that tutorials teach
+//! cellcaster-lab wire        bytes of frames against colour error
+//! cellcaster-lab load        the cost of players on a server, over real SSH
+//! ```
+//!
+//! # A measurement
+//!
+//! A measurement compares candidates with a truth that shares no code with them. For rays, the candidates are the
+//! [`casters`], and the truth is rational arithmetic:
+//!
+//! ```
+//! use cellcaster::cast::Caster;
+//! use cellcaster::map::builtin;
+//! use cellcaster::rng::SplitMix64;
+//! use cellcaster_lab::accuracy::{cast, random_ray};
+//! use cellcaster_lab::casters::Method;
+//!
+//! let world = builtin::LEVELS[0].world()?;
+//! let wrong = |method: &str| {
+//!     let caster = method.parse::<Method>().unwrap().caster();
+//!     let mut random = SplitMix64::new(1);
+//!     let rays = (0..1000).map(|_| random_ray(world.grid(), &mut random));
+//!     rays.filter(|ray| {
+//!         let (truth, hit) = (cast(world.grid(), ray), caster.cast(world.grid(), ray));
+//!         !truth.unwrap().is_met_by(&hit.unwrap())
+//!     })
+//!     .count()
+//! };
+//! assert_eq!(wrong("exact"), 0);
+//! assert!(wrong("table:480") > 0, "480 angles are too few");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The flow
+//!
+//! ```text
+//! scenes, rays, scripts ─ accuracy, speed, wire ─▶ Table ─ report ─▶ text, Markdown, JSON, CSV, SVG
+//! ```
+//!
+//! Every measurement is a [`report::Table`], so one writer for each format serves all. Errors and counts are the same
+//! in every run, and tests compare them with the pages. Times differ, so candidates take turns and only their ratios
+//! count.
+//!
+//! # Where to go next
+//!
+//! - [`casters`]: the methods of tutorials and other programs, and how to add one.
+//! - [`accuracy`]: the truths, and the rays that are hard for a caster.
+//! - [`speed`]: the scenes, and the loops with which drawing is compared.
+//! - [`wire`]: a script through every encoder, in bytes and in colours.
+//! - `load`: clients over SSH, on one server or a cluster.
+//! - The folder `benches`: the same code by Criterion, and counts of instructions by Callgrind.
 
 #![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
 

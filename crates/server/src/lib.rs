@@ -1,24 +1,54 @@
-//! The SSH server in which people play Cellcaster together.
+//! `cellcaster-server`: an SSH server in which people play Cellcaster together, with nothing but `ssh`.
+//!
+//! ```no_run
+//! let words = ["cellcaster-server", "--listen", "127.0.0.1:2222"];
+//! let status = cellcaster_server::cli::run(words.map(Into::into));
+//! ```
+//!
+//! This prints the command that players type, and serves until a signal ends it. docs/hosting.md in the repository is
+//! the guide for operators. This page is a guide to the code.
+//!
+//! # The flow
 //!
 //! ```text
 //! socket ─ ssh ─▶ Link + Visitor ─ sessions ─▶ requests ─ rooms ─▶ snapshots ─ sessions ─▶ frames ─ ssh ─▶ socket
 //! ```
 //!
-//! ARCHITECTURE.md has the table of the modules.
+//! Follow a key that a player presses:
+//!
+//! 1. [`ssh`] accepts the connection, if [`admission`] allows it, and authenticates the visitor. A visitor gets one
+//!    session channel with a terminal, and nothing else: no command, subsystem, forwarding, agent or X11. A public key
+//!    identifies an account of [`accounts`]; the comment of the key is ignored. A visitor without a key is a guest.
+//! 2. The driver of the visitor's session in [`sessions`] owns the connection and the clock. It passes the bytes to the
+//!    session, which decodes them into a key, and turns the key into a request.
+//! 3. The sequencer of a room in [`rooms`] collects the requests of all members into the log, and steps the room sixty
+//!    times a second. A room is a deterministic state machine: its log and the number of steps determine it, bit for
+//!    bit.
+//! 4. Each step makes a snapshot. The session draws it into a frame, with the widgets and the encoder of
+//!    [`cellcaster`].
+//! 5. The frame leaves by the visitor's outbox, which holds at most one. A client that does not read gets no more
+//!    frames, and costs no more memory.
+//!
+//! In a [`cluster`], several hosts hold copies of a room. One of them, by a lease, writes its log on a bus, and all
+//! apply it.
 //!
 //! # Rules
 //!
-//! - A visitor gets one session channel with a terminal, and nothing else: no command, subsystem, forwarding, agent or
-//!   X11.
-//! - A public key identifies an account; the comment of the key is ignored. A visitor without a key is a guest.
 //! - Memory per connection is bounded in both directions. While a session is busy, the client's input waits in the
-//!   socket. At most one frame waits for a client that does not read.
+//!   socket.
 //! - A client cannot slow down the others. Connections, bytes and time before authentication are limited, and so are
 //!   the bytes per second after it.
 //! - Policies take the time and random numbers as arguments. Only [`ssh`], [`operator`] and [`metrics`] open sockets.
 //!
 //! Rejected: `russh`'s own accept loop. It has no limit on connections and no deadline before authentication, and its
 //! queue to a channel says nothing about the socket.
+//!
+//! # Where to go next
+//!
+//! - A room by itself: `rooms/room.rs`. A session by itself: `sessions/session.rs`.
+//! - All of it in simulated time, with links that fail: `simulation.rs`, a part of the tests.
+//! - What an operator can do: [`config`] and [`admin`].
+//! - ARCHITECTURE.md has the table of the modules and their invariants.
 
 #![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
 
