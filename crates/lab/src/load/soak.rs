@@ -62,8 +62,18 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
     clients.shutdown().await;
     sleep(AFTERWARDS).await;
     report(server, begun, &ends)?;
-    println!("visits by their end: {:?}", ends.lock().expect("no panic"));
-    Ok(())
+    let ends = ends.lock().expect("no panic");
+    println!("visits by their end: {ends:?}");
+    let figures = figures(server)?;
+    for name in ["cellcaster_sessions", "cellcaster_members"] {
+        if figures.get(name) != Some(&0.0) {
+            return Err(format!("{name} is {:?} after the last visit, and not 0", figures.get(name)).into());
+        }
+    }
+    match ends.get(&None) {
+        Some(faults) => Err(format!("{faults} visits ended with a fault").into()),
+        None => Ok(()),
+    }
 }
 
 /// Prints a line about the server's resources.

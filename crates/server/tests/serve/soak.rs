@@ -1,6 +1,6 @@
 //! Clients that come and go leave nothing behind in the server.
 //!
-//! `cargo run --release --features serve --example load -- --soak` does the same for ten minutes.
+//! `cellcaster-lab load --soak --seconds 600` does the same for ten minutes.
 
 use std::collections::BTreeMap;
 use std::fs;
