@@ -4,6 +4,7 @@
 //! one sentence, with exit status 1. If the reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
+pub mod animation;
 mod cast;
 mod check;
 pub mod config;
@@ -16,6 +17,7 @@ pub mod machine;
 pub mod options;
 pub mod output_file;
 pub mod parse;
+mod pixels;
 mod play;
 mod recording;
 pub mod replay;

@@ -187,7 +187,7 @@ fn site(text: &str) -> Result<Site, Takes> {
 }
 
 /// Parses two numbers with `between` between them.
-fn pair<T: FromStr>(text: &str, between: char) -> Option<(T, T)> {
+pub(crate) fn pair<T: FromStr>(text: &str, between: char) -> Option<(T, T)> {
     let (first, second) = text.split_once(between)?;
     Some((first.trim().parse().ok()?, second.trim().parse().ok()?))
 }

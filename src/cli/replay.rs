@@ -1,11 +1,10 @@
-//! `cellcaster replay`: plays a script off screen, and writes a recording or a report about the
-//! result.
+//! `cellcaster replay`: plays a script off screen, and writes a recording, an animated PNG, or a
+//! report about the result.
 
 use std::fmt::{self, Write as _};
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::mem;
-use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -15,10 +14,10 @@ use crossterm::queue;
 use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
 use ratatui::backend::Backend;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Size;
 
+use super::animation::{Animation, Frames};
 use super::external::External;
-use super::options::{Place, View, fidelity, frames, window};
+use super::options::{Place, View, fidelity};
 use super::output_file::{OutputFile, print};
 use super::recording::Asciicast;
 use super::{Error, level};
@@ -30,7 +29,7 @@ use crate::game::{Game, Header, LevelName, Outcome, Rules, Script};
 use crate::terminal::{CellWriter, Fidelity};
 use crate::world::World;
 
-/// Play a script off screen, and write it as asciicast, or check what it achieves
+/// Play a script off screen, and write it as asciicast or animated PNG, or check what it achieves
 ///
 /// A script is lines such as "2.5 s forward run" or "12 steps turn-left open"; "stand" is nothing,
 /// a name in square brackets begins a section, and # a comment. Lines at its top may name the game:
@@ -42,23 +41,20 @@ use crate::world::World;
 Examples:
   cellcaster replay walk.script > walk.cast
   cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast
+  cellcaster replay walk.script --size 100x30 --fps 15 --part 2-10 --png walk.png
   cellcaster replay walk.script --verify")]
 pub(crate) struct Replay {
     /// What is played
     #[arg(value_hint = ValueHint::FilePath)]
     script: PathBuf,
     /// Say level, time, treasure and rank instead; the exit status is 0 if the script reaches an exit, else 1
-    #[arg(long, conflicts_with = "generate")]
+    #[arg(long, conflicts_with_all = ["generate", "png"])]
     verify: bool,
     /// Where to write [default: standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "png")]
     cast: Option<PathBuf>,
-    /// The size of the window in cells, with sides up to 1000 and up to 200000 cells
-    #[arg(long, value_name = "COLSxROWS", default_value = "80x24", value_parser = window)]
-    size: Size,
-    /// At most N frames a second, from 1 to 240
-    #[arg(long = "fps", value_name = "N", default_value = "30", value_parser = frames)]
-    frames_per_second: NonZeroU32,
+    #[command(flatten)]
+    animation: Animation,
     #[command(flatten)]
     view: View,
     /// How exact colours are while something moves: exact, high, low, or how far they may be off, from 0 to 255
@@ -93,6 +89,11 @@ pub const ROOM_RECORDING: &str = "cellcaster-room ";
 /// Writes the recording or the report that `options` select.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     if is_room_recording(&options.script) {
+        if options.animation.png.is_some() {
+            return Err(Error::mistake(
+                "only cellcaster-server draws the recording of a room: write cellcaster-server replay",
+            ));
+        }
         let words = [Some(options.script.clone().into_os_string()), options.place.map.clone()];
         return External::room_replay(words.into_iter().flatten()).run();
     }
@@ -106,7 +107,13 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         depth: Some(options.view.depth.unwrap_or_default()),
         ..Settings::default()
     };
-    let mut replay = app::Replay::new(levels, settings, options.size);
+    let mut replay = app::Replay::new(levels, settings, options.animation.size);
+    if let Some(path) = &options.animation.png {
+        let mut frames = Frames::new(&options.animation);
+        let frames_per_second = options.animation.frames_per_second;
+        replay.play(&script, frames_per_second, |frame, _, picture| frames.push(frame, picture))?;
+        return frames.write(path);
+    }
     match &options.cast {
         None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
             .map_err(|error| Error::of_output(&error)),
@@ -140,7 +147,7 @@ fn write(
     options: &Replay,
     output: impl Write,
 ) -> io::Result<()> {
-    let (size, frames_per_second) = (options.size, options.frames_per_second);
+    let Animation { size, frames_per_second, .. } = options.animation;
     let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
     queue!(bytes, EnterAlternateScreen, Hide)?;
     let mut now = Duration::ZERO;

@@ -1,7 +1,8 @@
 //! Scripts played off screen: a recording shows the frames of the game.
 #![cfg(feature = "cli")]
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::num::{NonZeroU16, NonZeroU32};
 use std::path::Path;
 
@@ -9,11 +10,14 @@ use crate::asciicast::Asciicast;
 use crate::looks::{Look, looks};
 use crate::support::{complaint_about, output_of};
 use cellcaster::app::{Levels, Replay, Settings};
+use cellcaster::color::Rgb;
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::map::builtin;
 use cellcaster::terminal::CellWriter;
+use cellcaster::tui::rgb_of;
 use ratatui::backend::Backend;
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Size;
 use vt100::Parser;
 
@@ -87,16 +91,112 @@ fn the_same_script_makes_the_same_recording() {
     assert!(fs::read(&cast).unwrap() == written && !written.is_empty());
 }
 
+/// A decoded frame: its length in frames of the replay, and the whole picture after it, in RGB.
+struct Shown {
+    length: u16,
+    pixels: Vec<[u8; 3]>,
+}
+
+/// The width of an animated PNG, and its frames.
+fn decoded(path: &str) -> (usize, Vec<Shown>) {
+    let mut decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    let count = reader.info().animation_control().unwrap().num_frames;
+    let (mut pixels, mut part) = (vec![[0; 3]; width * height], vec![0; 3 * width * height]);
+    let frames = (0..count).map(|_| {
+        reader.next_frame(&mut part).unwrap();
+        let control = reader.info().frame_control().unwrap();
+        let (x, y) = (control.x_offset as usize, control.y_offset as usize);
+        let rows = part.as_chunks().0.chunks_exact(control.width as usize);
+        for (y, row) in (y..).zip(rows).take(control.height as usize) {
+            pixels[y * width + x..][..row.len()].copy_from_slice(row);
+        }
+        assert_eq!(u32::from(control.delay_den), FRAMES_PER_SECOND.get());
+        Shown { length: control.delay_num, pixels: pixels.clone() }
+    });
+    (width, frames.collect())
+}
+
+/// The colours of the halves of a cell; `None` for a cell with another glyph.
+fn halves(cell: &Cell) -> Option<[Rgb; 2]> {
+    let [above, below] = match cell.symbol() {
+        " " => [cell.bg, cell.bg],
+        "▀" => [cell.fg, cell.bg],
+        "▄" => [cell.bg, cell.fg],
+        _ => return None,
+    };
+    Some([rgb_of(above)?, rgb_of(below)?])
+}
+
+#[test]
+fn an_animated_png_shows_every_frame_of_the_game_for_its_time() {
+    let (script, path) = (file("animated.script", SCRIPT), file("animated.png", ""));
+    let draw = |more: &[&str]| {
+        let words = ["replay", &script, "museum", "--size", "60x20", "--fps", "20"];
+        // With few colours, the palette is exact.
+        let words = [&words[..], &["--colors", "16", "--png", &path], more].concat();
+        assert_eq!(output_of(&words), b"");
+        fs::read(&path).unwrap()
+    };
+    let drawn = draw(&[]);
+    let (width, frames) = decoded(&path);
+    assert!(draw(&[]) == drawn, "another run draws another file");
+
+    let levels = Levels::new(builtin::LEVELS[1].world().unwrap().into(), std::iter::empty());
+    let levels = levels.numbered(2, builtin::LEVELS.len());
+    let settings = Settings { depth: Some(ColorDepth::Indexed16), ..Settings::default() };
+    let mut pictures: Vec<(u16, Buffer)> = Vec::new();
+    let script = Script::parse(SCRIPT, "it").unwrap();
+    let mut replay = Replay::new(levels, settings, SIZE);
+    let played = replay.play(&script, FRAMES_PER_SECOND, |_, _, picture| {
+        match pictures.last_mut().filter(|(_, last)| last == picture) {
+            Some((length, _)) => *length += 1,
+            None => pictures.push((1, picture.clone())),
+        }
+        Ok::<_, ()>(())
+    });
+    assert_eq!(played, Ok(()));
+    let lengths = |frames: &[Shown]| frames.iter().map(|it| it.length).collect::<Vec<_>>();
+    assert!(lengths(&frames).into_iter().eq(pictures.iter().map(|it| it.0)));
+    assert!((10..40).contains(&frames.len()), "some of the 40 frames are equal");
+    assert_eq!((width, frames[0].pixels.len()), (8 * 60, 8 * 60 * 16 * 20));
+    let mut compared = 0;
+    for (frame, (_, picture)) in frames.iter().zip(&pictures) {
+        for position in picture.area.positions() {
+            let corner = usize::from(position.y) * 16 * width + usize::from(position.x) * 8;
+            let pixels = [0, 8].map(|y| frame.pixels[corner + y * width]);
+            if let Some(halves) = halves(&picture[position]) {
+                assert_eq!(pixels, halves.map(Rgb::channels), "{position}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 1000, "{compared}");
+
+    draw(&["--part", "0.5-1.5"]);
+    assert_eq!(lengths(&decoded(&path).1).iter().sum::<u16>(), 20);
+}
+
 #[test]
 fn mistakes_are_told() {
     let bad = file("bad.script", "[x]\n1 s foward\n");
+    let turns = file("turns.script", "1 s turn-left\n");
     let complaints = [
         complaint_about(&["replay"]),
         complaint_about(&["replay", "absent.script"]),
         complaint_about(&["replay", &bad]),
         complaint_about(&["replay", &bad, "--size", "0x3"]),
         complaint_about(&["replay", &bad, "--size", "1000x1000"]),
+        complaint_about(&["replay", &bad, "--png", "x.png", "--part", "2-1"]),
+        complaint_about(&["replay", &bad, "--part", "1-2"]),
+        complaint_about(&["replay", &bad, "--png", "x.png", "--cast", "x.cast"]),
+        complaint_about(&["replay", &turns, "--png", "x.png", "--part", "9-10"]),
+        complaint_about(&["replay", &turns, "--png", "x.png", "--size", "1000x200"]),
+        complaint_about(&["replay", "maps/together.log", "--png", "x.png"]),
     ];
+    assert!(!Path::new("x.png").exists());
     let folder = format!("{}/", env!("CARGO_TARGET_TMPDIR"));
     insta::assert_snapshot!(complaints.join("\n").replace(&folder, ""));
 }

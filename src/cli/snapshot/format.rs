@@ -3,15 +3,15 @@
 use std::io::{self, BufWriter, Write};
 
 use clap::ValueEnum;
-use font8x8::{BASIC_FONTS, BLOCK_FONTS, UnicodeFonts};
-use png::{BitDepth, ColorType, Encoder, EncodingError, StreamWriter};
+use png::{BitDepth, ColorType, Encoder, StreamWriter};
 use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use serde::Serialize;
 
+use crate::cli::animation::into_io;
+use crate::cli::pixels::CellSize;
 use crate::color::Rgb;
 use crate::terminal::{Bytes, Style};
-use crate::tui::canvas::Mosaic;
 use crate::tui::{CellAspect, rgb_of};
 
 /// The format of a snapshot.
@@ -49,14 +49,6 @@ impl Format {
         })
     }
 }
-
-/// The side of a glyph in pixels, before the glyph is scaled to the cell.
-const GLYPH_SIDE: u32 = 8;
-/// The maximum number of pixels. Cells become smaller in a larger picture.
-const MOST_PIXELS: u64 = 1 << 26;
-/// The terminal's default colours, for cells that have none.
-const FOREGROUND: Rgb = Rgb::WHITE;
-const BACKGROUND: Rgb = Rgb::BLACK;
 
 /// Writes the characters of cells, without colours.
 struct Text<W> {
@@ -152,92 +144,32 @@ impl<W: Write> Writer for Json<W> {
 /// Writes cells as pixels with their glyphs, as a terminal shows them.
 struct Png<W: Write + 'static> {
     stream: StreamWriter<'static, W>,
-    cell_width: u32,
-    cell_height: u32,
-    line: Vec<u8>,
+    cell: CellSize,
+    pixels: Vec<u8>,
 }
 
 impl<W: Write + 'static> Png<W> {
     fn new(output: W, size: Size, aspect: CellAspect) -> io::Result<Self> {
-        let (cell_width, cell_height) = cell_size(size, aspect);
-        let width = u32::from(size.width) * cell_width;
-        let height = u32::from(size.height) * cell_height;
+        let cell = CellSize::of(size, aspect);
+        let width = u32::from(size.width) * cell.width;
+        let height = u32::from(size.height) * cell.height;
         let mut encoder = Encoder::new(output, width, height);
         encoder.set_color(ColorType::Rgb);
         encoder.set_depth(BitDepth::Eight);
         let writer = encoder.write_header().map_err(into_io)?;
         let stream = writer.into_stream_writer().map_err(into_io)?;
-        Ok(Self { stream, cell_width, cell_height, line: Vec::new() })
+        Ok(Self { stream, cell, pixels: Vec::new() })
     }
-}
-
-/// The width and height of a cell, in pixels.
-fn cell_size(size: Size, aspect: CellAspect) -> (u32, u32) {
-    let cells = u64::from(size.width) * u64::from(size.height);
-    let sizes = [GLYPH_SIDE, 4, 2].map(|width| {
-        (width, (f64::from(width) * aspect.height_over_width()).round().max(1.0) as u32)
-    });
-    let fits =
-        |&(width, height): &(u32, u32)| cells * u64::from(width) * u64::from(height) <= MOST_PIXELS;
-    sizes.into_iter().find(fits).unwrap_or((1, aspect.height_over_width().round().max(1.0) as u32))
 }
 
 impl<W: Write + 'static> Writer for Png<W> {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
-        for y in 0..self.cell_height {
-            self.line.clear();
-            for cell in cells {
-                let glyph = Glyph::of(cell.symbol());
-                let foreground = rgb_of(cell.fg).unwrap_or(FOREGROUND).channels();
-                let background = rgb_of(cell.bg).unwrap_or(BACKGROUND).channels();
-                for x in 0..self.cell_width {
-                    let is_set = glyph.covers([x, y], [self.cell_width, self.cell_height]);
-                    self.line.extend(if is_set { foreground } else { background });
-                }
-            }
-            self.stream.write_all(&self.line)?;
-        }
-        Ok(())
+        self.pixels.clear();
+        self.cell.draw_row(cells, Rgb::channels, &mut self.pixels);
+        self.stream.write_all(&self.pixels)
     }
 
     fn finish(self: Box<Self>) -> io::Result<()> {
         self.stream.finish().map_err(into_io)
-    }
-}
-
-/// The picture of a character.
-enum Glyph {
-    /// Dots that fill a cell of any size, as terminals draw them.
-    Mosaic(Mosaic),
-    /// Rows from the top. The lowest bit of a row is the leftmost dot.
-    Bitmap([u8; GLYPH_SIDE as usize]),
-}
-
-impl Glyph {
-    fn of(symbol: &str) -> Self {
-        let character = symbol.chars().next().unwrap_or(' ');
-        if let Some(mosaic) = Mosaic::of_character(character) {
-            return Self::Mosaic(mosaic);
-        }
-        let bitmap = BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character));
-        Self::Bitmap(bitmap.unwrap_or_default())
-    }
-
-    /// Returns true if this pixel of a cell of this size has the text colour.
-    fn covers(&self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> bool {
-        match self {
-            Self::Mosaic(mosaic) => mosaic.has(x * 2 / width, y * 12 / height),
-            Self::Bitmap(rows) => {
-                let row = rows[(y * GLYPH_SIDE / height) as usize];
-                row >> (x * GLYPH_SIDE / width) & 1 == 1
-            }
-        }
-    }
-}
-
-fn into_io(error: EncodingError) -> io::Error {
-    match error {
-        EncodingError::IoError(error) => error,
-        other => io::Error::other(other),
     }
 }

@@ -6,6 +6,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use cellcaster::cli::animation::Animation;
 use cellcaster::cli::parse::Takes;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -222,6 +223,8 @@ pub(crate) enum ScoresFormat {
 }
 
 /// Play the recording of a room again, and say how its rounds ended
+///
+/// With --png, also draw what a member saw, in half blocks and 24-bit colours.
 #[derive(Args, Debug)]
 pub(crate) struct Replay {
     /// The recording, as --record-room wrote it
@@ -230,6 +233,11 @@ pub(crate) struct Replay {
     /// A map file or a folder of maps, for rounds in maps of the host
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) maps: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) animation: Animation,
+    /// Draw what the member with this name saw [default: the first member]
+    #[arg(long, value_name = "NAME", requires = "png")]
+    pub(crate) member: Option<String>,
 }
 
 /// The address of a cluster, which may contain a password.

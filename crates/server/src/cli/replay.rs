@@ -1,22 +1,27 @@
-//! `cellcaster-server replay`: plays a recorded room again, and prints its rounds.
+//! `cellcaster-server replay`: plays a recorded room again, prints its rounds, and draws what a member saw.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
+use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use cellcaster::app::parts::of_steps;
+use cellcaster::cli::animation::{Frames, TooManyFrames};
 use cellcaster::cli::{Error, ROOM_RECORDING};
+use cellcaster::game::{STEP, STEPS_PER_SECOND};
 
 use super::arguments::Replay;
 use crate::rooms::maps::HostMaps;
 use crate::rooms::replayed::{MOST_RECORDED_BYTES, replayed};
-use crate::rooms::room::Catalog;
+use crate::rooms::room::{Catalog, MemberId, MemberView, Room, RoomView};
+use crate::sessions::session::replayed::ReplayedScreen;
 
-/// Prints each round of the recording with its standings and its checksum.
+/// Prints each round of the recording with its standings and its checksum. Draws the animated PNG in `options`.
 ///
 /// # Errors
-/// If the file is not a recording of a room, or is damaged or too long.
+/// If the file is not a recording of a room, or is damaged or too long, or if the animated PNG cannot be drawn.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let path = options.file.display().to_string().replace(char::is_control, "?");
     let cannot = |reason: &dyn std::fmt::Display| {
@@ -33,7 +38,13 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let maps = options.maps.as_deref().map(HostMaps::read).transpose();
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
     let catalog = Arc::new(Catalog::with(&maps));
-    let rounds = replayed(&text, &catalog).map_err(|fault| cannot(&fault))?;
+    let mut animation =
+        options.animation.png.as_ref().map(|_| MemberAnimation::new(options, &catalog));
+    let look = &mut |room: &Room| animation.as_mut().map_or(Ok(()), |it| it.look_at(room));
+    let rounds = replayed(&text, &catalog, look).map_err(|fault| cannot(&fault))?;
+    if let Some((animation, path)) = animation.zip(options.animation.png.as_ref()) {
+        animation.write(path)?;
+    }
     let mut lines = String::new();
     for round in rounds {
         // Writing to a string cannot fail.
@@ -46,4 +57,68 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         _ = writeln!(lines, "  state {:016x}", round.checksum);
     }
     io::stdout().write_all(lines.as_bytes()).map_err(|error| Error::of_output(&error))
+}
+
+/// The animated PNG of what one member saw.
+struct MemberAnimation<'o> {
+    options: &'o Replay,
+    catalog: Arc<Catalog>,
+    frames: Frames,
+    /// The member and their screen, once they are in the room.
+    screen: Option<(MemberId, ReplayedScreen)>,
+    /// The number of steps up to now.
+    steps: u64,
+    /// The number of the next frame.
+    next: u64,
+}
+
+impl<'o> MemberAnimation<'o> {
+    fn new(options: &'o Replay, catalog: &Arc<Catalog>) -> Self {
+        let (catalog, frames) = (Arc::clone(catalog), Frames::new(&options.animation));
+        Self { options, catalog, frames, screen: None, steps: 0, next: 0 }
+    }
+
+    /// Draws the frames that are due before the next step of `room`. Frames before the part are drawn, too, because
+    /// the map shows what the member has seen.
+    fn look_at(&mut self, room: &Room) -> Result<(), String> {
+        let frames_per_second = u64::from(self.options.animation.frames_per_second.get());
+        let due = self.steps * frames_per_second / u64::from(STEPS_PER_SECOND);
+        while self.next <= due {
+            if !self.frames.end_before(self.next) {
+                self.draw(&room.view()).map_err(|error| error.to_string())?;
+            }
+            self.next += 1;
+        }
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// Draws a frame, if the member is in the room.
+    fn draw(&mut self, room: &RoomView) -> Result<(), TooManyFrames> {
+        let Self { options: Replay { member: name, animation, .. }, screen, .. } = self;
+        let is_named = |it: &&MemberView| name.as_ref().is_none_or(|name| it.name.as_str() == name);
+        if screen.is_none()
+            && let Some(member) = room.members.iter().find(is_named)
+        {
+            let catalog = Arc::clone(&self.catalog);
+            let new = ReplayedScreen::new(member.id, member.name.clone(), catalog, animation.size);
+            *screen = Some((member.id, new));
+        }
+        match screen {
+            Some((id, screen)) if room.member(*id).is_some() => {
+                let now = Duration::from_secs_f64(self.steps as f64 * STEP);
+                self.frames.push(self.next, screen.draw(room, now))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn write(&self, path: &Path) -> Result<(), Error> {
+        match &self.options.member {
+            Some(name) if self.screen.is_none() => Err(Error::mistake(format!(
+                "nobody called \"{name}\" is in that part of the recording"
+            ))),
+            _ => self.frames.write(path),
+        }
+    }
 }

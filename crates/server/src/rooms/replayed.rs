@@ -28,12 +28,16 @@ pub(crate) struct RoundReport {
 const MOST_STEPS: u64 = if cfg!(feature = "fuzzing") { 20 * 60 } else { 2 * 60 * 60 * 60 };
 
 /// Replays the rounds of a recording. Each round lasts until the next one begins, and the last round until
-/// its last entry.
+/// its last entry. `look` receives the room before each step.
 ///
 /// # Errors
 /// A sentence fragment, if the text is not a recording, has another version, or needs a level that is not in
-/// the catalog.
-pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>) -> Result<Vec<RoundReport>, String> {
+/// the catalog; or the first error of `look`.
+pub(crate) fn replayed(
+    text: &str,
+    catalog: &Arc<Catalog>,
+    look: &mut dyn FnMut(&Room) -> Result<(), String>,
+) -> Result<Vec<RoundReport>, String> {
     if is_of_other_version(text) {
         return Err(
             "it was recorded by another version of Cellcaster, which has to replay it".to_owned()
@@ -42,14 +46,16 @@ pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>) -> Result<Vec<RoundRe
     let rounds = parse_log(text).ok_or("a line is neither of a header nor an entry")?;
     let last = rounds.len().saturating_sub(1);
     let rounds = rounds.iter().enumerate();
-    rounds.map(|(index, (header, entries))| play(catalog, header, entries, index == last)).collect()
+    rounds
+        .map(|(index, (header, entries))| play(catalog, (header, entries), index == last, look))
+        .collect()
 }
 
 fn play(
     catalog: &Arc<Catalog>,
-    header: &Header,
-    entries: &[Entry],
+    (header, entries): (&Header, &[Entry]),
     is_last: bool,
+    look: &mut dyn FnMut(&Room) -> Result<(), String>,
 ) -> Result<RoundReport, String> {
     let no_level = || no_level(&header.level);
     let mut room = Room::new(catalog, header.clone()).ok_or_else(no_level)?;
@@ -66,6 +72,7 @@ fn play(
         if room.step() >= MOST_STEPS {
             return Err(format!("round {} does not end within two hours", header.round));
         }
+        look(&room)?;
         room.advance();
     }
 }

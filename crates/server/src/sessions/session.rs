@@ -25,6 +25,7 @@ mod keys;
 mod line_entry;
 mod messages;
 mod pages;
+pub(crate) mod replayed;
 mod settings;
 mod stay;
 mod talk;

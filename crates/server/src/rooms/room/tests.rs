@@ -288,14 +288,17 @@ fn a_recording_is_played_again() {
     }
     let (steps, checksum) = (room.step(), room.checksum());
     let text = recorded(&header, &entries) + &recorded(&room.next_header(), &[]);
-    let older = replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog());
+    let older =
+        replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog(), &mut |_| {
+            Ok(())
+        });
     assert!(older.unwrap_err().contains("another version"));
-    let reports = replayed(&text, &catalog()).unwrap();
+    let reports = replayed(&text, &catalog(), &mut |_| Ok(())).unwrap();
     assert_eq!(reports.len(), 2);
     assert_eq!((reports[0].steps, reports[0].checksum), (steps, checksum));
     assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);
     assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "museum"));
-    assert!(replayed("nonsense", &catalog()).is_err());
+    assert!(replayed("nonsense", &catalog(), &mut |_| Ok(())).is_err());
 }
 
 /// A room with two members. The first one has an account.

@@ -11,6 +11,7 @@ mod failures;
 mod killed;
 mod maps;
 mod metrics;
+mod pictures;
 mod results;
 mod running;
 #[cfg(feature = "system-tests")]

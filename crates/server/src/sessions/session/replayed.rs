@@ -1,0 +1,61 @@
+//! The screen of a member in a replayed room.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Size;
+
+use super::messages::{HostFacts, Identity, SessionEvent};
+use super::ui::Ui;
+use crate::line::Line;
+use crate::rooms::room::{Catalog, MemberId, RoomView};
+use crate::rooms::summary::RoomId;
+use cellcaster::app::Configuration;
+use cellcaster::app::store::Preferences;
+
+/// The screen of a member in a terminal with half blocks and 24-bit colours.
+pub(crate) struct ReplayedScreen {
+    ui: Ui,
+    picture: Buffer,
+}
+
+impl ReplayedScreen {
+    /// The screen of `member`, as their session shows it with the usual settings.
+    pub(crate) fn new(member: MemberId, name: Line, catalog: Arc<Catalog>, size: Size) -> Self {
+        let identity = Identity {
+            has_account: false,
+            name: name.clone(),
+            is_named: true,
+            preferences: Preferences::default(),
+            configuration: Configuration::default(),
+        };
+        let host = HostFacts {
+            name,
+            message: None,
+            notice: None,
+            compresses: true,
+            ascii_locale: None,
+            catalog,
+            frame_time: Duration::ZERO,
+        };
+        let mut ui = Ui::new(identity, host, false, Duration::ZERO);
+        ui.notify(SessionEvent::Entered { room: RoomId(0), member: Some(member) });
+        Self { ui, picture: Buffer::empty(size.into()) }
+    }
+
+    /// The picture of `room` at `now`.
+    pub(crate) fn draw(&mut self, room: &RoomView, now: Duration) -> &Buffer {
+        let Self { ui, picture } = self;
+        ui.now = now;
+        if let Some(stay) = &mut ui.stay {
+            stay.look_at(room, now);
+        }
+        picture.reset();
+        ui.draw(picture, Some(room));
+        if let Some(stay) = &mut ui.stay {
+            stay.drawn(room, ui.field_of_view, false);
+        }
+        picture
+    }
+}
