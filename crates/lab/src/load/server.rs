@@ -54,7 +54,7 @@ impl ServerProcess {
         )?;
         let mut child = Command::new("taskset")
             .args(["-c", &processor(number).to_string(), program])
-            .args(["serve", "--listen", "127.0.0.1:0", "--data"])
+            .args(["--listen", "127.0.0.1:0", "--data"])
             .args([&folder])
             .arg("--config")
             .arg(&config)

@@ -67,7 +67,11 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
     let figures = figures(server)?;
     for name in ["cellcaster_sessions", "cellcaster_members"] {
         if figures.get(name) != Some(&0.0) {
-            return Err(format!("{name} is {:?} after the last visit, and not 0", figures.get(name)).into());
+            return Err(format!(
+                "{name} is {:?} after the last visit, and not 0",
+                figures.get(name)
+            )
+            .into());
         }
     }
     match ends.get(&None) {
