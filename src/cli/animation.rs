@@ -54,12 +54,13 @@ fn part(text: &str) -> Result<(f64, f64), Takes> {
 /// The frames of an animated PNG.
 #[derive(Debug)]
 pub struct Frames {
-    frames: Vec<Frame>,
+    changes: Vec<Frame>,
     last: Buffer,
     part: Range<u64>,
-    /// The maximum length of `frames`.
+    /// The maximum length of `changes`.
     most: usize,
-    frames_per_second: u16,
+    /// Frames per second.
+    rate: u16,
 }
 
 /// The change from one frame to the next.
@@ -84,11 +85,11 @@ impl Frames {
         let number = |seconds: f64| (seconds * f64::from(frames_per_second)).round() as u64;
         let area = Rect::from(options.size);
         Self {
-            frames: Vec::new(),
+            changes: Vec::new(),
             last: Buffer::empty(area),
             part: options.part.map_or(0..u64::MAX, |(from, to)| number(from)..number(to)),
             most: (MOST_CELLS / area.area().max(1) as usize).min(MOST_FRAMES),
-            frames_per_second,
+            rate: frames_per_second,
         }
     }
 
@@ -105,20 +106,20 @@ impl Frames {
         if !self.part.contains(&number) {
             return Ok(());
         }
-        let is_first = self.frames.is_empty();
+        let is_first = self.changes.is_empty();
         let area = if is_first { picture.area } else { difference(&self.last, picture) };
-        let same = self.frames.last_mut().filter(|last| area.is_empty() && last.length < u16::MAX);
+        let same = self.changes.last_mut().filter(|last| area.is_empty() && last.length < u16::MAX);
         if let Some(last) = same {
             last.length += 1;
             return Ok(());
         }
-        if self.frames.len() == self.most {
+        if self.changes.len() == self.most {
             return Err(TooManyFrames { most: self.most, size: self.last.area.as_size() });
         }
         // After the longest time that a frame can be shown, the same frame begins again.
         let area = if area.is_empty() { Rect::new(0, 0, 1, 1) } else { area };
         let cells = area.positions().map(|position| picture[position].clone()).collect();
-        self.frames.push(Frame { area, cells, length: 1 });
+        self.changes.push(Frame { area, cells, length: 1 });
         self.last.clone_from(picture);
         Ok(())
     }
@@ -128,7 +129,7 @@ impl Frames {
     /// # Errors
     /// If there are no frames, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        if self.frames.is_empty() {
+        if self.changes.is_empty() {
             return Err(Error::mistake("--part begins after the end of the replay"));
         }
         OutputFile::create(path)?.write(|output| self.encode(output).map_err(into_io))
@@ -140,7 +141,7 @@ impl Frames {
         let in_pixels = |columns: u16, rows: u16| {
             (u32::from(columns) * cell.width, u32::from(rows) * cell.height)
         };
-        let cells = self.frames.iter().flat_map(|frame| &frame.cells);
+        let cells = self.changes.iter().flat_map(|frame| &frame.cells);
         let palette = Palette::of(cells.flat_map(pixels::colors));
         let (width, height) = in_pixels(size.width, size.height);
         let mut encoder = Encoder::new(output, width, height);
@@ -150,16 +151,16 @@ impl Frames {
         encoder.set_compression(Compression::High);
         // Neighbouring indices are unrelated numbers, so filters only hide what repeats.
         encoder.set_filter(Filter::NoFilter);
-        encoder.set_animated(self.frames.len() as u32, 0)?;
+        encoder.set_animated(self.changes.len() as u32, 0)?;
         let mut writer = encoder.write_header()?;
         let mut data = Vec::new();
-        for Frame { area, cells, length } in &self.frames {
+        for Frame { area, cells, length } in &self.changes {
             let (width, height) = in_pixels(area.width, area.height);
             let (x, y) = in_pixels(area.x, area.y);
             writer.reset_frame_position()?;
             writer.set_frame_dimension(width, height)?;
             writer.set_frame_position(x, y)?;
-            writer.set_frame_delay(*length, self.frames_per_second)?;
+            writer.set_frame_delay(*length, self.rate)?;
             data.clear();
             for row in cells.chunks_exact(area.width.into()) {
                 cell.draw_row(row, |color| [palette.index(color)], &mut data);

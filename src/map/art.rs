@@ -1,6 +1,7 @@
 //! A player's own art in place of the built-in art.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroU32;
 use std::path::Path;
 use std::{fmt, fs, io};
 
@@ -82,7 +83,7 @@ fn sheet(
         .map_err(|error| format!("{error}: {}", error.help("sheet")))?;
     let (size, wanted) = (picture.size(), art.built_in_size());
     let times = size[0].get() / wanted[0];
-    if times == 0 || size.map(|it| it.get()) != wanted.map(|it| it.get() * times) {
+    if times == 0 || size.map(NonZeroU32::get) != wanted.map(|it| it.get() * times) {
         let [[width, height], [wanted_width, wanted_height]] = [size, wanted];
         return Err(format!(
             "is {width}×{height} texels: make it {wanted_width}×{wanted_height}, or a multiple of that"

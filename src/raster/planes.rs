@@ -78,7 +78,9 @@ pub(crate) fn draw<M: Sampling>(
     draw_backdrops(scene, list, sky, target);
     let PlaneMemory { order, joined, spans } = memory;
     spans.begin(target.rows().len(), scene.projection.columns());
-    joined.iter_mut().for_each(|rows| rows.begin(scene.projection.columns()));
+    for rows in joined.iter_mut() {
+        rows.begin(scene.projection.columns());
+    }
     sort::<M>(scene, list, order);
     let is_whole = target.rows() == (0..scene.projection.rows());
     // The planes to draw next, together with their mirror image if that follows.
