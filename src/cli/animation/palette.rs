@@ -8,9 +8,9 @@ use crate::color::Rgb;
 use crate::sort;
 
 /// A palette, and its entry for each colour of the pictures.
-pub(super) struct Palette {
+pub(crate) struct Palette {
     /// The channels of the entries.
-    pub(super) entries: Vec<[u8; 3]>,
+    pub(crate) entries: Vec<[u8; 3]>,
     indices: BTreeMap<[u8; 3], u8>,
 }
 
@@ -19,7 +19,7 @@ const MOST: usize = 256;
 
 impl Palette {
     /// A palette for `colors`. It is exact for up to 256 different ones.
-    pub(super) fn of(colors: impl Iterator<Item = Rgb>) -> Self {
+    pub(crate) fn of(colors: impl Iterator<Item = Rgb>) -> Self {
         let mut counts = BTreeMap::new();
         colors.for_each(|color| *counts.entry(color.channels()).or_default() += 1);
         let mut counted: Vec<Counted> = counts.into_iter().collect();
@@ -38,7 +38,7 @@ impl Palette {
     }
 
     /// The index of the entry for `color`, which must be one of the colours that the palette was made for.
-    pub(super) fn index(&self, color: Rgb) -> u8 {
+    pub(crate) fn index(&self, color: Rgb) -> u8 {
         self.indices[&color.channels()]
     }
 }
