@@ -23,15 +23,16 @@
 //! use cellcaster_lab::casters::Method;
 //!
 //! let world = builtin::LEVELS[0].world()?;
+//! let grid = world.grid();
 //! let wrong = |method: &str| {
 //!     let caster = method.parse::<Method>().unwrap().caster();
 //!     let mut random = SplitMix64::new(1);
-//!     let rays = (0..1000).map(|_| random_ray(world.grid(), &mut random));
-//!     rays.filter(|ray| {
-//!         let (truth, hit) = (cast(world.grid(), ray), caster.cast(world.grid(), ray));
-//!         !truth.unwrap().is_met_by(&hit.unwrap())
-//!     })
-//!     .count()
+//!     let rays = (0..1000).map(|_| random_ray(grid, &mut random));
+//!     let is_wrong = |ray: &_| match (cast(grid, ray), caster.cast(grid, ray)) {
+//!         (Some(truth), Some(hit)) => !truth.is_met_by(&hit),
+//!         (truth, hit) => truth.is_some() || hit.is_some(),
+//!     };
+//!     rays.filter(is_wrong).count()
 //! };
 //! assert_eq!(wrong("exact"), 0);
 //! assert!(wrong("table:480") > 0, "480 angles are too few");

@@ -65,14 +65,9 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
     let ends = ends.lock().expect("no panic");
     println!("visits by their end: {ends:?}");
     let figures = figures(server)?;
-    for name in ["cellcaster_sessions", "cellcaster_members"] {
-        if figures.get(name) != Some(&0.0) {
-            return Err(format!(
-                "{name} is {:?} after the last visit, and not 0",
-                figures.get(name)
-            )
-            .into());
-        }
+    let is_left = |name: &&str| figures.get(*name) != Some(&0.0);
+    if let Some(name) = ["cellcaster_sessions", "cellcaster_members"].into_iter().find(is_left) {
+        return Err(format!("{name} is not 0 after the last visit").into());
     }
     match ends.get(&None) {
         Some(faults) => Err(format!("{faults} visits ended with a fault").into()),
