@@ -65,7 +65,7 @@ pub use multiplayer::view::{OtherPlayer, PlayerView};
 pub use player::FRICTION;
 pub use report::Outcome;
 pub use rules::{
-    Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
+    Input, MAX_LAG, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
     Strikes,
 };
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
@@ -124,7 +124,7 @@ impl Game {
     /// An upper bound on [`Game::work`] for any step on any accepted map. A step does about this
     /// much work in a millisecond.
     #[doc(hidden)]
-    pub const MOST_WORK: u64 = 1 << 20;
+    pub const MAX_WORK: u64 = 1 << 20;
 
     /// A game at its start with the default rules. The player stands still at the world's start.
     pub fn new(world: World) -> Self {

@@ -30,7 +30,7 @@ mod shadows;
 mod tree;
 
 pub use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Plane, SMALLEST, Scene, Shape,
+    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, MIN_LENGTH, Plane, Scene, Shape,
     SolidTexture, Sphere, Start, Sun,
 };
 pub use camera::{Axes, Camera};

@@ -10,8 +10,8 @@ use crate::bytes::Bytes;
 
 /// The number of steps of most restored rooms, and of the others.
 const STEPS: usize = 60;
-const MOST_STEPS: usize = 600;
-const MOST_CHANGES: usize = 24;
+const MAX_STEPS: usize = 600;
+const MAX_CHANGES: usize = 24;
 
 /// Changes the checkpoint with the number in the first byte, or replaces everything after its first
 /// line by the bytes of the input.
@@ -25,18 +25,18 @@ pub fn run(data: &[u8]) {
         let line = made.iter().position(|&byte| byte == b'\n').expect("it has a first line");
         [&made[..=line], choices.take(data.len())].concat()
     };
-    let steps = if data.len().is_multiple_of(8) { MOST_STEPS } else { STEPS };
+    let steps = if data.len().is_multiple_of(8) { MAX_STEPS } else { STEPS };
     if let Err(sentence) = resume(&bytes, data.len() as u64, steps) {
         assert!(!sentence.is_empty() && !sentence.contains(char::is_control), "{sentence:?}");
     }
     if data.len() == 1 && number < CHECKPOINTS {
-        assert_eq!(resume(made, 0, MOST_STEPS), Ok(()), "nothing is changed");
+        assert_eq!(resume(made, 0, MAX_STEPS), Ok(()), "nothing is changed");
     }
 }
 
 /// Sets, flips, inserts and removes bytes.
 fn changed(mut bytes: Vec<u8>, choices: &mut Bytes) -> Vec<u8> {
-    for _ in 0..MOST_CHANGES {
+    for _ in 0..MAX_CHANGES {
         if choices.is_empty() || bytes.is_empty() {
             break;
         }

@@ -9,9 +9,9 @@
 use allocation_counter::measure;
 use cellcaster_server::fuzzing::SharedRoom;
 
-const MOST_PARTS: usize = 32;
+const MAX_PARTS: usize = 32;
 /// The largest number of steps in a message, and in all messages.
-const MOST_STEPS: u64 = 60;
+const MAX_STEPS: u64 = 60;
 /// The largest number of bytes allocated for a step, as long as nobody draws.
 const BYTES_OF_A_STEP: u64 = 64 << 10;
 /// The largest number of bytes allocated for a byte of a message.
@@ -24,11 +24,11 @@ pub fn run(data: &[u8]) {
     let first = || parts.next().unwrap_or_default();
     let Some(mut room) = begun(from, first) else { return };
     let mut steps = 0;
-    for part in parts.take(MOST_PARTS) {
+    for part in parts.take(MAX_PARTS) {
         let Some(([kind, number], text)) = part.split_first_chunk() else { continue };
-        let count = u64::from(*number).min(MOST_STEPS);
+        let count = u64::from(*number).min(MAX_STEPS);
         steps += count;
-        if steps > MOST_STEPS {
+        if steps > MAX_STEPS {
             break;
         }
         let used = measure(|| match kind % 4 {

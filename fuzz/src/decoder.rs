@@ -25,7 +25,7 @@ const TERMS: [&str; 8] =
 /// Longer than the wait for the rest of any key or answer.
 const PAUSE: Duration = Duration::from_secs(20);
 /// The largest number of parts into which a stream is cut.
-const MOST_PARTS: usize = 64;
+const MAX_PARTS: usize = 64;
 /// The number of bytes allocated for a byte that arrives alone, including the answer to it.
 const BYTES_OF_A_BYTE: u64 = 4 << 10;
 /// The number of events that no byte causes, such as the first size of the window.
@@ -116,7 +116,7 @@ fn converse(kind: u8, stream: &[u8]) {
         answers: Vec::new(),
     };
     let mut rng = SplitMix64::new(u64::from(kind) + 1);
-    let length = stream.len().div_ceil(MOST_PARTS).max(1);
+    let length = stream.len().div_ceil(MAX_PARTS).max(1);
     for part in stream.chunks(length) {
         talk.protocol.receive(part, talk.now);
         talk.do_something(rng.below(8), part[0]);

@@ -19,7 +19,7 @@ use model::{Model, Picture};
 use screens::Screens;
 
 /// The largest number of operations in an input.
-const MOST_OPERATIONS: usize = 40;
+const MAX_OPERATIONS: usize = 40;
 /// The number of frames after which a picture at rest is exact.
 const FRAMES_OF_REST: usize = 10;
 const REGIONS: [ClearType; 5] = [
@@ -38,7 +38,7 @@ pub fn run(data: &[u8]) {
     let mut drawing = Drawing::new(size(&mut choices), palette || repeats);
     drawing.writer.set_palette(palette);
     drawing.writer.set_repeats(repeats);
-    for _ in 0..MOST_OPERATIONS {
+    for _ in 0..MAX_OPERATIONS {
         if choices.is_empty() {
             break;
         }

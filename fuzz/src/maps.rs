@@ -31,7 +31,7 @@ const END: u8 = 0;
 const PICTURE: &[u8] = include_bytes!("maps/picture.png");
 
 /// The largest number of bytes that reading a map under 1 MB may need.
-const MOST_BYTES: u64 = 256 << 20;
+const MAX_BYTES: u64 = 256 << 20;
 
 /// Reads a map, plays in it and draws it.
 pub fn run(data: &[u8]) {
@@ -49,6 +49,6 @@ pub fn run(data: &[u8]) {
 fn read(text: &[u8]) -> Option<Level> {
     let mut level = None;
     let used = measure(|| level = Some(map::read_level(text, "map", &OneFile(PICTURE))));
-    assert!(used.bytes_max <= MOST_BYTES, "reading took {} bytes", used.bytes_max);
+    assert!(used.bytes_max <= MAX_BYTES, "reading took {} bytes", used.bytes_max);
     level?.map_err(|faults| check_faults(&faults)).ok()
 }

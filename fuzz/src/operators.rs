@@ -7,7 +7,7 @@ use cellcaster_server::config::Config;
 use crate::faults::check_faults;
 
 /// The largest size in bytes of a script that is verified. Playing a longer script takes minutes.
-const MOST_SCRIPT: usize = 60;
+const MAX_SCRIPT: usize = 60;
 
 /// Reads a text in the way that the first byte chooses.
 pub fn run(data: &[u8]) {
@@ -21,7 +21,7 @@ pub fn run(data: &[u8]) {
         }
         1 => names(&text),
         _ => {
-            if text.len() <= MOST_SCRIPT && !text.contains("000") {
+            if text.len() <= MAX_SCRIPT && !text.contains("000") {
                 _ = verify(&text, |_| None);
             }
         }

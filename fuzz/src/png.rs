@@ -13,7 +13,7 @@ use crate::files::OneFile;
 
 /// Twice the size of the largest picture in 16-bit RGBA, for the decoder, the texels and their mip
 /// levels.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// Uses the file in all ways that the input chooses, and draws the map.
 pub fn run(data: &[u8]) {
@@ -22,7 +22,7 @@ pub fn run(data: &[u8]) {
     let file = choices.take(data.len());
     let mut read = None;
     let used = measure(|| read = Some(map::parse(&text, "map", &OneFile(file))));
-    assert!(used.bytes_max <= MOST_BYTES, "{} bytes", used.bytes_max);
+    assert!(used.bytes_max <= MAX_BYTES, "{} bytes", used.bytes_max);
     let world = match read.expect("it was read") {
         Ok(world) => world,
         Err(faults) => return check_faults(&faults),

@@ -7,10 +7,10 @@ use cellcaster_server::fuzzing::Hall;
 use crate::alacritty::Alacritty;
 use crate::bytes::Bytes;
 
-const MOST_VISITORS: usize = 4;
-const MOST_OPERATIONS: usize = 200;
+const MAX_VISITORS: usize = 4;
+const MAX_OPERATIONS: usize = 200;
 /// The largest number of steps of a round that is replayed.
-const MOST_STEPS: u64 = 1200;
+const MAX_STEPS: u64 = 1200;
 /// Bytes that a visitor may send.
 const KEYS: [&str; 24] = [
     "\r",
@@ -52,12 +52,12 @@ pub fn run(data: &[u8]) {
     let choices = &mut choices;
     let mut hall = Hall::new(choices.double_word().into());
     let mut terminals: Vec<Terminal> = Vec::new();
-    for _ in 0..MOST_OPERATIONS {
-        if choices.is_empty() || hall.steps() > MOST_STEPS {
+    for _ in 0..MAX_OPERATIONS {
+        if choices.is_empty() || hall.steps() > MAX_STEPS {
             break;
         }
         let what = choices.below(16);
-        if terminals.is_empty() || what == 0 && terminals.len() < MOST_VISITORS {
+        if terminals.is_empty() || what == 0 && terminals.len() < MAX_VISITORS {
             terminals.push(arrive(&mut hall, choices));
         }
         let visitor = choices.below(terminals.len());
@@ -132,7 +132,7 @@ fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
 
 /// Checks that the log of the round reproduces the room.
 fn check_recording(hall: &Hall) {
-    if hall.steps() >= MOST_STEPS {
+    if hall.steps() >= MAX_STEPS {
         return;
     }
     let (text, checksum) = hall.recording();

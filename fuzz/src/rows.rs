@@ -15,7 +15,7 @@ use cellcaster_server::accounts::{
 
 use crate::bytes::Bytes;
 
-const MOST_ROWS: usize = 24;
+const MAX_ROWS: usize = 24;
 /// The largest number of columns in a table.
 const COLUMNS: usize = 14;
 const WORDS: [&str; 16] = [
@@ -60,7 +60,7 @@ pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     STORE.with_borrow_mut(|store| {
         store.clear();
-        for _ in 0..MOST_ROWS {
+        for _ in 0..MAX_ROWS {
             if choices.is_empty() {
                 break;
             }

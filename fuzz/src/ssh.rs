@@ -10,10 +10,10 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::bytes::Bytes;
 
-const MOST_PACKETS: usize = 48;
+const MAX_PACKETS: usize = 48;
 /// The largest number of bytes that the server keeps for a connection: its buffers, and its unsent
 /// data.
-const MOST_BYTES: u64 = 2 << 20;
+const MAX_BYTES: u64 = 2 << 20;
 /// The number of bytes allocated for a connection, for each of its packets, and for each byte.
 const BYTES_OF_A_CONNECTION: u64 = 2 << 20;
 const BYTES_OF_A_PACKET: u64 = 64 << 10;
@@ -108,7 +108,7 @@ impl Stream {
 
     /// Adds packets, as the choices select them.
     pub(crate) fn choose(mut self, choices: &mut Bytes) -> Self {
-        for _ in 0..MOST_PACKETS {
+        for _ in 0..MAX_PACKETS {
             if choices.is_empty() {
                 break;
             }
@@ -155,7 +155,7 @@ impl Stream {
         let used = measure(|| {
             RUNTIME.with_borrow(|runtime| answer = runtime.block_on(converse(&self.bytes)));
         });
-        assert!(used.bytes_max <= MOST_BYTES, "{} bytes at once", used.bytes_max);
+        assert!(used.bytes_max <= MAX_BYTES, "{} bytes at once", used.bytes_max);
         let most = BYTES_OF_A_CONNECTION
             + BYTES_OF_A_PACKET * self.packets
             + BYTES_OF_A_BYTE * count as u64;

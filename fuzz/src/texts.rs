@@ -18,7 +18,7 @@ use crate::faults::check_faults;
 use crate::folder::Folder;
 
 /// The largest number of steps of a script that are played.
-const MOST_STEPS: usize = 300;
+const MAX_STEPS: usize = 300;
 
 /// Reads the text in the way that its first byte chooses.
 pub fn run(data: &[u8]) {
@@ -58,7 +58,7 @@ fn script(content: &[u8]) {
     assert_eq!(read.steps(), sum);
     let Ok(world) = builtin::LEVELS[0].world() else { unreachable!("it is built in") };
     let mut game = Game::new(world);
-    for (section, intents) in read.iter().take(MOST_STEPS) {
+    for (section, intents) in read.iter().take(MAX_STEPS) {
         assert!(section < read.sections().len());
         game.step(intents);
     }

@@ -13,7 +13,7 @@ use crate::bytes::Bytes;
 
 /// The byte at which a frame is drawn.
 const CUT: u8 = 0;
-const MOST_PARTS: usize = 16;
+const MAX_PARTS: usize = 16;
 /// The number of bytes allocated for a byte that arrives, which may rebuild a page, and for each
 /// arrival.
 const BYTES_OF_A_BYTE: u64 = 32 << 10;
@@ -28,7 +28,7 @@ pub fn run(data: &[u8]) {
     let mut hall = Hall::small((kind >> 2).into());
     let columns = 20 + u16::from(width) % 80;
     hall.arrive("Ada", options, WindowSize::new((columns, 24), (0, 0)));
-    for part in choices.take(data.len()).split(|&byte| byte == CUT).take(MOST_PARTS) {
+    for part in choices.take(data.len()).split(|&byte| byte == CUT).take(MAX_PARTS) {
         let used = measure(|| hall.press(0, part));
         let most = BYTES_OF_A_PART + BYTES_OF_A_BYTE * part.len() as u64;
         assert!(used.bytes_total <= most, "{} bytes for {}", used.bytes_total, part.len());

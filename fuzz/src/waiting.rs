@@ -11,7 +11,7 @@ use crate::folder::Folder;
 
 /// The largest size of a file whose scripts are played, if they contain no number of four digits.
 /// Playing a longer file takes seconds.
-const MOST_PLAYED: usize = 400;
+const MAX_PLAYED: usize = 400;
 /// The number of bytes allocated for a byte, which may be a line.
 const BYTES_OF_A_BYTE: u64 = 512;
 
@@ -31,7 +31,7 @@ pub fn run(data: &[u8]) {
     );
     assert_eq!(length_of_a_new(&folder), waiting.len());
     let digits = data.split(|byte| !byte.is_ascii_digit()).map(<[u8]>::len).max();
-    if data.len() <= MOST_PLAYED && digits < Some(4) {
+    if data.len() <= MAX_PLAYED && digits < Some(4) {
         record(&mut waiting);
         waiting.save().expect("there is room");
         assert_eq!(length_of_a_new(&folder), waiting.len());

@@ -242,7 +242,7 @@ pub struct Clock {
 impl Clock {
     /// The largest number of steps computed at once, a quarter of a second. A machine that is too
     /// slow plays more slowly, and does not fall further and further behind.
-    pub const MOST_STEPS: u64 = 15;
+    pub const MAX_STEPS: u64 = 15;
 
     /// The number of whole steps since the last call.
     pub fn steps_until(&mut self, now: Duration) -> u64 {

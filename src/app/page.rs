@@ -242,16 +242,16 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
 
 /// The shortest time for which a result is shown, and the time after which held keys no longer
 /// matter.
-const LEAST_SHOWN: Duration = Duration::from_millis(500);
-const LONGEST_WAIT: Duration = Duration::from_secs(1);
+const MIN_SHOWN: Duration = Duration::from_millis(500);
+const MAX_WAIT: Duration = Duration::from_secs(1);
 
 /// Returns true if a result that has been on screen since `shown_since` can be answered at `now`:
 /// after half a second if the keys held for the game have been released, and after one second in
 /// any case.
 pub fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
     let shown_for = now.saturating_sub(shown_since);
-    let is_released = shown_for >= LEAST_SHOWN && !held.is_any_down_since(shown_since);
-    is_released || shown_for >= LONGEST_WAIT
+    let is_released = shown_for >= MIN_SHOWN && !held.is_any_down_since(shown_since);
+    is_released || shown_for >= MAX_WAIT
 }
 
 /// The longest interval between two repeats of a key.
@@ -606,12 +606,12 @@ fn keys_in_columns(bindings: &Bindings, room: usize, most_columns: usize) -> Vec
 }
 
 /// The smallest playable window.
-const LEAST_COLUMNS: u16 = 20;
-const LEAST_ROWS: u16 = 6;
+const MIN_COLUMNS: u16 = 20;
+const MIN_ROWS: u16 = 6;
 /// The smallest picture with room for a minimap.
-const LEAST_WITH_MINIMAP: (u16, u16) = (36, 12);
+const MIN_SIZE_WITH_MINIMAP: (u16, u16) = (36, 12);
 /// The largest minimap. A larger one would hide too much of the picture.
-const LARGEST_MINIMAP: (u16, u16) = (40, 20);
+const MAX_MINIMAP_SIZE: (u16, u16) = (40, 20);
 /// The number of columns or rows that the borders of a panel take.
 pub(crate) const BORDERS: u16 = 2;
 /// The number of blank columns beside a message, both sides together.
@@ -619,12 +619,12 @@ pub(crate) const PADDING: u16 = 2;
 
 /// Returns true if `area` is too small to play in.
 pub fn is_too_small(area: Rect) -> bool {
-    area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
+    area.width < MIN_COLUMNS || area.height < MIN_ROWS
 }
 
 /// Draws the message that the window is too small.
 pub fn too_small(canvas: &mut impl Canvas) {
-    let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
+    let text = format!("Too small to play: {MIN_COLUMNS}×{MIN_ROWS} at least.");
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
@@ -638,13 +638,13 @@ pub fn picture_and_status(area: Rect) -> [Rect; 2] {
 /// The area of the panel of `map` in the upper right corner of the picture; `None` if there is no
 /// room for it.
 pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
-    let (least_columns, least_rows) = LEAST_WITH_MINIMAP;
+    let (least_columns, least_rows) = MIN_SIZE_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
         return None;
     }
     let room = Size {
-        width: (picture.width / 3).min(LARGEST_MINIMAP.0),
-        height: (picture.height / 2 - BORDERS).min(LARGEST_MINIMAP.1),
+        width: (picture.width / 3).min(MAX_MINIMAP_SIZE.0),
+        height: (picture.height / 2 - BORDERS).min(MAX_MINIMAP_SIZE.1),
     };
     let size = map.size_within(room);
     let (width, height) = (size.width + BORDERS, size.height + BORDERS);

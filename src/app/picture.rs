@@ -260,7 +260,7 @@ fn mark_middle(frame: &mut Frame) {
 }
 
 /// The maximum number of marks.
-const MOST: usize = 8;
+const MAX: usize = 8;
 /// The number of rows at the top that other panels use.
 const ROWS_ABOVE: u16 = 1;
 /// The minimum width of a picture with room for words, in columns.
@@ -281,7 +281,7 @@ fn draw_sounds(
     let mut loudest: Vec<&Heard> = heard.iter().collect();
     sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
     let mut taken: Vec<Rect> = Vec::new();
-    for heard in loudest.into_iter().take(MOST) {
+    for heard in loudest.into_iter().take(MAX) {
         let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
         let Some(area) = free_place(ring, angle(heard, heading), &text, &taken) else { continue };
         canvas.draw_widget(Line::raw(text).style(style(heard.kind, depth)), area);
@@ -377,7 +377,7 @@ fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect
         let moved = Rect { x, y, ..place };
         (ring.intersection(moved) == moved).then_some(moved)
     };
-    let nearest = (0..MOST as i32).flat_map(|by| [by, -by]);
+    let nearest = (0..MAX as i32).flat_map(|by| [by, -by]);
     nearest.filter_map(moved).find(|place| taken.iter().all(|other| !other.intersects(*place)))
 }
 
@@ -488,11 +488,11 @@ const NAMES: [&str; 8] = ["E", "SE", "S", "SW", "W", "NW", "N", "NE"];
 /// The number of columns between two names. It is odd, and a third of it stands for 15 degrees.
 const ADVANCE: i32 = 9;
 /// The maximum width of the strip, in columns.
-const MOST_COLUMNS: u16 = 31;
+const MAX_COLUMNS: u16 = 31;
 
 /// Draws the strip in the middle of the first row of the picture.
 fn draw_compass(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
-    let width = MOST_COLUMNS.min(picture.width / 3);
+    let width = MAX_COLUMNS.min(picture.width / 3);
     if width < 7 {
         return;
     }
@@ -533,7 +533,7 @@ pub struct MapPanel {
 }
 
 /// The maximum number of zoom levels in each direction.
-const MOST_ZOOM: i32 = 6;
+const MAX_ZOOM: i32 = 6;
 /// The fraction of the visible part by which one key press moves the map.
 const MOVED_BY: f64 = 0.25;
 
@@ -579,8 +579,8 @@ impl MapPanel {
     pub fn change(&mut self, change: MapChange) {
         let by = self.extent * MOVED_BY;
         match change {
-            MapChange::Larger => self.zoom = (self.zoom + 1).min(MOST_ZOOM),
-            MapChange::Smaller => self.zoom = (self.zoom - 1).max(-MOST_ZOOM),
+            MapChange::Larger => self.zoom = (self.zoom + 1).min(MAX_ZOOM),
+            MapChange::Smaller => self.zoom = (self.zoom - 1).max(-MAX_ZOOM),
             MapChange::North => self.offset.y -= by.y,
             MapChange::South => self.offset.y += by.y,
             MapChange::West => self.offset.x -= by.x,

@@ -62,13 +62,13 @@ impl RunLog {
         while steps > 0 {
             let last = self.stretches.last_mut().filter(|last| last.intents == intents);
             let room = last.map_or(0, |last| {
-                let taken = steps.min(u64::from(Stretch::MOST_STEPS - last.steps)) as u32;
+                let taken = steps.min(u64::from(Stretch::MAX_STEPS - last.steps)) as u32;
                 last.steps += taken;
                 taken
             });
             steps -= u64::from(room);
             if room == 0 {
-                let taken = steps.min(Stretch::MOST_STEPS.into()) as u32;
+                let taken = steps.min(Stretch::MAX_STEPS.into()) as u32;
                 self.stretches.push(Stretch { steps: taken, intents });
                 steps -= u64::from(taken);
             }
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn the_script_has_the_steps_that_were_recorded() {
         let run = [Intent::Run].into_iter().collect();
-        let most = u64::from(Stretch::MOST_STEPS);
+        let most = u64::from(Stretch::MAX_STEPS);
         let recorded = [(run, 3), (run, 4), (Intents::new(), 1), (run, 0), (run, 2 * most + 1)];
         let mut log = RunLog::default();
         assert!(log.is_empty());

@@ -300,7 +300,7 @@ impl Time {
 }
 
 /// The time after which no more steps begin before keys are read.
-const MOST_TIME: Duration = Duration::from_millis(25);
+const MAX_TIME: Duration = Duration::from_millis(25);
 
 impl App {
     /// Advances the game towards `now` for as long as a short time limit allows. The remaining time
@@ -310,20 +310,20 @@ impl App {
         let begun = self.machine_time.map(|time| time());
         let is_late = |time: Option<fn() -> Duration>| {
             let passed = time.zip(begun).map(|(time, begun)| time().saturating_sub(begun));
-            passed.is_some_and(|passed| passed > MOST_TIME)
+            passed.is_some_and(|passed| passed > MAX_TIME)
         };
         let mut step = self.clock.step_after(0);
         let mut steps = self.clock.steps_until(now);
         let mut moves = 0;
         if self.demo.is_some() {
-            for _ in 0..steps.min(Clock::MOST_STEPS) {
+            for _ in 0..steps.min(Clock::MAX_STEPS) {
                 self.step_demo();
                 if is_late(self.machine_time) {
                     break;
                 }
             }
         }
-        while steps > 0 && moves < Clock::MOST_STEPS && self.screen() == Screen::Playing {
+        while steps > 0 && moves < Clock::MAX_STEPS && self.screen() == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = controls::after(step, passed);
             steps -= passed;

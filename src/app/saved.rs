@@ -18,7 +18,7 @@ use super::results::{builtin_named, shown_name};
 use super::screen::{Choice, capitalized};
 use super::status::whole_seconds;
 use super::{App, Levels, Screen};
-use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
+use crate::app::store::{Descent, MAX_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
 use crate::world::Difficulty;
@@ -119,7 +119,7 @@ impl App {
     /// Adds an entry that removes the oldest saved game.
     pub(crate) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let oldest = self.store.saves().last();
-        menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."))
+        menu.line(format!("{MAX_SAVES} games are saved, and no more are kept."))
             .entries(oldest.map(|it| ("Remove the oldest", name_of(it), Choice::RemoveOldest)))
     }
 

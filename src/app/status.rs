@@ -120,8 +120,8 @@ const PRIORITIES_WITH_STATS: [(Part, Form); 11] = [
 const GAP: u16 = 2;
 /// The minimum widths of the title and the notice when they are cut. Three letters of a title say
 /// nothing.
-const LEAST_TITLE: u16 = 8;
-const LEAST_NOTICE: u16 = 3;
+const MIN_TITLE_WIDTH: u16 = 8;
+const MIN_NOTICE_WIDTH: u16 = 3;
 
 impl StatusLine {
     /// Replaces all texts by the output of `write`.
@@ -164,8 +164,8 @@ impl StatusLine {
 /// The minimum width to which a part can be cut; `None` if it is left out instead.
 fn least_cut(part: Part) -> Option<u16> {
     match part {
-        Part::Title => Some(LEAST_TITLE),
-        Part::Notice => Some(LEAST_NOTICE),
+        Part::Title => Some(MIN_TITLE_WIDTH),
+        Part::Notice => Some(MIN_NOTICE_WIDTH),
         _ => None,
     }
 }
@@ -417,7 +417,7 @@ pub struct Meter {
 }
 
 /// The time between two measurements.
-const PERIOD: Duration = Duration::from_millis(500);
+const INTERVAL: Duration = Duration::from_millis(500);
 /// The shortest time without frames that counts as a pause.
 const PAUSE: Duration = Duration::from_millis(500);
 
@@ -437,7 +437,7 @@ impl Meter {
         let elapsed = now.saturating_sub(self.begun);
         self.frames += 1;
         self.last = now;
-        if !pauses && elapsed < PERIOD {
+        if !pauses && elapsed < INTERVAL {
             return None;
         }
         let rates = Rates {

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `progress.toml` | best results, the saved games, preferences, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
-//! | `runs/saved.HASH.script` | the steps of a saved game; there are at most [`MOST_SAVES`] |
+//! | `runs/saved.HASH.script` | the steps of a saved game; there are at most [`MAX_SAVES`] |
 //! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
 //! | `runs/descent.REACHED.script` | the best endless descent, up to the last exit it reached |
 //! | `progress.lock` | nothing; a game locks it while it writes |
@@ -38,9 +38,9 @@ mod text;
 
 use std::path::Path;
 
-use home::{Home, LARGEST_SCRIPT};
+use home::{Home, MAX_SCRIPT_FILE_BYTES};
 pub use progress::{
-    Best, Descent, DescentRun, Improved, MOST_SAVES, NotSaved, Reached, Run, Save, SaveId,
+    Best, Descent, DescentRun, Improved, MAX_SAVES, NotSaved, Reached, Run, Save, SaveId,
     SavedGame, map_key, name_in_map_key, replayed,
 };
 use progress::{Change, Progress};
@@ -141,7 +141,7 @@ impl Store {
     /// Returns true if a game with this identity can be saved: there is room for it, or it replaces
     /// one with the same identity.
     pub fn has_room_for(&self, id: SaveId) -> bool {
-        self.progress.saves.len() < MOST_SAVES || self.has_saved(id)
+        self.progress.saves.len() < MAX_SAVES || self.has_saved(id)
     }
 
     /// Saves a game. It replaces the saved game with the same identity, if there is one.
@@ -152,7 +152,7 @@ impl Store {
         if !self.has_room_for(game.save.id()) {
             return Err(NotSaved::Full);
         }
-        if game.script.len() as u64 > LARGEST_SCRIPT {
+        if game.script.len() as u64 > MAX_SCRIPT_FILE_BYTES {
             return Err(NotSaved::TooLong);
         }
         self.change(Change::Saved(game.clone()));

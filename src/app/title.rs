@@ -212,7 +212,7 @@ const ROWS: usize = 5;
 /// The width of the whole name, in points.
 const COLUMNS: usize = NAME.len() * ADVANCE - 1;
 /// The minimum number of rows for the menu below the name.
-const LEAST_BELOW: u16 = 6;
+const MIN_ROWS_BELOW: u16 = 6;
 
 /// Draws the name on a band at the top of `picture`, in the largest size that fits. Returns the
 /// area below the band.
@@ -226,11 +226,11 @@ pub fn draw_banner(
     let fits = |lines: &Vec<String>| {
         let width = lines[0].chars().count();
         width <= usize::from(picture.width)
-            && lines.len() + usize::from(LEAST_BELOW) <= usize::from(picture.height)
+            && lines.len() + usize::from(MIN_ROWS_BELOW) <= usize::from(picture.height)
     };
     let lines = lines.into_iter().find(fits).unwrap_or_else(|| vec![NAME.to_owned()]);
     let (width, height) = (lines[0].chars().count() as u16, lines.len() as u16);
-    let blank = u16::from(picture.height >= height + LEAST_BELOW + 6);
+    let blank = u16::from(picture.height >= height + MIN_ROWS_BELOW + 6);
     let taken = (height + 2 * blank).min(picture.height);
     let band = Rect { height: taken, ..picture };
     let area = Rect {

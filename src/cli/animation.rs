@@ -74,9 +74,9 @@ struct Frame {
 }
 
 /// The maximum number of frames.
-const MOST_FRAMES: usize = 1000;
+const MAX_FRAMES: usize = 1000;
 /// The maximum number of cells in all frames, which take 40 bytes each.
-const MOST_CELLS: usize = 1 << 21;
+const MAX_CELLS: usize = 1 << 21;
 
 impl Frames {
     /// No frames yet of the animation that `options` describe.
@@ -88,7 +88,7 @@ impl Frames {
             changes: Vec::new(),
             last: Buffer::empty(area),
             part: options.part.map_or(0..u64::MAX, |(from, to)| number(from)..number(to)),
-            most: (MOST_CELLS / area.area().max(1) as usize).min(MOST_FRAMES),
+            most: (MAX_CELLS / area.area().max(1) as usize).min(MAX_FRAMES),
             rate: frames_per_second,
         }
     }

@@ -13,7 +13,7 @@ use crate::app::store::private;
 use crate::fault::printable;
 
 /// The size limit of a configuration file, in bytes.
-pub const LARGEST: u64 = 1 << 20;
+pub const MAX_BYTES: u64 = 1 << 20;
 
 /// Print the settings in force, as a file with comments
 ///
@@ -62,7 +62,7 @@ pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
         });
     };
     let name = path.display().to_string();
-    let (configuration, is_there) = match private::read_text(&path, LARGEST) {
+    let (configuration, is_there) = match private::read_text(&path, MAX_BYTES) {
         Ok(text) => (Configuration::parse(&text, &name)?, true),
         Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => {
             (Configuration::default(), false)

@@ -222,8 +222,8 @@ fn key_of(path: &Path, text: &str) -> String {
 
 /// The text of a file, if the file is not too large for a map.
 fn text_of(path: &Path) -> Option<String> {
-    const LARGEST: u64 = 1 << 20;
-    let is_small = fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);
+    const MAX_BYTES: u64 = 1 << 20;
+    let is_small = fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= MAX_BYTES);
     if is_small { fs::read_to_string(path).ok() } else { None }
 }
 

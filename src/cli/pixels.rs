@@ -12,7 +12,7 @@ use crate::tui::{CellAspect, rgb_of};
 /// The side of a glyph in pixels, before the glyph is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;
 /// The maximum number of pixels. Cells become smaller in a larger picture.
-const MOST_PIXELS: u64 = 1 << 26;
+const MAX_PIXELS: u64 = 1 << 26;
 /// The terminal's default colours, for cells that have none.
 const FOREGROUND: Rgb = Rgb::WHITE;
 const BACKGROUND: Rgb = Rgb::BLACK;
@@ -33,7 +33,7 @@ impl CellSize {
             Self { width, height: height.round().max(1.0) as u32 }
         };
         let sizes = [GLYPH_SIDE, 4, 2].map(scaled).into_iter();
-        let fits = |it: &Self| cells * u64::from(it.width) * u64::from(it.height) <= MOST_PIXELS;
+        let fits = |it: &Self| cells * u64::from(it.width) * u64::from(it.height) <= MAX_PIXELS;
         { sizes }.find(fits).unwrap_or_else(|| scaled(1))
     }
 

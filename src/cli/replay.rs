@@ -125,16 +125,16 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
 
 /// The size limit of a script in bytes: more than a week of play. A larger file is not read to its
 /// end.
-const LONGEST: u64 = 1 << 26;
+const MAX_LENGTH: u64 = 1 << 26;
 
 /// Reads the script in a file.
 pub fn load(path: &Path) -> Result<Script, Error> {
     let name = path.display().to_string();
     let mut content = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut content));
+    let read = File::open(path).and_then(|file| file.take(MAX_LENGTH).read_to_end(&mut content));
     match read {
         Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
-        Ok(length) if length as u64 == LONGEST => {
+        Ok(length) if length as u64 == MAX_LENGTH => {
             Err(Error::mistake(format!("{name} is too long for a script")))
         }
         Ok(_) => Ok(Script::from_bytes(content, &name)?),

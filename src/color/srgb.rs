@@ -26,7 +26,7 @@ pub(crate) fn linear_16(color: Rgb) -> [u16; 3] {
 pub(crate) fn from_linear_16(light: [u16; 3]) -> Rgb {
     let [red, green, blue] = light.map(|channel| {
         let value = NEAREST[usize::from(channel / SPACING)];
-        value + u8::from(u32::from(channel) >= LEAST[usize::from(value) + 1])
+        value + u8::from(u32::from(channel) >= THRESHOLDS[usize::from(value) + 1])
     });
     Rgb::new(red, green, blue)
 }
@@ -88,7 +88,7 @@ static NEAREST: [u8; (u16::MAX / SPACING) as usize + 1] = {
     let mut table = [0; (u16::MAX / SPACING) as usize + 1];
     let (mut index, mut value) = (0, 0);
     while index < table.len() {
-        while index as u32 * SPACING as u32 >= LEAST[value + 1] {
+        while index as u32 * SPACING as u32 >= THRESHOLDS[value + 1] {
             value += 1;
         }
         table[index] = value as u8;
@@ -98,7 +98,7 @@ static NEAREST: [u8; (u16::MAX / SPACING) as usize + 1] = {
 };
 
 /// The least light to which each channel value is nearest, in 65535ths.
-static LEAST: [u32; 257] = {
+static THRESHOLDS: [u32; 257] = {
     let mut table = [0; 257];
     let mut value = 1;
     while value < LINEAR_16.len() {

@@ -21,10 +21,10 @@ use crate::sort;
 
 /// The maximum number of tokens in a document, white space and line breaks included: about twenty
 /// for each of ten thousand definitions.
-const MOST_TOKENS: usize = 1 << 18;
+const MAX_TOKENS: usize = 1 << 18;
 /// The number of tokens above which only the first TOML error is reported, because each token may
 /// be one.
-const MOST_TOKENS_RECOVERED: usize = 1 << 16;
+const MAX_TOKENS_RECOVERED: usize = 1 << 16;
 
 /// The faults of a document, collected while it is read.
 #[derive(Default)]
@@ -88,8 +88,8 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
 /// take the rest of the text as the content of the bracket, and find a fault in almost every line.
 pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut tokens = Source::new(text).lex();
-    let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
-    if let Some(token) = tokens.nth(MOST_TOKENS - MOST_TOKENS_RECOVERED - 1) {
+    let is_recovered = tokens.by_ref().nth(MAX_TOKENS_RECOVERED).is_none();
+    if let Some(token) = tokens.nth(MAX_TOKENS - MAX_TOKENS_RECOVERED - 1) {
         faults.push(too_many_tokens(token.span().start()..token.span().end()));
         return DeTable::new();
     }
@@ -133,7 +133,7 @@ fn end_of_unclosed_line(text: &str) -> Option<usize> {
 }
 
 fn too_many_tokens(place: Range<usize>) -> Fault {
-    Fault::new(place, format!("a file has {MOST_TOKENS} TOML tokens at most"))
+    Fault::new(place, format!("a file has {MAX_TOKENS} TOML tokens at most"))
         .label("this is one too many")
         .help("leave some definitions out; a string is one token, however long")
 }

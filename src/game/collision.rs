@@ -41,7 +41,7 @@ use crate::world::{Cell, Gap, Line, Outline, Tile, TileKind, World};
 
 /// The maximum number of walls that a body may touch in one step. A corner has two. A body that
 /// touches more is stuck between them, and stops.
-const MOST_CONTACTS: usize = 4;
+const MAX_CONTACTS: usize = 4;
 /// The depth, relative to the radius, to which a path may enter a corner's disc before it counts as
 /// a contact. A player who slides around a corner leaves it along the tangent, exact to about
 /// 1e-16.
@@ -110,7 +110,7 @@ pub(crate) fn slide<O: Obstacles>(
     let Body { mut position, mut velocity } = body;
     let mut remaining = displacement;
     let mut contacts = 0;
-    while contacts < MOST_CONTACTS {
+    while contacts < MAX_CONTACTS {
         let Some(path) = Path::new(position, remaining) else {
             return Body { position, velocity };
         };

@@ -22,10 +22,10 @@ pub(crate) const STRAIGHT: u16 = 2;
 /// The cost of a step to a diagonal neighbour, in half cells.
 pub(crate) const DIAGONAL: u16 = 3;
 /// The largest cost of one step.
-const MOST_COST: u16 = 15;
+const MAX_COST: u16 = 15;
 
 /// One bucket for each distance that may still be open.
-const BUCKETS: usize = MOST_COST as usize + 1;
+const BUCKETS: usize = MAX_COST as usize + 1;
 /// The number of columns and rows that a search covers on each side of its start.
 const REACH: u32 = 160;
 
@@ -43,7 +43,7 @@ pub(crate) trait Costs {
     fn origin(&self, cell: Cell) -> Self::Origin;
 
     /// The cost of a straight step between neighbours, found from `from` to `to`, at most
-    /// [`MOST_COST`]; `None` if the step is impossible.
+    /// [`MAX_COST`]; `None` if the step is impossible.
     fn straight(&self, from: &Self::Origin, to: Cell) -> Option<u16>;
 
     /// Whether there is a diagonal step between `from` and `to`. `beside` tells for each of the two
@@ -126,7 +126,7 @@ impl Distances {
             let Some(to) = self.neighbor(cell, side * 2) else { continue };
             if let Some(cost) = costs.straight(&origin, to) {
                 *open = true;
-                self.offer(to, self.distance.saturating_add(cost.min(MOST_COST)));
+                self.offer(to, self.distance.saturating_add(cost.min(MAX_COST)));
             }
         }
         for side in 0..4 {

@@ -21,7 +21,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::collision::overlaps;
-use super::rules::MOST_PLAYERS;
+use super::rules::MAX_PLAYERS;
 use super::rules::Rules;
 use super::scratch::Scratch;
 use super::sight::{Cloud, Point, is_in_sight};
@@ -47,7 +47,7 @@ const FAR_STRIDE: u16 = 8;
 const FALLEN_EACH: u64 = 30;
 /// The number of cells over which sounds spread to guards in one step. Once it is reached, guards
 /// do not hear the remaining sounds of that step.
-const MOST_AIR_CELLS: usize = 16_384;
+const MAX_AIR_CELLS: usize = 16_384;
 
 /// The distance at which a fall is heard, in cells.
 const FALL: u8 = 6;
@@ -68,7 +68,7 @@ pub(crate) struct Guards {
     terrain: Terrain,
     ways: Ways,
     air: SoundField,
-    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
+    #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     trails: Vec<Trail>,
     #[serde(skip)]
     others: Scratch<Vec<Other>>,
@@ -166,7 +166,7 @@ impl Guards {
         self.record_trails(world, targets);
         let mut spoken = std::mem::take(&mut self.spoken);
         for sound in sounds.iter().chain(&spoken) {
-            if *self.air_cells < MOST_AIR_CELLS {
+            if *self.air_cells < MAX_AIR_CELLS {
                 self.spread(world, targets, clouds, sound);
             }
         }

@@ -75,7 +75,7 @@ const GAIN_STEPS: u16 = 12;
 
 impl Health {
     /// The points of an unhurt player.
-    const MOST: u8 = 6;
+    const MAX: u8 = 6;
 
     /// Whether no points are left.
     pub fn is_gone(self) -> bool {
@@ -100,7 +100,7 @@ impl Health {
 
     /// Whether a player can have this health.
     pub(crate) fn is_possible(self) -> bool {
-        self.points <= self.most && self.most == Self::MOST
+        self.points <= self.most && self.most == Self::MAX
     }
 
     /// Whether points are missing.
@@ -112,7 +112,7 @@ impl Health {
 impl Default for Health {
     /// Full health.
     fn default() -> Self {
-        Self { points: Self::MOST, most: Self::MOST }
+        Self { points: Self::MAX, most: Self::MAX }
     }
 }
 
@@ -235,7 +235,7 @@ mod tests {
                 let before = health;
                 let harm = Harm { points, bearing: None, spares, cause: Cause::Fall };
                 health = if heals { health.healed(points) } else { health.after(&harm) };
-                prop_assert!(health.points <= health.most && health.most == Health::MOST);
+                prop_assert!(health.points <= health.most && health.most == Health::MAX);
                 prop_assert!(!spares || heals || before.is_gone() || !health.is_gone());
             }
         }

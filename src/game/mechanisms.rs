@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
-use super::rules::MOST_PLAYERS;
+use super::rules::MAX_PLAYERS;
 use super::sound::SoundKind;
 use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;
@@ -395,7 +395,7 @@ impl Game {
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
-        let mut stood = [false; MOST_PLAYERS];
+        let mut stood = [false; MAX_PLAYERS];
         for (index, player) in self.playing() {
             stood[index] = player.motion.stands(&self.world);
         }

@@ -13,7 +13,7 @@
 //!   leaves, reaches the exit or is dead for good, their keys return to the cells where they were
 //!   found.
 //! - A player's action against others is judged by the positions in the step that the player saw,
-//!   at most [`MOST_LAG`](super::MOST_LAG) steps ago. Rejected: judging by the present positions.
+//!   at most [`MAX_LAG`](super::MAX_LAG) steps ago. Rejected: judging by the present positions.
 //!   Players would have to aim ahead by the delay of their connection.
 //! - Bodies that collide are columns without an upper end, so nobody can jump onto a head.
 
@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint::Checkpoint;
 use super::guards::Target;
 use super::player::{Motion, Player, Supplies};
-use super::rules::{Input, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules};
+use super::rules::{Input, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules};
 use super::scratch::Scratch;
 use super::stored::{OfLevel, Unrestorable, at_most, check};
 use super::{Game, Intent, Intents};
@@ -54,7 +54,7 @@ pub(crate) struct Members {
     #[serde(skip)]
     rules: MultiplayerRules,
     /// The last slot, if any, is occupied.
-    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
+    #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     slots: Vec<Option<Member>>,
     /// The slot of the current player, whose turn it is. During the turn, that player is in
     /// [`Game::player`].
@@ -75,7 +75,7 @@ pub(crate) struct Members {
     pub(crate) targets: Scratch<Vec<Target>>,
     #[serde(skip)]
     in_the_way: Scratch<Vec<DVec2>>,
-    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
+    #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     figures: Vec<Figure>,
 }
 
@@ -178,7 +178,7 @@ impl Members {
     /// The first free slot.
     fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
-        free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
+        free.or(Some(self.slots.len())).filter(|&index| index < MAX_PLAYERS)
     }
 
     /// The positions of the players who are in the way of the current player.

@@ -27,11 +27,11 @@ pub(crate) mod reach {
     /// The reach of a landing from the lowest audible fall, and the increase for each further cell.
     pub(crate) const LANDING: u8 = 4;
     pub(crate) const LANDING_BY_CELL: u8 = 3;
-    pub(crate) const LANDING_MOST: u8 = 12;
+    pub(crate) const MAX_LANDING: u8 = 12;
 }
 
 /// The lowest fall with an audible landing, in cells.
-const LEAST_FALL: f64 = 0.5;
+const MIN_FALL: f64 = 0.5;
 /// The distance between two audible footsteps, in cells.
 const WALKING_STRIDE: f64 = 0.8;
 const RUNNING_STRIDE: f64 = 1.2;
@@ -91,9 +91,9 @@ impl Game {
 
     /// Makes the sound of a landing after a fall of `cells` cells.
     pub(crate) fn hear_landing(&mut self, cells: f64) {
-        if cells >= LEAST_FALL && !self.is_in_water() {
-            let more = (cells - LEAST_FALL) * f64::from(reach::LANDING_BY_CELL);
-            let reach = (f64::from(reach::LANDING) + more).min(reach::LANDING_MOST.into());
+        if cells >= MIN_FALL && !self.is_in_water() {
+            let more = (cells - MIN_FALL) * f64::from(reach::LANDING_BY_CELL);
+            let reach = (f64::from(reach::LANDING) + more).min(reach::MAX_LANDING.into());
             self.sound(SoundKind::Landing, reach as u8);
         }
     }

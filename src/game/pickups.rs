@@ -32,7 +32,7 @@ impl Game {
         self.things_reached().map(|thing| thing.kind).find(|&kind| match kind {
             ThingKind::Key(_) | ThingKind::Treasure(_) => true,
             ThingKind::Healing(_) => self.player.health.is_hurt(),
-            ThingKind::Supply(supply, _) => self.player.supplies.count(supply) < Supplies::MOST,
+            ThingKind::Supply(supply, _) => self.player.supplies.count(supply) < Supplies::MAX,
             _ => false,
         })
     }
@@ -83,9 +83,7 @@ impl Game {
                     self.alarm_closes_exits().then(|| text.to_owned())
                 }
             }
-            ThingKind::Supply(supply, _)
-                if self.player.supplies.count(supply) == Supplies::MOST =>
-            {
+            ThingKind::Supply(supply, _) if self.player.supplies.count(supply) == Supplies::MAX => {
                 Some(format!("You cannot carry more {}.", supply.name()))
             }
             _ => None,

@@ -16,7 +16,7 @@ use super::tally::Counts;
 use crate::world::{KeyId, Supply, World};
 
 /// An upper bound on a player's counts. A count needs years to grow from here to an overflow.
-const MOST_COUNT: u32 = u32::MAX / 2;
+const MAX_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,7 +83,7 @@ impl Player {
         check(self.supplies.are_possible(), "the number of a tool")?;
         let Counts { alarms, deaths, stunned } = self.counts;
         let counts = [alarms, deaths, stunned, self.in_water];
-        check(counts.iter().all(|&count| count < MOST_COUNT), "a count")?;
+        check(counts.iter().all(|&count| count < MAX_COUNT), "a count")?;
         self.motion.check(world)?;
         self.warnings.check(now)?;
         self.hearing.check(world)
@@ -126,14 +126,14 @@ pub(crate) struct Supplies([u8; Supply::ALL.len()]);
 
 impl Supplies {
     /// The maximum of each tool.
-    pub(crate) const MOST: u8 = 9;
+    pub(crate) const MAX: u8 = 9;
 
     /// The tools of a player at the start.
     pub(crate) const AT_START: Self = Self([3, 0, 0]);
 
     /// Whether a player can carry these tools.
     pub(crate) fn are_possible(self) -> bool {
-        self.0.iter().all(|&count| count <= Self::MOST)
+        self.0.iter().all(|&count| count <= Self::MAX)
     }
 
     /// The number of `supply`.
@@ -144,7 +144,7 @@ impl Supplies {
     /// Adds `more` of `supply`, up to the maximum.
     pub(crate) fn add(&mut self, supply: Supply, more: u8) {
         let count = &mut self.0[supply as usize];
-        *count = count.saturating_add(more).min(Self::MOST);
+        *count = count.saturating_add(more).min(Self::MAX);
     }
 
     /// The larger of the two numbers for each tool.
@@ -211,7 +211,7 @@ mod tests {
                 } else {
                     prop_assert_eq!(supplies.take(supply), before > 0);
                 }
-                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
+                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MAX));
             }
         }
     }

@@ -12,10 +12,10 @@ pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 pub const STEPS_PER_SECOND: u32 = 60;
 
 /// The maximum number of players in a game.
-pub const MOST_PLAYERS: usize = 16;
+pub const MAX_PLAYERS: usize = 16;
 
 /// The maximum age of the step that a player acts upon, in steps: 250 ms.
-pub const MOST_LAG: u64 = 15;
+pub const MAX_LAG: u64 = 15;
 
 /// The options of a game at its start. The same level, rules and intents produce the same game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -35,12 +35,12 @@ impl PlayerId {
     /// The first slot. In a single-player game, the player's slot.
     pub const FIRST: Self = Self(0);
 
-    /// The slot with that index; `None` if it is [`MOST_PLAYERS`] or more.
+    /// The slot with that index; `None` if it is [`MAX_PLAYERS`] or more.
     pub fn new(index: usize) -> Option<Self> {
-        (index < MOST_PLAYERS).then_some(Self(index as u8))
+        (index < MAX_PLAYERS).then_some(Self(index as u8))
     }
 
-    /// The index of the slot, below [`MOST_PLAYERS`].
+    /// The index of the slot, below [`MAX_PLAYERS`].
     pub fn index(self) -> usize {
         usize::from(self.0)
     }

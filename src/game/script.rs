@@ -64,7 +64,7 @@ pub struct Section {
 /// A period during which the intents do not change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// The duration in steps of [`STEP`](super::STEP) seconds, from 1 to [`Stretch::MOST_STEPS`].
+    /// The duration in steps of [`STEP`](super::STEP) seconds, from 1 to [`Stretch::MAX_STEPS`].
     pub steps: u32,
     /// The intents in each of these steps.
     pub intents: Intents,
@@ -130,7 +130,7 @@ impl Section {
 
 impl Stretch {
     /// One hour.
-    pub const MOST_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
+    pub const MAX_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
 }
 
 /// Multiples of this many steps are exact in seconds with one decimal digit.
@@ -387,7 +387,7 @@ impl<W: Write> Recorder<W> {
                     0
                 }
             };
-            let taken = steps.min(u64::from(Stretch::MOST_STEPS - before)) as u32;
+            let taken = steps.min(u64::from(Stretch::MAX_STEPS - before)) as u32;
             steps -= u64::from(taken);
             self.current = Some(Stretch { steps: before + taken, intents });
             if steps > 0 {
@@ -538,7 +538,7 @@ impl Reader<'_> {
                     .help("write 2.5 s, or 150 steps"));
             }
         };
-        if !(1.0..=f64::from(Stretch::MOST_STEPS)).contains(&steps) {
+        if !(1.0..=f64::from(Stretch::MAX_STEPS)).contains(&steps) {
             return Err(Fault::new(number, "a line lasts from one step to one hour")
                 .label(if steps < 1.0 { "too short" } else { "too long" })
                 .help(format!("a second has {STEPS_PER_SECOND} steps")));
@@ -661,7 +661,7 @@ mod tests {
 
     pub(crate) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
-        let stretch = (1..=Stretch::MOST_STEPS, intents)
+        let stretch = (1..=Stretch::MAX_STEPS, intents)
             .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });
         let amount = || prop_oneof![Just(0), -i16::MAX..=i16::MAX];
         let look = (amount(), amount()).prop_map(|(turn, tilt)| Look { turn, tilt });
@@ -773,7 +773,7 @@ mod tests {
     fn a_stretch_longer_than_a_line_may_be_takes_several() {
         let mut text = Vec::new();
         Recorder::new(&mut text)
-            .record(Intents::new(), 2 * u64::from(Stretch::MOST_STEPS) + 1)
+            .record(Intents::new(), 2 * u64::from(Stretch::MAX_STEPS) + 1)
             .unwrap();
         assert_eq!(
             String::from_utf8(text).unwrap(),

@@ -207,7 +207,7 @@ fn have_common_air(one: &Tile, other: &Tile) -> bool {
 /// The number of steps for which a sound is shown.
 const DURATION: u16 = 45;
 /// The maximum number of sounds shown at once.
-const MOST: usize = 8;
+const MAX: usize = 8;
 
 /// A sound as a player hears it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -268,7 +268,7 @@ impl Hearing {
         let is_audible = |heard: &Heard| {
             (1..=3).contains(&heard.strength) && (1..=DURATION).contains(&heard.left)
         };
-        let is_known = self.sounds.len() == self.heard.len() && self.heard.len() <= MOST;
+        let is_known = self.sounds.len() == self.heard.len() && self.heard.len() <= MAX;
         check(is_known && self.heard.iter().all(is_audible), "what a player hears")
     }
 
@@ -317,7 +317,7 @@ impl Hearing {
                 return;
             }
             self.remove(index);
-        } else if self.heard.len() == MOST {
+        } else if self.heard.len() == MAX {
             self.remove(0);
         }
         self.sounds.push(*sound);

@@ -40,12 +40,12 @@ pub const RULES_VERSION: u32 = 2;
 /// The version of the format.
 const FORMAT_VERSION: u32 = 2;
 /// The maximum number of bytes that are read.
-pub const MOST_BYTES: usize = 1 << 20;
+pub const MAX_BYTES: usize = 1 << 20;
 /// The largest real number in a game: above twice the greatest height of a map.
-const MOST_REAL: f64 = 4e9;
+const MAX_REAL: f64 = 4e9;
 /// The largest time or count. A game can add smaller numbers for millions of years without an
 /// overflow.
-pub const MOST_COUNT: u64 = 1 << 53;
+pub const MAX_COUNT: u64 = 1 << 53;
 
 /// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,7 +76,7 @@ impl fmt::Display for Unrestorable {
             Self::OtherLevel => f.write_str("the state is one of another level or other rules"),
             Self::Cut => f.write_str("the state ends too early"),
             Self::Longer => f.write_str("the state goes on after its end"),
-            Self::TooLong => write!(f, "the state is longer than {MOST_BYTES} bytes"),
+            Self::TooLong => write!(f, "the state is longer than {MAX_BYTES} bytes"),
             Self::Damaged(what) => write!(f, "the state is damaged: {what} is out of its range"),
         }
     }
@@ -196,26 +196,26 @@ pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unresto
     check(is_on_map, "a position")
 }
 
-/// Reads a list of at most `MOST` values, for `#[serde(deserialize_with)]`. Needed for values that
+/// Reads a list of at most `MAX` values, for `#[serde(deserialize_with)]`. Needed for values that
 /// are much larger than their bytes.
-pub(crate) fn at_most<'de, const MOST: usize, T, D>(from: D) -> Result<Vec<T>, D::Error>
+pub(crate) fn at_most<'de, const MAX: usize, T, D>(from: D) -> Result<Vec<T>, D::Error>
 where
     T: Deserialize<'de>,
     D: Deserializer<'de>,
 {
-    struct List<T, const MOST: usize>(std::marker::PhantomData<T>);
+    struct List<T, const MAX: usize>(std::marker::PhantomData<T>);
 
-    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
+    impl<'de, T: Deserialize<'de>, const MAX: usize> Visitor<'de> for List<T, MAX> {
         type Value = Vec<T>;
 
         fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-            write!(f, "at most {MOST} values")
+            write!(f, "at most {MAX} values")
         }
 
         fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
             let mut values = Vec::new();
             while let Some(value) = list.next_element()? {
-                if values.len() == MOST {
+                if values.len() == MAX {
                     return Err(A::Error::custom("a list is too long"));
                 }
                 values.push(value);
@@ -224,14 +224,14 @@ where
         }
     }
 
-    from.deserialize_seq(List::<T, MOST>(std::marker::PhantomData))
+    from.deserialize_seq(List::<T, MAX>(std::marker::PhantomData))
 }
 
 /// The remaining bytes to read, and the size of the map that they refer to.
 ///
 /// - A whole number is a variable-length integer: 7 bits in a byte, the lowest first. A signed
-///   number is first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
-/// - A real number is the eight bytes of its bits. It is finite, and at most [`MOST_REAL`].
+///   number is first mapped to 0, −1, 1, −2, …. No number is above [`MAX_COUNT`].
+/// - A real number is the eight bytes of its bits. It is finite, and at most [`MAX_REAL`].
 /// - A list is its length and its elements, each of at least one byte.
 /// - A [`Cell`](crate::world::Cell) is on the map.
 #[derive(Clone, Debug)]
@@ -256,7 +256,7 @@ impl<'de> Reader<'de> {
     /// # Errors
     /// If there are too many bytes.
     pub fn of(bytes: &'de [u8]) -> Result<Self, Unrestorable> {
-        let is_short = bytes.len() <= MOST_BYTES;
+        let is_short = bytes.len() <= MAX_BYTES;
         is_short.then_some(Self { bytes, size: (0, 0) }).ok_or(Unrestorable::TooLong)
     }
 
@@ -290,7 +290,7 @@ impl<'de> Reader<'de> {
             let byte = self.take(1)?[0];
             number |= u64::from(byte & 0x7f) << shift;
             if byte < 0x80 {
-                check(number <= MOST_COUNT, "a number")?;
+                check(number <= MAX_COUNT, "a number")?;
                 return Ok(number);
             }
         }
@@ -343,7 +343,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         let mut bits = [0; 8];
         bits.copy_from_slice(self.take(8)?);
         let real = f64::from_le_bytes(bits);
-        check(real.abs() <= MOST_REAL, "a real number")?;
+        check(real.abs() <= MAX_REAL, "a real number")?;
         visitor.visit_f64(real)
     }
 

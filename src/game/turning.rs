@@ -32,7 +32,7 @@ const FINE_ANGLE: f64 = PI / 36.0 / FINE_STEPS as f64;
 const ABOUT_STEPS: u32 = 30;
 const ABOUT_ANGLE: f64 = PI / ABOUT_STEPS as f64;
 /// The maximum number of exact turns that wait.
-const MOST_WAITING: u32 = 72;
+const MAX_WAITING: u32 = 72;
 
 /// The exact turns: each press makes one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
@@ -63,20 +63,20 @@ impl Turning {
 
     /// Returns an error if more exact turns wait than are allowed.
     pub(crate) fn check(self) -> Result<(), Unrestorable> {
-        let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
-            && self.about <= ABOUT_STEPS * MOST_WAITING;
+        let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MAX_WAITING
+            && self.about <= ABOUT_STEPS * MAX_WAITING;
         check(is_possible, "a turn")
     }
 
     fn wanting(self, intents: Intents) -> Self {
         let wanted: Intents = EXACT.into_iter().filter(|&turn| intents.contains(turn)).collect();
         let news: Intents = wanted.iter().filter(|&turn| !self.wanted.contains(turn)).collect();
-        let most = FINE_STEPS * MOST_WAITING as i32;
+        let most = FINE_STEPS * MAX_WAITING as i32;
         let fine = news.balance(Intent::FineRight, Intent::FineLeft) as i32 * FINE_STEPS;
         let about = if news.contains(Intent::AboutFace) { ABOUT_STEPS } else { 0 };
         Self {
             fine: (self.fine + fine).clamp(-most, most),
-            about: (self.about + about).min(ABOUT_STEPS * MOST_WAITING),
+            about: (self.about + about).min(ABOUT_STEPS * MAX_WAITING),
             wanted,
             ..self
         }

@@ -40,10 +40,10 @@ const ROCK_IN_100: u64 = 49;
 const DRY_IN_100: u64 = 60;
 /// A cell becomes rock if at least this many of the nine cells around it, itself included, are
 /// rock.
-const MOST_OF_NINE: usize = 5;
+const MAJORITY_OF_NINE: usize = 5;
 
 /// The side in cells of the smallest area with a hub.
-const LEAST: usize = 6;
+const MIN: usize = 6;
 /// The radius of the floor around a hub, in cells.
 const HUB_RADIUS: usize = 2;
 /// The number of steps for which a tunnel may wind before it goes straight.
@@ -82,7 +82,7 @@ impl Terrain for Cave {
     }
 
     fn hub(&self, area: &ChunkArea) -> Option<Place> {
-        if !area.holds(LEAST) {
+        if !area.holds(MIN) {
             return None;
         }
         let mut random = generator(self.seed, Purpose::Hub, area.chunk.column, area.chunk.row);
@@ -116,7 +116,7 @@ impl Cave {
             for y in inner.clone() {
                 for x in inner.clone() {
                     let around = before[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
-                    rock[y][x] = around.filter(|&&is_rock| is_rock).count() >= MOST_OF_NINE;
+                    rock[y][x] = around.filter(|&&is_rock| is_rock).count() >= MAJORITY_OF_NINE;
                 }
             }
         }

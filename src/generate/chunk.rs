@@ -76,22 +76,22 @@ pub enum Extent {
     /// This number of cells to the east and south of the first corner. The outermost cells are
     /// wall.
     Cells {
-        /// The width, at least [`Extent::LEAST`].
+        /// The width, at least [`Extent::MIN`].
         columns: u32,
-        /// The height, at least [`Extent::LEAST`].
+        /// The height, at least [`Extent::MIN`].
         rows: u32,
     },
 }
 
 impl Extent {
     /// The minimum number of cells along a side.
-    pub const LEAST: u32 = 8;
+    pub const MIN: u32 = 8;
     /// The maximum number of cells along a side.
-    pub const MOST: u32 = 1_000_000_000;
+    pub const MAX: u32 = 1_000_000_000;
 
     /// A level of this size; `None` if a side is out of range.
     pub fn new(columns: u32, rows: u32) -> Option<Self> {
-        let is_in_range = |side: u32| (Self::LEAST..=Self::MOST).contains(&side);
+        let is_in_range = |side: u32| (Self::MIN..=Self::MAX).contains(&side);
         (is_in_range(columns) && is_in_range(rows)).then_some(Self::Cells { columns, rows })
     }
 

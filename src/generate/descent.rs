@@ -10,7 +10,7 @@
 //!   out of sight of it. Their number and the variety of their kinds grow with the depth. Normal
 //!   difficulty adds half the number of guards on easy, and hard adds the same number again.
 //! - A reachable cell is open if neither it nor any of its neighbours is opaque. At most
-//!   [`MOST_OPEN`] percent of an office are open. Every fourth small office would otherwise be a
+//!   [`MAX_OPEN`] percent of an office are open. Every fourth small office would otherwise be a
 //!   hall or a garden as large as the floor, without corners to hide behind. Caves are naturally
 //!   open, up to 70 percent, and mazes hardly at all.
 //! - Deeper floors are darker, so lamps and lit rooms matter more.
@@ -44,7 +44,7 @@ const ROWS: (u32, u32, u32) = (24, 3, 48);
 const REACHABLE: u32 = 6;
 /// The maximum percentage of open cells among the reachable cells of an office. Offices that are
 /// divided into rooms have 9 to 35.
-const MOST_OPEN: usize = 40;
+const MAX_OPEN: usize = 40;
 /// The number of attempts after which a floor is used as it is.
 const ATTEMPTS: i64 = 16;
 /// The fraction of light that each floor loses, and the number of the darkest floor.
@@ -127,7 +127,7 @@ impl Draft {
     fn is_playable(&self, least: usize) -> bool {
         let reachable = self.ground.reachable().len();
         let is_divided = self.generator != Generator::Office
-            || self.ground.open_count() * 100 <= reachable * MOST_OPEN;
+            || self.ground.open_count() * 100 <= reachable * MAX_OPEN;
         reachable >= least && is_divided
     }
 

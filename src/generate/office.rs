@@ -144,9 +144,9 @@ const GLASS: u8 = b'G';
 const DOOR: u8 = b'+';
 
 /// The minimum inside length of a room along each side.
-const LEAST_ROOM: usize = 3;
+const MIN_ROOM_SIDE: usize = 3;
 /// The length above which an area is always divided.
-const LONGEST_ROOM: usize = 11;
+const MAX_ROOM_SIDE: usize = 11;
 /// The number of columns or rows from one pillar of a hall to the next.
 const PILLAR_SPACING: usize = 6;
 
@@ -181,7 +181,7 @@ impl Block {
     fn of(area: &ChunkArea, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
         let block = Self { columns: inside(&area.columns), rows: inside(&area.rows) };
-        (block.columns.len() >= LEAST_ROOM && block.rows.len() >= LEAST_ROOM).then_some(block)
+        (block.columns.len() >= MIN_ROOM_SIDE && block.rows.len() >= MIN_ROOM_SIDE).then_some(block)
     }
 
     /// Builds the block into `chunk`.
@@ -207,7 +207,7 @@ impl Block {
 
 /// The odd positions that leave enough room on both sides.
 fn cuts(inside: &Range<usize>) -> Vec<usize> {
-    let places = inside.start + LEAST_ROOM..(inside.end).saturating_sub(LEAST_ROOM);
+    let places = inside.start + MIN_ROOM_SIDE..(inside.end).saturating_sub(MIN_ROOM_SIDE);
     places.filter(|place| place % 2 == 1).collect()
 }
 
@@ -232,7 +232,7 @@ impl Building<'_> {
     fn divide(&mut self, block: Block) {
         let (across, down) = (block.cuts_across(), block.cuts_down());
         let longest = block.columns.len().max(block.rows.len());
-        let is_done = longest <= LONGEST_ROOM && self.random.one_in(3);
+        let is_done = longest <= MAX_ROOM_SIDE && self.random.one_in(3);
         let is_wide = block.columns.len() > block.rows.len();
         let (cuts, is_across) = match (across.is_empty(), down.is_empty()) {
             _ if is_done => (Vec::new(), true),

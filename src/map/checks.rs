@@ -23,7 +23,7 @@ const MAX_DRIVEN: usize = 512;
 /// The largest number of spikes. All of them may come out in one step, and each makes a sound.
 const MAX_SPIKES: usize = 512;
 /// The least headroom where the player starts, and the least height of the map's ceiling.
-pub(crate) const LEAST_HEADROOM: f64 = 0.75;
+pub(crate) const MIN_HEADROOM: f64 = 0.75;
 
 /// The faults of the characters in `plan`: undefined characters, and faults of starts, supports,
 /// patrols and switches.
@@ -286,11 +286,11 @@ pub(crate) fn faults_of_cells(
 /// The fault of a start where the player has no room to stand.
 fn low_start(drawing: &Drawing<'_>, cells: Cells<'_>, start: Start) -> Option<Fault> {
     let room = cells.at(start.cell)?.gaps().next()?.height();
-    (room < LEAST_HEADROOM).then(|| {
+    (room < MIN_HEADROOM).then(|| {
         let message = "the player has no room to stand where they start";
         Fault::new(drawing.place_of(start.cell), message)
             .label(format!("the ceiling is {room} above the floor here"))
-            .help(format!("the player starts where it is {LEAST_HEADROOM} or more"))
+            .help(format!("the player starts where it is {MIN_HEADROOM} or more"))
     })
 }
 

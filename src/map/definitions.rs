@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
-use super::checks::LEAST_HEADROOM;
+use super::checks::MIN_HEADROOM;
 use super::keys::{self, Section};
 use super::legend::Legend;
 use super::surfaces::{self, CeilingText, CoveringText, SkyText};
@@ -106,9 +106,9 @@ pub(crate) fn title(entry: &Entry<'_, '_>) -> Option<String> {
 /// Reads the height of the map's ceiling, which is also the height of walls.
 fn ceiling_height(entry: &Entry<'_, '_>) -> Option<f64> {
     let height = HEIGHT.read(entry)?;
-    (height >= LEAST_HEADROOM).then_some(height).or_else(|| {
+    (height >= MIN_HEADROOM).then_some(height).or_else(|| {
         entry.reject(
-            format!("the ceiling of a map is at {LEAST_HEADROOM} cells or above"),
+            format!("the ceiling of a map is at {MIN_HEADROOM} cells or above"),
             "nobody has room to stand below this",
             "lower the ceiling in places, by a tile with a ceiling_height",
         )

@@ -19,9 +19,9 @@ const MAX_SIDE: u32 = 1024;
 const DECODER_LIMITS: Limits = Limits { bytes: 2 * 8 * (MAX_SIDE * MAX_SIDE) as usize };
 
 /// The largest number of texels of all pictures of a map: 16 of the largest size.
-const MOST_TEXELS: u32 = 16 * MAX_SIDE * MAX_SIDE;
+const MAX_TEXELS: u32 = 16 * MAX_SIDE * MAX_SIDE;
 /// The largest number of bytes of all PNG files of a map.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 
 /// The texels that a map may still decode, and the bytes of files that it may still read.
 ///
@@ -34,7 +34,7 @@ pub(crate) struct Budget {
 impl Default for Budget {
     /// The budget of a whole map.
     fn default() -> Self {
-        Self { texels: MOST_TEXELS, bytes: MOST_BYTES }
+        Self { texels: MAX_TEXELS, bytes: MAX_BYTES }
     }
 }
 
@@ -76,8 +76,8 @@ impl fmt::Display for PictureError {
                 write!(f, "is {width}×{height} texels, and may be {MAX_SIDE}×{MAX_SIDE} at most")
             }
             Self::OneTooMany => {
-                let megabytes = MOST_BYTES >> 20;
-                write!(f, "is too much: the pictures of a map have {MOST_TEXELS} texels and ")?;
+                let megabytes = MAX_BYTES >> 20;
+                write!(f, "is too much: the pictures of a map have {MAX_TEXELS} texels and ")?;
                 write!(f, "{megabytes} MiB at most")
             }
         }

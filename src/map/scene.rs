@@ -18,7 +18,7 @@ use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::fault::{Fault, quoted};
 use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Plane, Scene, Shape, SolidTexture,
+    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, Plane, Scene, Shape, SolidTexture,
     Sphere, Start, Sun,
 };
 use crate::world::{Heading, Scale, SkyGradient};
@@ -314,7 +314,7 @@ impl Properties<'_> {
 /// Reads the position in `entry`, within the limits of bodies and cameras.
 fn position(entry: &Entry<'_, '_>) -> Option<DVec3> {
     let place = three(entry, &format!("{} = [2, 0, 0.5]", entry.key))?;
-    (place.abs().max_element() <= FARTHEST).then_some(place).or_else(|| {
+    (place.abs().max_element() <= MAX_COORDINATE).then_some(place).or_else(|| {
         let key = quoted(entry.key);
         let message = format!("the coordinates of {key} must be from -1e9 to 1e9");
         entry.reject(message, "this is too far away", "")

@@ -14,7 +14,7 @@ use crate::visibility::TexelPlaces;
 use crate::world::texture::MipLevelByShifts;
 
 /// The least mean width, in pixels, of pieces that are drawn one by one.
-const LEAST_WIDTH: u64 = 8;
+const MIN_WIDTH: u64 = 8;
 /// The width of a piece. The pattern repeats after two pieces, so the uppermost bit of a position
 /// is the index of the piece. The other bits are the position in the piece.
 const PIECE: u64 = 1 << 63;
@@ -54,7 +54,7 @@ fn index<const IS_CHECKER: bool>((x, y): (u64, u64)) -> usize {
 #[inline]
 fn are_wide<const IS_CHECKER: bool>(places: &TexelPlaces) -> bool {
     let [x, y] = places.steps().map(|step| step.cast_signed().unsigned_abs() / 2);
-    (if IS_CHECKER { x + y } else { y }) <= PIECE / 2 / LEAST_WIDTH
+    (if IS_CHECKER { x + y } else { y }) <= PIECE / 2 / MIN_WIDTH
 }
 
 /// Draws the pixels at `places`, piece by piece.

@@ -20,9 +20,9 @@ pub(crate) struct TexelRuns {
 }
 
 /// The least mean length of runs, in pixels. Below it, drawing each pixel separately is faster.
-const SHORTEST: u64 = 6;
+const MIN: u64 = 6;
 /// The least number of pixels. For fewer pixels, the divisions take longer than they save.
-const FEWEST_PIXELS: usize = 32;
+const MIN_PIXELS: usize = 32;
 /// The number of pixels that are set at a time. Some may be beyond the end of a run; the next run
 /// overwrites them.
 const AT_ONCE: usize = 16;
@@ -35,12 +35,12 @@ impl TexelRuns {
         places: &TexelPlaces,
         pixels: usize,
     ) -> Option<Self> {
-        if pixels < FEWEST_PIXELS {
+        if pixels < MIN_PIXELS {
             return None;
         }
         let (bits, steps) = (level.bits(), places.steps());
         let edges_a_pixel = edges_a_pixel(steps[0], bits[0]) + edges_a_pixel(steps[1], bits[1]);
-        let is_worth_it = edges_a_pixel * SHORTEST <= 1 << EDGE_BITS;
+        let is_worth_it = edges_a_pixel * MIN <= 1 << EDGE_BITS;
         is_worth_it.then(|| Self::new(level, places)).flatten()
     }
 
@@ -195,7 +195,7 @@ mod tests {
                 // There are runs if a texel is at least 32 pixels wide, unless it is the only one.
                 let is_near = half_step.abs().max_element() <= 0.5 / 64.0 / 32.0;
                 let is_one = sides.0 == 0 || sides.1 == 0;
-                prop_assert!(pixels.len() < FEWEST_PIXELS || !is_near || is_one);
+                prop_assert!(pixels.len() < MIN_PIXELS || !is_near || is_one);
                 return Ok(());
             };
             runs.draw(by_shifts, &mut pixels);

@@ -20,7 +20,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`](super::FARTHEST).
+    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`MAX_COORDINATE`](super::MAX_COORDINATE).
     pub fn new(position: DVec3, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
         let elevation = Elevation::LEVEL;
         is_near(position).then_some(Self { position, heading, elevation, field_of_view })

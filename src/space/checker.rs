@@ -22,9 +22,9 @@ use crate::world::scene::SolidTexture;
 
 /// The least width at which the mean counts as 0. The mean is then closer to 0 than the resolution
 /// of colours.
-const WIDEST: f64 = 65_536.0;
+const MAX_WIDTH: f64 = 65_536.0;
 /// The largest place, positive or negative, that [`floor_of_small`] can round to an integer.
-const MOST: f64 = (1_u64 << 50) as f64;
+const MAX: f64 = (1_u64 << 50) as f64;
 
 /// Sets each lane of `widths` to the area that its pixel covers on a surface, as the widths of a box along
 /// the axes, in cells.
@@ -96,7 +96,7 @@ fn is_first(point: DVec3) -> bool {
 fn multiply_by_means_along(places: &Lanes, widths: &Lanes, products: &mut Lanes) {
     let ends = [least(places), greatest(places)];
     let width = greatest(widths);
-    if !are_finite(places, widths) || ends.iter().any(|end| end.abs() > MOST) || width >= WIDEST {
+    if !are_finite(places, widths) || ends.iter().any(|end| end.abs() > MAX) || width >= MAX_WIDTH {
         for lane in 0..LANES {
             products[lane] *= mean_along(places[lane], widths[lane]);
         }
@@ -132,10 +132,10 @@ fn mean_along(place: f64, width: f64) -> f64 {
     // For a large place, the difference of two close ends would lose its digits.
     let place = place - 2.0 * floor_double(place / 2.0);
     let mean = mean_within(place, width);
-    if width < WIDEST || mean.abs() == 1.0 { mean } else { 0.0 }
+    if width < MAX_WIDTH || mean.abs() == 1.0 { mean } else { 0.0 }
 }
 
-/// [`mean_along`] for a place of at most [`MOST`] and a width below [`WIDEST`].
+/// [`mean_along`] for a place of at most [`MAX`] and a width below [`MAX_WIDTH`].
 #[inline(always)]
 fn mean_of_small(place: f64, width: f64) -> f64 {
     mean_within(place - 2.0 * floor_of_small(place / 2.0), width)
@@ -149,7 +149,7 @@ fn mean_within(place: f64, width: f64) -> f64 {
     if low.is_in_cube_of(&high) { low.sign() } else { mean }
 }
 
-/// A place of at most [`MOST`] on the axis of the square wave.
+/// A place of at most [`MAX`] on the axis of the square wave.
 struct Place {
     /// The index of its period.
     period: f64,
@@ -206,7 +206,7 @@ mod tests {
         let (low, high) = (place - width / 2.0, place + width / 2.0);
         if low.floor() == high.floor() {
             if within_two(low.floor()) == 0.0 { 1.0 } else { -1.0 }
-        } else if width < WIDEST {
+        } else if width < MAX_WIDTH {
             ((integral(high) - integral(low)) / width).clamp(-1.0, 1.0)
         } else {
             0.0

@@ -17,7 +17,7 @@ use crate::world::scene::Scene;
 
 /// The largest mean number of tests for a ray. With more tests, the tree is faster than the bounds
 /// on the screen.
-const MOST_TESTS_OF_RAY: u64 = 32;
+const MAX_TESTS_OF_RAY: u64 = 32;
 
 /// The number of tests and pixels of a band, which takes a millisecond or two. A drawing can be
 /// interrupted after each band.
@@ -146,7 +146,7 @@ impl Renderer {
         let rays = u64::from(projection.width) * u64::from(projection.height);
         let tests: u64 = self.in_view.iter().map(|it| it.bounds.pixel_count()).sum();
         self.tree.clear();
-        if tests > MOST_TESTS_OF_RAY * rays {
+        if tests > MAX_TESTS_OF_RAY * rays {
             self.tree.build(self.in_view.iter().map(|it| &it.shape));
         }
     }

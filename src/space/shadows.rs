@@ -25,7 +25,7 @@ use crate::world::scene::{Body, Shape, Sun};
 const MARGIN: f64 = 1e-9;
 
 /// The largest number of occluders that are tested one by one.
-const MOST_IN_LEAF: usize = 8;
+const MAX_IN_LEAF: usize = 8;
 
 /// The bodies of a scene that cast shadows.
 #[derive(Clone, Debug, Default)]
@@ -205,7 +205,7 @@ fn any_at(
     places: Interval,
     is_such: &mut impl FnMut(&Occluder) -> bool,
 ) -> bool {
-    if occluders.len() <= MOST_IN_LEAF {
+    if occluders.len() <= MAX_IN_LEAF {
         return occluders.iter().any(|it| it.across.overlaps(places) && is_such(it));
     }
     let (before, rest) = occluders.split_at(occluders.len() / 2);

@@ -14,7 +14,7 @@ use glam::DVec3;
 use super::relative_shape::{RelativeBlock, RelativeShape};
 
 /// The largest number of bodies of a node without children.
-const MOST_IN_LEAF: usize = 4;
+const MAX_IN_LEAF: usize = 4;
 /// The distance of a box from its body, as a fraction of their largest coordinate. It exceeds any
 /// rounding error in a test of a ray against a body.
 const MARGIN: f64 = 1e-9;
@@ -99,7 +99,7 @@ impl Tree {
         let index = self.nodes.len();
         let bounds = union(leaves);
         self.nodes.push(Node { bounds, leaves: range.clone(), second_child: None });
-        if leaves.len() <= MOST_IN_LEAF {
+        if leaves.len() <= MAX_IN_LEAF {
             return;
         }
         let middle = leaves.len() / 2;

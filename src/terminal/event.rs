@@ -146,9 +146,9 @@ impl MouseReport {
 /// The size of the window, and the shape of its cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowSize {
-    /// The width in cells: 0 to [`WindowSize::MOST_COLUMNS`].
+    /// The width in cells: 0 to [`WindowSize::MAX_COLUMNS`].
     pub columns: u16,
-    /// The height in cells: 0 to [`WindowSize::MOST_ROWS`].
+    /// The height in cells: 0 to [`WindowSize::MAX_ROWS`].
     pub rows: u16,
     /// A cell's height divided by its width, from 1.5 to 3, if the terminal reports it.
     pub cell_aspect: Option<f64>,
@@ -159,9 +159,9 @@ pub struct WindowSize {
 
 impl WindowSize {
     /// The maximum number of columns. Further columns stay blank, because a terminal that reports more is not credible.
-    pub const MOST_COLUMNS: u16 = 2048;
+    pub const MAX_COLUMNS: u16 = 2048;
     /// The maximum number of rows. Further rows stay blank.
-    pub const MOST_ROWS: u16 = 1024;
+    pub const MAX_ROWS: u16 = 1024;
 
     /// The assumed size of a terminal that reports no size.
     #[cfg(unix)]
@@ -181,8 +181,8 @@ impl WindowSize {
         let cell_aspect =
             Some(cell_height / cell_width).filter(|aspect| (1.5..=3.0).contains(aspect));
         Self {
-            columns: columns.min(Self::MOST_COLUMNS),
-            rows: rows.min(Self::MOST_ROWS),
+            columns: columns.min(Self::MAX_COLUMNS),
+            rows: rows.min(Self::MAX_ROWS),
             cell_aspect,
             pixels: cell_aspect.map(|_| [width, height]),
         }

@@ -104,7 +104,7 @@ const MIN_RATE: f64 = 16_000.0;
 /// A terminal counts as silent after this number of consecutive timeouts, with keys between them.
 const MAX_TIMEOUTS: u32 = 5;
 /// The time between two fences.
-const FENCE_PERIOD: Duration = Duration::from_secs(5);
+const FENCE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// The number of frames per second that the rate should sustain.
 const FRAMES_PER_SECOND: f64 = 18.0;
@@ -126,7 +126,9 @@ impl Flow {
         match self.answers {
             Answers::Never => Request::Nothing,
             Answers::Given if self.timeouts > 0 => Request::Fence,
-            Answers::Given if now.saturating_sub(self.fenced_at) >= FENCE_PERIOD => Request::Fence,
+            Answers::Given if now.saturating_sub(self.fenced_at) >= FENCE_INTERVAL => {
+                Request::Fence
+            }
             Answers::Unknown | Answers::Given => Request::Status,
         }
     }

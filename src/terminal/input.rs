@@ -119,7 +119,7 @@ enum Step {
 
 /// The maximum length of a unit. Keys take a dozen bytes and answers a few dozen; longer units are
 /// dropped.
-const LONGEST_UNIT: usize = 256;
+const MAX_UNIT_BYTES: usize = 256;
 
 /// The length of an escape and the character that identifies a sequence.
 const INTRODUCER_LENGTH: usize = 2;
@@ -200,7 +200,7 @@ impl Decoder {
     }
 
     fn store(&mut self, byte: u8) {
-        if self.unit.len() < LONGEST_UNIT {
+        if self.unit.len() < MAX_UNIT_BYTES {
             self.unit.push(byte);
         } else {
             self.is_too_long = true;

@@ -135,7 +135,7 @@ impl<T: Send + 'static> Request<T> {
 /// The time within which tmux must answer.
 const TIMEOUT: Duration = Duration::from_secs(2);
 /// The largest answer that is read, in bytes.
-const MOST: u64 = 4096;
+const MAX: u64 = 4096;
 
 /// The output of `command`. `None` if it fails or runs longer than `timeout`.
 fn output(command: &mut Command, timeout: Duration) -> Option<String> {
@@ -156,7 +156,7 @@ fn output(command: &mut Command, timeout: Duration) -> Option<String> {
         return None;
     }
     let mut text = Vec::new();
-    child.stdout.take()?.take(MOST).read_to_end(&mut text).ok()?;
+    child.stdout.take()?.take(MAX).read_to_end(&mut text).ok()?;
     Some(String::from_utf8_lossy(&text).into_owned())
 }
 

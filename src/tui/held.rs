@@ -33,7 +33,7 @@ pub const LINGER: Duration = Duration::from_millis(300);
 pub const CHORD: Duration = Duration::from_millis(50);
 
 /// The maximum number of stored keys, which is more than there are fingers.
-const MOST_KEYS: usize = 16;
+const MAX_KEYS: usize = 16;
 
 /// The keys that are held. `K` is any type that identifies keys.
 ///
@@ -96,7 +96,7 @@ impl<K> Default for HeldKeys<K> {
     fn default() -> Self {
         Self {
             reports_releases: false,
-            keys: Vec::with_capacity(MOST_KEYS),
+            keys: Vec::with_capacity(MAX_KEYS),
             timing: RepeatTiming::default(),
             lingers_until: Duration::ZERO,
         }
@@ -257,7 +257,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
         if let Some(index) = self.keys.iter().position(|held| held.key == key) {
             return self.keys.remove(index);
         }
-        if self.keys.len() == MOST_KEYS {
+        if self.keys.len() == MAX_KEYS {
             let idle = self.keys.iter().position(|held| held.hold() == Hold::Up);
             self.keys.remove(idle.unwrap_or(0));
         }
@@ -266,11 +266,11 @@ impl<K: Copy + Eq> HeldKeys<K> {
 }
 
 /// The maximum number of queued taps. A link that stalled delivers many bytes at once.
-const MOST_QUEUED: u32 = 4;
+const MAX_QUEUED: u32 = 4;
 /// The longest time between two bytes of a repetition.
-const LONGEST_INTERVAL: Duration = Duration::from_millis(150);
+const MAX_INTERVAL: Duration = Duration::from_millis(150);
 /// The longest time by which a slow link interrupts a repetition.
-const LONGEST_STALL: Duration = Duration::from_secs(1);
+const MAX_STALL: Duration = Duration::from_secs(1);
 /// People do not tap this often, for this long, as fast as a keyboard repeats.
 const SURE_COUNT: u32 = 4;
 const SURE_SPAN: Duration = Duration::from_millis(200);
@@ -382,7 +382,7 @@ impl<K: Copy + Eq> HeldKey<K> {
                 self.timing.learn_interval(gap);
                 return Press::Repeat;
             }
-            (State::Suppressed, Some(gap)) if gap <= known.timeout().max(LONGEST_INTERVAL) => {
+            (State::Suppressed, Some(gap)) if gap <= known.timeout().max(MAX_INTERVAL) => {
                 return Press::Repeat;
             }
             _ => {}
@@ -391,7 +391,7 @@ impl<K: Copy + Eq> HeldKey<K> {
             self.begin_repetition(now, prior);
             return Press::Repeat;
         }
-        let may_resume = self.repeated && gap.is_some_and(|gap| gap <= LONGEST_STALL);
+        let may_resume = self.repeated && gap.is_some_and(|gap| gap <= MAX_STALL);
         let is_suspect = may_resume || gap.is_some_and(|gap| known.may_begin_after(gap));
         if self.series.count == 0 {
             self.series.is_suspect = is_suspect;
@@ -485,7 +485,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 impl Series {
     /// Handles a byte that came `gap` after the last one. Returns true if the series is a repetition.
     fn continues(&mut self, now: Duration, gap: Option<Duration>, timing: RepeatTiming) -> bool {
-        if gap.is_none_or(|gap| gap > LONGEST_INTERVAL) {
+        if gap.is_none_or(|gap| gap > MAX_INTERVAL) {
             *self = Self { start: now, count: 0, after: gap, is_suspect: false };
             return false;
         }
@@ -502,7 +502,7 @@ impl Tap {
             return;
         }
         if self.left > 0 || self.pauses {
-            self.queued = (self.queued + 1).min(MOST_QUEUED);
+            self.queued = (self.queued + 1).min(MAX_QUEUED);
         } else {
             (self.left, self.pauses) = if was_held { (0, true) } else { (steps, false) };
         }
@@ -523,22 +523,22 @@ impl Tap {
 }
 
 /// The shortest and the longest delay of any keyboard.
-const SHORTEST_DELAY: Duration = Duration::from_millis(200);
-const LONGEST_DELAY: Duration = Duration::from_secs(1);
+const MIN_DELAY: Duration = Duration::from_millis(200);
+const MAX_DELAY: Duration = Duration::from_secs(1);
 /// The first timeout while no delay is known: the longest default delay of a system, X11's 660 ms, plus an interval.
 const DEFAULT_FIRST_TIMEOUT: Duration = Duration::from_millis(750);
 /// The default delay of most systems.
 const DEFAULT_DELAY: Duration = Duration::from_millis(500);
 /// People do not tap a key faster than once in this time. In a series of taps, the mean time is longer by a slack for
 /// each further tap, up to a limit.
-const SHORTEST_TAP: Duration = Duration::from_millis(80);
+const MIN_TAP: Duration = Duration::from_millis(80);
 const TAP_SLACK: Duration = Duration::from_millis(10);
-const MOST_SLACKS: u32 = 2;
+const MAX_SLACKS: u32 = 2;
 /// The number of half intervals without a byte after which a key has stopped repeating, and the bounds of that time. A
 /// link that delivers bytes in bursts makes the interval look too short.
 const MISSED_HALVES: u32 = 5;
-const SHORTEST_TIMEOUT: Duration = Duration::from_millis(90);
-const LONGEST_TIMEOUT: Duration = Duration::from_millis(300);
+const MIN_TIMEOUT: Duration = Duration::from_millis(90);
+const MAX_TIMEOUT: Duration = Duration::from_millis(300);
 /// The assumed interval until one has been measured.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(60);
 
@@ -558,20 +558,20 @@ impl RepeatTiming {
 
     /// Returns true if the first repetition of a key may come after `gap`.
     fn may_begin_after(self, gap: Duration) -> bool {
-        let earliest = self.delay.map_or(SHORTEST_DELAY, |delay| delay * 3 / 4);
-        (earliest.max(SHORTEST_DELAY)..=LONGEST_DELAY).contains(&gap)
+        let earliest = self.delay.map_or(MIN_DELAY, |delay| delay * 3 / 4);
+        (earliest.max(MIN_DELAY)..=MAX_DELAY).contains(&gap)
     }
 
     /// Returns true if `count` bytes in the time `span` are too many for taps.
     fn is_repetition(self, count: u32, span: Duration) -> bool {
-        let mean = SHORTEST_TAP + TAP_SLACK * (count.saturating_sub(1)).min(MOST_SLACKS);
+        let mean = MIN_TAP + TAP_SLACK * (count.saturating_sub(1)).min(MAX_SLACKS);
         let known = self.interval.map_or(Duration::ZERO, |interval| interval * 5 / 4);
-        span <= mean.max(known.min(SHORTEST_TAP * 3 / 2)) * count
+        span <= mean.max(known.min(MIN_TAP * 3 / 2)) * count
     }
 
     /// Learns from a first repetition that came after `delay`.
     fn learn_delay(&mut self, delay: Duration) {
-        if (SHORTEST_DELAY..=LONGEST_DELAY).contains(&delay) {
+        if (MIN_DELAY..=MAX_DELAY).contains(&delay) {
             // A link can delay a byte, but not advance it, so shorter delays are adopted at once.
             let known = self.delay.unwrap_or(delay);
             self.delay = Some(delay.min(known + delay.saturating_sub(known) / 4));
@@ -586,7 +586,7 @@ impl RepeatTiming {
 
     /// The time for which a pressed key may be down before its first repetition.
     fn first_timeout(self) -> Duration {
-        self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + SHORTEST_TAP)
+        self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + MIN_TAP)
     }
 
     /// The delay, or the default of most systems if it is unknown.
@@ -597,7 +597,7 @@ impl RepeatTiming {
     /// The time for which a repeating key may send nothing.
     fn timeout(self) -> Duration {
         let interval = self.interval.unwrap_or(DEFAULT_INTERVAL);
-        (interval * MISSED_HALVES / 2).clamp(SHORTEST_TIMEOUT, LONGEST_TIMEOUT)
+        (interval * MISSED_HALVES / 2).clamp(MIN_TIMEOUT, MAX_TIMEOUT)
     }
 }
 

@@ -94,8 +94,8 @@ impl Projection {
         /// The tangents of half a field of view, for half angles from 0.06° to 89.94°.
         const MODERATE: RangeInclusive<f64> = 1e-3..=1e3;
         /// The greatest number of columns.
-        const WIDEST: u32 = 1 << 16;
-        MODERATE.contains(&self.plane.length()) && self.width <= WIDEST
+        const MAX_WIDTH: u32 = 1 << 16;
+        MODERATE.contains(&self.plane.length()) && self.width <= MAX_WIDTH
     }
 
     /// Returns true if every row above the horizon is the mirror image of a row below it.

@@ -76,7 +76,7 @@ const MARGIN: i64 = GROUP * STRIP / 2 / WIDTH + 1;
 
 impl BeamTable {
     /// The least side of a map on which a beam table pays off.
-    const LEAST_SIDE: i64 = 8 * STRIP;
+    const MIN_SIDE: i64 = 8 * STRIP;
     /// The density of solid cells up to which a beam table pays off: one in this many cells, apart
     /// from walls around the map.
     const SPARSE: i64 = 1024;
@@ -85,7 +85,7 @@ impl BeamTable {
     /// that may be solid, the border included.
     pub(crate) fn are_worthwhile([columns, rows]: [i64; 2], solid: i64) -> bool {
         let around = 4 * (columns + rows);
-        columns.min(rows) >= Self::LEAST_SIDE && solid <= around + columns * rows / Self::SPARSE
+        columns.min(rows) >= Self::MIN_SIDE && solid <= around + columns * rows / Self::SPARSE
     }
 
     /// The beams of a map with these lines and bands. `solid` are the lines and bands of the cells

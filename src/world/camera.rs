@@ -107,8 +107,8 @@ impl FieldOfView {
     pub fn half_width(self) -> f64 {
         /// All rays of such a picture have the same direction. Through a longer lens, products of
         /// lengths would not be finite.
-        const LEAST: f64 = 1e-100;
-        libm::tan(self.degrees.to_radians() / 2.0).max(LEAST)
+        const MIN: f64 = 1e-100;
+        libm::tan(self.degrees.to_radians() / 2.0).max(MIN)
     }
 }
 

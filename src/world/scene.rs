@@ -8,9 +8,9 @@ use super::{Fog, Heading, Scale, SkyGradient};
 use crate::color::Rgb;
 
 /// The largest absolute value of a coordinate along each axis, and the largest radius, in cells.
-pub const FARTHEST: f64 = 1e9;
+pub const MAX_COORDINATE: f64 = 1e9;
 /// The smallest radius, and the shortest edge of a block, in cells.
-pub const SMALLEST: f64 = 1e-9;
+pub const MIN_LENGTH: f64 = 1e-9;
 
 /// The distance that the player's eye keeps from all bodies, in cells.
 pub const EYE_CLEARANCE: f64 = 0.25;
@@ -44,7 +44,7 @@ pub struct Start {
 }
 
 impl Start {
-    /// A start at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`].
+    /// A start at `position`, in cells. `None` if a coordinate is beyond [`MAX_COORDINATE`].
     pub fn new(position: DVec3, heading: Heading, elevation: Elevation) -> Option<Self> {
         is_near(position).then_some(Self { position, heading, elevation })
     }
@@ -109,9 +109,9 @@ pub struct Block {
 
 impl Sphere {
     /// The sphere with this `center` and `radius`. `None` if a coordinate of the center is beyond
-    /// [`FARTHEST`], or if the radius is not between [`SMALLEST`] and [`FARTHEST`].
+    /// [`MAX_COORDINATE`], or if the radius is not between [`MIN_LENGTH`] and [`MAX_COORDINATE`].
     pub fn new(center: DVec3, radius: f64) -> Option<Self> {
-        let fits = is_near(center) && (SMALLEST..=FARTHEST).contains(&radius);
+        let fits = is_near(center) && (MIN_LENGTH..=MAX_COORDINATE).contains(&radius);
         fits.then_some(Self { center, radius })
     }
 
@@ -128,7 +128,7 @@ impl Sphere {
 
 impl Plane {
     /// The plane through `point` and perpendicular to `normal`, which may have any length. `None`
-    /// if a coordinate of the point is beyond [`FARTHEST`], or if the normal is zero or not finite.
+    /// if a coordinate of the point is beyond [`MAX_COORDINATE`], or if the normal is zero or not finite.
     pub fn new(point: DVec3, normal: DVec3) -> Option<Self> {
         let largest = normal.abs().max_element();
         let has_direction = normal.is_finite() && largest > 0.0;
@@ -151,10 +151,10 @@ impl Plane {
 
 impl Block {
     /// The box with two opposite corners, in any order. `None` if a coordinate is beyond
-    /// [`FARTHEST`], or if an edge is shorter than [`SMALLEST`].
+    /// [`MAX_COORDINATE`], or if an edge is shorter than [`MIN_LENGTH`].
     pub fn new(corner: DVec3, opposite: DVec3) -> Option<Self> {
         let (low, high) = (corner.min(opposite), corner.max(opposite));
-        let fits = is_near(corner) && is_near(opposite) && (high - low).min_element() >= SMALLEST;
+        let fits = is_near(corner) && is_near(opposite) && (high - low).min_element() >= MIN_LENGTH;
         fits.then_some(Self { low, high })
     }
 
@@ -325,7 +325,7 @@ impl Elevation {
 
 /// Returns whether a position is within the limits of bodies and cameras.
 pub(crate) fn is_near(point: DVec3) -> bool {
-    point.is_finite() && point.abs().max_element() <= FARTHEST
+    point.is_finite() && point.abs().max_element() <= MAX_COORDINATE
 }
 
 #[cfg(test)]
@@ -341,8 +341,8 @@ mod tests {
         assert_eq!(Plane::new(DVec3::ZERO, DVec3::ZERO), None);
         assert_eq!(Plane::new(DVec3::NAN, DVec3::X), None);
         assert_eq!(Block::new(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)), None);
-        assert!(Sphere::new(DVec3::splat(FARTHEST), FARTHEST).is_some());
-        assert!(Sphere::new(DVec3::ZERO, SMALLEST).is_some());
+        assert!(Sphere::new(DVec3::splat(MAX_COORDINATE), MAX_COORDINATE).is_some());
+        assert!(Sphere::new(DVec3::ZERO, MIN_LENGTH).is_some());
     }
 
     #[test]

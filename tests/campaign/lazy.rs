@@ -10,7 +10,7 @@ use crate::route::{Errand, Verb};
 use crate::ways::Ways;
 
 /// The time after which the player counts as stuck, in steps.
-const MOST_STEPS: u64 = 60 * 60 * 6;
+const MAX_STEPS: u64 = 60 * 60 * 6;
 
 /// Plays a level carelessly.
 pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
@@ -27,7 +27,7 @@ pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
 /// Does an errand carelessly.
 pub(crate) fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) {
     let is_over =
-        |pilot: &Pilot| pilot.steps() > MOST_STEPS || pilot.game.outcome() != Outcome::Playing;
+        |pilot: &Pilot| pilot.steps() > MAX_STEPS || pilot.game.outcome() != Outcome::Playing;
     loop {
         let ways = match verb {
             Verb::Go => Ways::new(&pilot.game, cell, |_| 0),

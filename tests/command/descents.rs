@@ -14,7 +14,7 @@ use crate::support::cellcaster;
 use crate::ways::Ways;
 
 /// The longest time on a floor, in steps.
-const MOST_STEPS: u64 = 60 * 90;
+const MAX_STEPS: u64 = 60 * 90;
 
 /// The goal of the player: the nearest treasure while some is needed, and then the exit.
 fn goal(pilot: &Pilot) -> Option<Cell> {
@@ -34,7 +34,7 @@ fn goal(pilot: &Pilot) -> Option<Cell> {
 fn run(seed: u64, floor: u32, difficulty: Difficulty) -> Pilot {
     let mut pilot =
         Pilot::new(Game::with_rules(descent(seed, floor).unwrap(), Rules { difficulty, seed }));
-    while pilot.steps() < MOST_STEPS && pilot.game.outcome() == Outcome::Playing {
+    while pilot.steps() < MAX_STEPS && pilot.game.outcome() == Outcome::Playing {
         let Some(goal) = goal(&pilot) else { break };
         let ways = Ways::new(&pilot.game, goal, |_| 0);
         pilot.go(&ways, Pace::Run, 60);

@@ -13,7 +13,7 @@ const ROWS: usize = 4;
 /// wall, and glass.
 const KINDS: [char; 7] = ['.', 'f', 'a', 'l', 's', 't', 'g'];
 /// The largest number of reflections of a ray.
-const MOST_BOUNCES: usize = 8;
+const MAX_BOUNCES: usize = 8;
 
 /// Whether a room is seen in a mirror that faces east or west, and whether it is seen in a mirror
 /// that faces north or south.
@@ -193,7 +193,7 @@ proptest! {
         degrees in prop_oneof![4 => 0.0..360.0, 1 => -5.0..5.0, 1 => 175.0..185.0],
     ) {
         let cells = with_room_for(position, cells);
-        let copies = || (0..=2 * MOST_BOUNCES).map(|copy| copy % 2 == 1);
+        let copies = || (0..=2 * MAX_BOUNCES).map(|copy| copy % 2 == 1);
         let row = |y| {
             let room = copies().flat_map(|is_flipped| {
                 let columns = (1..=COLUMNS).map(move |x| if is_flipped { COLUMNS + 1 - x } else { x });
@@ -214,7 +214,7 @@ proptest! {
         let unfolded = parse(&unfolded, &tiles, true);
 
         let position = DVec2::from(position);
-        let moved = DVec2::new((MOST_BOUNCES * COLUMNS) as f64, 0.0);
+        let moved = DVec2::new((MAX_BOUNCES * COLUMNS) as f64, 0.0);
         let reflected = picture(&with_mirrors, position, degrees, 0.5);
         let straight = picture(&unfolded, position + moved, degrees, 0.5);
         prop_assert_eq!(first_difference(&reflected, &straight), None);

@@ -21,7 +21,7 @@ use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 use super::emulator::{Emulator, Modes, Speaks};
 
 /// The longest wait. Expected events take milliseconds, and more on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A program and its terminal.
 pub(crate) struct Player {
@@ -125,7 +125,7 @@ impl Player {
     /// Waits until the program has read everything that was sent.
     #[track_caller]
     pub(crate) fn wait_until_read(&self) {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         while is_ready(&self.terminal, PollFlags::IN) {
             assert!(Instant::now() < deadline, "never read; the screen:\n{}", self.text());
             thread::sleep(Duration::from_micros(200));
@@ -154,7 +154,7 @@ impl Player {
     pub(crate) fn wait_until(&self, what: &str, condition: impl Fn(&Emulator) -> bool) {
         let unmet =
             |state: &mut State| state.emulator.modes().synchronized || !condition(&state.emulator);
-        let waited = self.shared.changed.wait_timeout_while(self.state(), PATIENCE, unmet);
+        let waited = self.shared.changed.wait_timeout_while(self.state(), TIMEOUT, unmet);
         let (state, timeout) = waited.unwrap();
         assert!(!timeout.timed_out(), "never {what}; the screen:\n{}", state.emulator.text());
     }
@@ -189,7 +189,7 @@ impl Player {
     /// Waits until the terminal has stopped reading.
     #[track_caller]
     pub(crate) fn wait_until_stalled(&self) {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         while self.state().reading {
             assert!(Instant::now() < deadline, "the terminal never stalled");
             thread::sleep(Duration::from_millis(5));
@@ -199,7 +199,7 @@ impl Player {
     /// Waits until the terminal, which does not read, has no room for another byte.
     #[track_caller]
     pub(crate) fn wait_until_full(&self) {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         while is_ready(&self.terminal, PollFlags::OUT) {
             assert!(Instant::now() < deadline, "the terminal never was full");
             thread::sleep(Duration::from_millis(5));
@@ -232,7 +232,7 @@ impl Player {
 
     /// Waits until the program has ended and the terminal has read its output. Returns the ending.
     pub(crate) fn wait_for_end(&mut self) -> Ending {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
@@ -257,7 +257,7 @@ impl Player {
     #[track_caller]
     pub(crate) fn wait_for_rest(&self) {
         const REST: Duration = Duration::from_millis(500);
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let mut seen = None;
         while seen != Some(self.bytes_written()) {
             assert!(Instant::now() < deadline, "never rested; the screen:\n{}", self.text());

@@ -18,7 +18,7 @@ const FAR: f64 = 1e30;
 /// Things nearer than this are not drawn.
 const NEAREST: f64 = 0.2;
 /// The largest number of mirrors that reflect a line.
-const MOST_BOUNCES: usize = 8;
+const MAX_BOUNCES: usize = 8;
 
 /// The solids of a world for one camera.
 pub(crate) struct Solids<'a> {
@@ -172,8 +172,8 @@ impl<'a> Solids<'a> {
         };
         let mut met = Met { faces: Vec::new(), color: sky, is_tied: false };
         let mut layers = Vec::new();
-        for bounces in 0..=MOST_BOUNCES {
-            let image = self.meet_in(&sight, bounces < MOST_BOUNCES, &mut met, &mut layers);
+        for bounces in 0..=MAX_BOUNCES {
+            let image = self.meet_in(&sight, bounces < MAX_BOUNCES, &mut met, &mut layers);
             let Some(image) = image else { break };
             sight = image;
         }

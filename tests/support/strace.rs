@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 
 /// The longest wait for the end of the log.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The `number`th call with this name in each thread, counted from 1, and its error.
 #[derive(Clone, Debug)]
@@ -73,7 +73,7 @@ impl Traced {
 
     /// The log, once `process` has ended.
     fn text(&self, process: u32) -> String {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         loop {
             let text = fs::read_to_string(&self.log).unwrap_or_default();
             let ends = |line: &str| {

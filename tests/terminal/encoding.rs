@@ -489,8 +489,8 @@ fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
     let (least, most) = (sizes.iter().min().unwrap(), sizes.iter().max().unwrap());
     assert!(*most < 2 * least, "{sizes:?}");
     let cells = u64::from(size.width) * u64::from(size.height);
-    assert!(*most < cells / 10 * LONGEST_CELL, "{sizes:?}");
+    assert!(*most < cells / 10 * MAX_CELL_BYTES, "{sizes:?}");
 }
 
 /// The bytes of a cursor motion, two colours and a glyph.
-const LONGEST_CELL: u64 = 10 + 38 + 3;
+const MAX_CELL_BYTES: u64 = 10 + 38 + 3;

@@ -7,7 +7,7 @@
 //!
 //! - **An account is a public key.** Its [`AccountKey`] is the SHA-256 of the key's data, without the comment.
 //! - **A name is a [`Name`]:** readable, printable, and distinct to the eye. A player can change it after
-//!   [`RENAME_WAIT`]. The previous name stays reserved for the account for [`NAME_HELD`].
+//!   [`RENAME_INTERVAL`]. The previous name stays reserved for the account for [`NAME_HELD`].
 //! - **A result is a [`VerifiedRun`]:** a run that [`verify`] has replayed. For each account, level and
 //!   difficulty, the store keeps the fastest run with its script, and the highest rank. Recording a run twice
 //!   changes nothing. So if it is unknown whether a run was recorded, it is recorded again: see
@@ -48,13 +48,13 @@ pub use name::{Name, NameFault, printable};
 pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
 pub use results::{
-    LevelBoard, LevelScore, MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
+    LevelBoard, LevelScore, MAX_SCRIPT_BYTES, MAX_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
 };
 pub use store::HostStore;
 pub use waiting::{Late, WaitingResult, WaitingResults};
 
 /// How long a player must keep a name before changing it, in seconds.
-pub const RENAME_WAIT: u64 = 7 * 24 * 60 * 60;
+pub const RENAME_INTERVAL: u64 = 7 * 24 * 60 * 60;
 /// How long an account's previous name stays reserved for it, in seconds.
 pub const NAME_HELD: u64 = 30 * 24 * 60 * 60;
 

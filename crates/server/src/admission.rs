@@ -364,7 +364,7 @@ struct Failures {
 }
 
 /// The most networks that are remembered: about two megabytes.
-const MOST_NETWORKS: usize = 1 << 14;
+const MAX_NETWORKS: usize = 1 << 14;
 /// Failures up to this share of the bucket have no effect.
 const FREE_SHARE: f64 = 0.5;
 /// The share of connections that is refused from a network with an empty bucket. A person who tries again a few
@@ -413,7 +413,7 @@ impl Penalties {
         if count <= 0.0 {
             return;
         }
-        if self.networks.len() >= MOST_NETWORKS
+        if self.networks.len() >= MAX_NETWORKS
             && let Some(&(_, oldest)) = self.order.first()
         {
             self.remove(oldest);

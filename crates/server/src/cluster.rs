@@ -44,7 +44,7 @@ use tokio::time::Instant;
 use self::bus::Bus;
 pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::host::{HostContext, shown_name};
-use self::leases::{GATHERED, Leases, MOST_CALLS};
+use self::leases::{GATHERED, Leases, MAX_CALLS};
 use self::nats::NatsBus;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
@@ -80,8 +80,8 @@ impl Cluster {
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
         // Start the threads before anything can fail, because dropping a database blocks, too.
-        let leases = StoreWorker::start("leases", MOST_CALLS, leases).map_err(no_thread);
-        let presence = StoreWorker::start("visits", MOST_CALLS, presence).map_err(no_thread);
+        let leases = StoreWorker::start("leases", MAX_CALLS, leases).map_err(no_thread);
+        let presence = StoreWorker::start("visits", MAX_CALLS, presence).map_err(no_thread);
         let (host, gathered) = (notice.name.clone(), GATHERED);
         let leases = Leases { store: leases?, host, gathered, renewals: Arc::default() };
         let visits = Visits::new(presence?, notice.clone());

@@ -266,7 +266,7 @@ impl LiveConfig {
 }
 
 /// The most standing rooms.
-const MOST_ROOMS: usize = 32;
+const MAX_ROOMS: usize = 32;
 
 impl Config {
     /// Checks that the levels of the standing rooms in `text` exist. `text` is a configuration that parses
@@ -315,8 +315,8 @@ fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
         entry.faults.push(entry.wrong_type("a list of tables", EXAMPLE));
         return None;
     };
-    if list.len() > MOST_ROOMS {
-        let message = format!("there are {} standing rooms, of at most {MOST_ROOMS}", list.len());
+    if list.len() > MAX_ROOMS {
+        let message = format!("there are {} standing rooms, of at most {MAX_ROOMS}", list.len());
         entry.faults.push(Fault::new(entry.key_place.clone(), message));
         return None;
     }
@@ -365,9 +365,9 @@ fn in_mode(mode: Mode) -> RoomWish {
 }
 
 /// The longest message of the day, in characters.
-const LONGEST_MESSAGE: usize = 200;
+const MAX_MESSAGE_LENGTH: usize = 200;
 /// The longest name of a host, in characters.
-const LONGEST_NAME: usize = 40;
+const MAX_NAME_LENGTH: usize = 40;
 
 const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
 const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
@@ -641,7 +641,7 @@ fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
 
 fn message(entry: &Entry<'_, '_>) -> Option<String> {
     let text = entry.string("message = \"Welcome\"")?;
-    line(entry, text, "the message of the day", LONGEST_MESSAGE)
+    line(entry, text, "the message of the day", MAX_MESSAGE_LENGTH)
 }
 
 fn name(entry: &Entry<'_, '_>) -> Option<String> {
@@ -650,7 +650,7 @@ fn name(entry: &Entry<'_, '_>) -> Option<String> {
         let help = "leave the setting out for \"Cellcaster\"";
         return entry.reject("the name of the host is empty", "", help);
     }
-    line(entry, text, "the name of the host", LONGEST_NAME)
+    line(entry, text, "the name of the host", MAX_NAME_LENGTH)
 }
 
 /// Returns `text` if it is one line of at most `longest` characters. `what` names it in the fault.

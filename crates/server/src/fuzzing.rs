@@ -40,7 +40,7 @@ const STEP: u64 = 1_000_000 / 60;
 /// The number of checkpoints that a fuzz target can change.
 pub const CHECKPOINTS: usize = 24;
 /// The most steps that a room takes before its checkpoint.
-const MOST_STEPS: usize = 900;
+const MAX_STEPS: usize = 900;
 
 /// A room and its visitors.
 pub struct Hall {
@@ -268,7 +268,7 @@ impl Hall {
                 Some(SessionEvent::Ghosts { level, difficulty, ghosts: [].into() })
             }
             Request::Save(settings) => {
-                assert!(settings.configuration.len() <= AccountSettings::MOST_BYTES);
+                assert!(settings.configuration.len() <= AccountSettings::MAX_BYTES);
                 let read = Configuration::parse(&settings.configuration, "settings");
                 assert!(read.is_ok(), "{}", settings.configuration);
                 None
@@ -361,7 +361,7 @@ fn made(number: usize) -> Vec<u8> {
     let header = Header::new(level, mode, Difficulty::ALL[number % 3], seed);
     let mut room = Room::new(&CATALOG, header).expect("the level is built in");
     let mut random = SplitMix64::new(seed);
-    let steps = random.below(MOST_STEPS);
+    let steps = random.below(MAX_STEPS);
     play(&mut room, &mut random, steps);
     room.checkpoint()
 }

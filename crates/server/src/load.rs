@@ -117,7 +117,7 @@ pub(crate) struct Governor {
 }
 
 /// The lowest rate, in frames a second.
-const LEAST: f64 = 5.0;
+const MIN: f64 = 5.0;
 /// The busy share at which the rate drops.
 const BUSY: f64 = 0.9;
 /// The busy share below which the rate may rise.
@@ -137,11 +137,11 @@ impl Governor {
     /// The least time between two frames of a session. `most` is the configured limit in frames a
     /// second.
     pub(crate) fn decide(&mut self, sample: Sample, most: u32) -> Duration {
-        let most = f64::from(most).max(LEAST);
+        let most = f64::from(most).max(MIN);
         self.rate = self.rate.min(most);
         if sample.busy >= BUSY || sample.lateness >= LATE {
             self.calm = 0;
-            self.rate = (self.rate * 0.8).max(LEAST);
+            self.rate = (self.rate * 0.8).max(MIN);
         } else if sample.busy < SPARE {
             self.calm += 1;
             if self.calm >= CALM {
@@ -206,11 +206,11 @@ mod tests {
             most in 1_u32..240,
         ) {
             let mut governor = Governor::new();
-            let mut last = f64::from(most).max(LEAST);
+            let mut last = f64::from(most).max(MIN);
             for (busy, lateness) in samples {
                 let sample = Sample { busy, lateness: Duration::from_millis(lateness) };
                 let rate = rate(governor.decide(sample, most));
-                prop_assert!(rate > LEAST - 0.01 && rate < f64::from(most).max(LEAST) + 0.01);
+                prop_assert!(rate > MIN - 0.01 && rate < f64::from(most).max(MIN) + 0.01);
                 prop_assert!(rate > last * 0.79 && rate < last + 1.01);
                 last = rate;
             }

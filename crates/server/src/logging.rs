@@ -70,7 +70,7 @@ pub struct LogFilter {
 
 /// Keeps the log readable during a flood of connections: a few lines a second, and sums of all other events.
 ///
-/// Within a second, the first [`MOST`] pairs of an event and a network are each logged at once, in a line of their
+/// Within a second, the first [`MAX`] pairs of an event and a network are each logged at once, in a line of their
 /// own. Later events are counted. When the second is over, they are logged as a line with the sum for each of these
 /// pairs, and a line for each event with the sum of all other networks.
 #[derive(Debug, Default)]
@@ -81,7 +81,7 @@ pub(crate) struct Throttle {
 }
 
 /// The number of pairs that have a line of their own in a second.
-const MOST: usize = 4;
+const MAX: usize = 4;
 
 impl Logging {
     /// Begins the log of this process on standard error. A second call has no effect.
@@ -180,7 +180,7 @@ impl Throttle {
         let with_line = self.unlogged.keys().filter(|(_, network)| network.is_some()).count();
         if let Some(count) = self.unlogged.get_mut(&(event, network)) {
             *count += 1;
-        } else if with_line < MOST {
+        } else if with_line < MAX {
             self.unlogged.insert((event, network), 0);
             connections(network, event, 1);
         } else {

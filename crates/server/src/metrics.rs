@@ -316,7 +316,7 @@ fn resident_bytes() -> Option<u64> {
 
 /// The most bytes of a request that are read. The responder needs no server library, because a request of Prometheus is
 /// one line.
-const MOST_BYTES: u64 = 4096;
+const MAX_BYTES: u64 = 4096;
 const TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Answers `GET /metrics` with the figures until the future is dropped.
@@ -334,9 +334,9 @@ async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> 
     Ok(())
 }
 
-/// The head of a request, or its first [`MOST_BYTES`].
+/// The head of a request, or its first [`MAX_BYTES`].
 async fn request(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
-    let mut stream = BufReader::new(stream.take(MOST_BYTES));
+    let mut stream = BufReader::new(stream.take(MAX_BYTES));
     let mut request = Vec::new();
     while !ends(&request) && stream.read_until(b'\n', &mut request).await? > 0 {}
     Ok(request)

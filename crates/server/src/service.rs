@@ -9,9 +9,9 @@ use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
 /// The number of connections that a service answers at a time. Further ones wait in the system's queue.
-const MOST_CONNECTIONS: usize = 8;
+const MAX_CONNECTIONS: usize = 8;
 /// The pause after a failed `accept`.
-const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+const ACCEPT_RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Answers each connection that `accept` returns. Each answer may take at most `time`. Runs until the future
 /// is dropped.
@@ -25,13 +25,13 @@ pub(crate) async fn serve_each<S, P, A>(
     // Dropping the set aborts its tasks.
     let mut tasks = JoinSet::new();
     loop {
-        while tasks.len() >= MOST_CONNECTIONS {
+        while tasks.len() >= MAX_CONNECTIONS {
             tasks.join_next().await;
         }
         while tasks.try_join_next().is_some() {}
         match poll_fn(&mut accept).await {
             Ok((connection, _)) => _ = tasks.spawn(timeout(time, answer(connection))),
-            Err(_) => sleep(ACCEPT_PAUSE).await,
+            Err(_) => sleep(ACCEPT_RETRY_INTERVAL).await,
         }
     }
 }

@@ -39,12 +39,12 @@ const FRAME_TIME: Duration = Duration::from_millis(33);
 /// How long the frames of the reading client are counted.
 const COUNTED: Duration = Duration::from_secs(3);
 /// The memory limit for all clients together, in bytes.
-const MOST_MEMORY: usize = 64 << 20;
+const MAX_MEMORY: usize = 64 << 20;
 /// The number of clients that connect at the same time.
 const LANES: usize = 8;
 /// The environment variable that turns this program into the clients of the server at the given address.
 const ADDRESS: &str = "CELLCASTER_CROWD";
-const PATIENCE: Duration = Duration::from_mins(2);
+const TIMEOUT: Duration = Duration::from_mins(2);
 
 impl Host for Frames {
     async fn serve(&self, _: Visitor, mut link: Link) -> Departure {
@@ -97,7 +97,7 @@ fn clients_that_never_read_need_little_memory() {
     fs::remove_dir_all(&folder).unwrap();
     let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
     config.admission.per_address = 2 * CLIENTS as u32;
-    (config.silence, config.stall) = (PATIENCE, PATIENCE);
+    (config.silence, config.stall) = (TIMEOUT, TIMEOUT);
     let runtime = Runtime::new().unwrap();
     let server = runtime.block_on(Server::bind(config, key)).unwrap();
     let (address, metrics) = (server.address().unwrap(), server.metrics());
@@ -118,7 +118,7 @@ fn clients_that_never_read_need_little_memory() {
     assert!(2 * among > alone, "{among} frames of {alone}");
     let Some(added) = added else { return println!("Memory is measured on Linux only.") };
     println!("{CLIENTS} clients that never read add {} KB each", added / CLIENTS / 1024);
-    assert!(added < MOST_MEMORY, "{added} bytes");
+    assert!(added < MAX_MEMORY, "{added} bytes");
 }
 
 /// The resident memory of this process in bytes; `None` except on Linux.
@@ -130,7 +130,7 @@ fn memory() -> Option<usize> {
 
 /// Waits until all clients are connected and the amount of held data no longer changes.
 fn wait_for_crowd(metrics: &Metrics, crowd: &mut Child) {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     let mut still_since = Instant::now();
     let mut sent = 0;
     while still_since.elapsed() < Duration::from_secs(2) {

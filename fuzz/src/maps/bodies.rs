@@ -8,7 +8,7 @@ use super::intents::{stretch, usual};
 use super::views::{Format, check_equal};
 use crate::bytes::Bytes;
 
-const MOST_STEPS: usize = 400;
+const MAX_STEPS: usize = 400;
 
 /// The smallest distance from the player to a body, less a margin for rounding.
 fn least_clearance(scale: f64) -> f64 {
@@ -26,7 +26,7 @@ pub(crate) fn check(scene: Scene, choices: &mut Bytes) {
         (0..stretch.steps).for_each(|_| fly(&mut flight, stretch.intents));
     }
     let mut steps = 0;
-    while !choices.is_empty() && steps < MOST_STEPS {
+    while !choices.is_empty() && steps < MAX_STEPS {
         let stretch = stretch(choices);
         for _ in 0..stretch.steps {
             fly(&mut flight, stretch.intents);

@@ -9,11 +9,11 @@ use crate::bytes::Bytes;
 use crate::open::is_in_the_open;
 
 /// The largest number of steps of a game.
-const MOST_STEPS: u64 = 600;
+const MAX_STEPS: u64 = 600;
 /// The number of steps that a wait is compared with.
 const STEPS_AT_REST: u64 = 40;
 /// The largest number of pictures.
-const MOST_PICTURES: usize = 4;
+const MAX_PICTURES: usize = 4;
 
 /// Plays in `world`, and draws it before, meanwhile and afterwards.
 pub(crate) fn check(world: World, choices: &mut Bytes) {
@@ -30,13 +30,13 @@ pub(crate) fn check(world: World, choices: &mut Bytes) {
         play(&mut game, &stretch);
     }
     let mut pictures = 0;
-    while !choices.is_empty() && game.steps() < MOST_STEPS && !game.is_finished() {
+    while !choices.is_empty() && game.steps() < MAX_STEPS && !game.is_finished() {
         let before = game.steps();
         play(&mut game, &stretch(choices));
         if game.steps() == before && game.health().is_gone() {
             break;
         }
-        if pictures < MOST_PICTURES && choices.below(4) == 0 {
+        if pictures < MAX_PICTURES && choices.below(4) == 0 {
             pictures += 1;
             let format = Format::new(choices);
             let camera = views::camera(game.world(), &format, choices);
@@ -51,7 +51,7 @@ fn play(game: &mut Game, Stretch { steps, intents }: &Stretch) {
     check_wait(game, *intents);
     for _ in 0..*steps {
         game.step(*intents);
-        assert!(game.work() <= Game::MOST_WORK, "a step looks at {} things", game.work());
+        assert!(game.work() <= Game::MAX_WORK, "a step looks at {} things", game.work());
         check_place(game);
     }
 }

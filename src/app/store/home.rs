@@ -55,11 +55,11 @@ const PROGRESS: &str = "progress.toml";
 const LOCK: &str = "progress.lock";
 const RUNS: &str = "runs";
 /// The size limit of the progress file, in bytes.
-const LARGEST_PROGRESS: u64 = 4 << 20;
+const MAX_PROGRESS_BYTES: u64 = 4 << 20;
 /// The size limit of a script, in bytes: more than a day of play.
-pub(crate) const LARGEST_SCRIPT: u64 = 4 << 20;
+pub(crate) const MAX_SCRIPT_FILE_BYTES: u64 = 4 << 20;
 /// The number of damaged files that are kept. The newest stay.
-const MOST_DAMAGED: usize = 3;
+const MAX_DAMAGED: usize = 3;
 /// All attempts together take two seconds.
 const ATTEMPTS: u32 = 1000;
 
@@ -89,7 +89,8 @@ impl Home {
 
     /// The text of the script in the file `name`; `None` if it is unreadable.
     pub(crate) fn script(&self, name: &str) -> Option<String> {
-        let content = self.disk.read(&self.folder.join(RUNS).join(name), LARGEST_SCRIPT).ok()?;
+        let content =
+            self.disk.read(&self.folder.join(RUNS).join(name), MAX_SCRIPT_FILE_BYTES).ok()?;
         String::from_utf8(content).ok()
     }
 
@@ -118,7 +119,7 @@ impl Home {
 
     fn find(&self) -> Result<Found, String> {
         let file = self.folder.join(PROGRESS);
-        let content = match self.disk.read(&file, LARGEST_PROGRESS) {
+        let content = match self.disk.read(&file, MAX_PROGRESS_BYTES) {
             Ok(content) => content,
             Err(error) => {
                 let damage = match error.kind() {
@@ -190,7 +191,7 @@ impl Home {
             }
         };
         numbers.retain(|&known| known != number);
-        for &old in numbers.iter().rev().skip(MOST_DAMAGED - 1) {
+        for &old in numbers.iter().rev().skip(MAX_DAMAGED - 1) {
             // A leftover file does no harm.
             _ = self.disk.remove(&self.folder.join(aside(old)));
         }

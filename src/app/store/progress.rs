@@ -66,8 +66,8 @@ pub struct SaveId(u64);
 /// The reason why a game is not saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSaved {
-    /// There are already [`MOST_SAVES`] other saved games.
-    #[error("{MOST_SAVES} other games are saved, and no more are kept")]
+    /// There are already [`MAX_SAVES`] other saved games.
+    #[error("{MAX_SAVES} other games are saved, and no more are kept")]
     Full,
     /// The script is longer than the longest script that the store reads.
     #[error("it is longer than a game that can be kept")]
@@ -75,7 +75,7 @@ pub enum NotSaved {
 }
 
 /// The maximum number of saved games.
-pub const MOST_SAVES: usize = 100;
+pub const MAX_SAVES: usize = 100;
 
 /// The kind of a descent. A descent begins on its first floor. The seed of a daily run or a
 /// practice run is its date.
@@ -350,7 +350,7 @@ impl DescentRun {
 }
 
 /// The length limit of an escaped key, in bytes. The rest of a longer key is replaced by a hash.
-const LONGEST: usize = 80;
+const MAX_LENGTH: usize = 80;
 /// The reserved names of devices. The last two are followed by a digit.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
 
@@ -411,8 +411,8 @@ fn escaped(key: &str) -> String {
             _ = write!(name, "%{byte:02x}");
         }
     }
-    if name.len() > LONGEST {
-        name.truncate(LONGEST);
+    if name.len() > MAX_LENGTH {
+        name.truncate(MAX_LENGTH);
         _ = write!(name, "%%{:016x}", hash(key));
     }
     name

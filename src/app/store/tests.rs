@@ -274,12 +274,12 @@ fn a_saved_game_takes_the_place_of_its_own_one_only() {
 #[test]
 fn where_there_is_no_room_a_game_is_not_saved_and_none_is_lost() {
     let mut store = Store::in_memory();
-    for level in 0..MOST_SAVES {
+    for level in 0..MAX_SAVES {
         assert!(store.has_room_for(saved_in(level).save.id()));
         store.save(&saved_in(level)).unwrap();
     }
     let before = all_saved(&store);
-    let one_more = saved_in(MOST_SAVES);
+    let one_more = saved_in(MAX_SAVES);
     assert!(!store.has_room_for(one_more.save.id()));
     assert_eq!(store.save(&one_more), Err(NotSaved::Full));
     assert_eq!(all_saved(&store), before);

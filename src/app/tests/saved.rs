@@ -4,7 +4,7 @@ use super::missions::text;
 use super::titles::titled;
 use super::*;
 use crate::app::recording::RunLog;
-use crate::app::store::{Descent, MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
+use crate::app::store::{Descent, MAX_SAVES, Run, Save, SaveId, SavedGame, map_key};
 use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
 use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
@@ -264,7 +264,7 @@ fn a_saved_game_is_removed_from_the_list_after_a_question() {
 fn full() -> Store {
     let mut store = Store::in_memory();
     let rules = crate::game::Rules::default();
-    for number in 0..MOST_SAVES {
+    for number in 0..MAX_SAVES {
         let level = format!("level {number}-0123456789abcdef");
         let save = Save { level, file: None, rules, descent: None, steps: None, checksum: None };
         store.save(&SavedGame { save, script: "1 s forward\n".to_owned() }).unwrap();
@@ -292,7 +292,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
 
     let mut rig = started("cellar", quit(rig));
     rig.choose("Remove the oldest");
-    assert_eq!((rig.app.screen(), ids(&rig).len()), (Screen::Playing, MOST_SAVES - 1));
+    assert_eq!((rig.app.screen(), ids(&rig).len()), (Screen::Playing, MAX_SAVES - 1));
     walk(&mut rig);
     rig.tap(Key::Char('q'), 30);
     assert!(text(&mut rig.app, 80, 24).contains("the game is saved"));

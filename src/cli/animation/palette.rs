@@ -15,7 +15,7 @@ pub(crate) struct Palette {
 }
 
 /// The maximum number of entries.
-const MOST: usize = 256;
+const MAX: usize = 256;
 
 impl Palette {
     /// A palette for `colors`. It is exact for up to 256 different ones.
@@ -24,7 +24,7 @@ impl Palette {
         colors.for_each(|color| *counts.entry(color.channels()).or_default() += 1);
         let mut counted: Vec<Counted> = counts.into_iter().collect();
         let mut boxes = vec![ColorBox::of(&mut counted)];
-        while boxes.len() < MOST
+        while boxes.len() < MAX
             && let Some(worst) =
                 boxes.iter_mut().max_by_key(|it| it.error).filter(|it| it.error > 0)
         {

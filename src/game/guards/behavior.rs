@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::context::{Act, Context, Target};
-use super::guard::{GUESSES, Guard, MOST_PACES, PACE, Phase, Quarry, State, WONDERS};
+use super::guard::{GUESSES, Guard, MAX_PACES, PACE, Phase, Quarry, State, WONDERS};
 use super::perception::NOSE;
 use super::walking::Progress;
 use crate::game::sound::{Sound, SoundKind};
@@ -99,7 +99,7 @@ impl Guard {
         if paces.floor() > self.paces.floor() && self.stagger == 0 {
             context.sound(SoundKind::Walking, self.mover.cell(), self.abilities().tread);
         }
-        self.paces = paces % MOST_PACES;
+        self.paces = paces % MAX_PACES;
     }
 
     /// Reduces the speed of a guard who does not face their direction of movement, so that they

@@ -38,9 +38,9 @@ pub(crate) const STUCK: u16 = 40;
 /// The speed of a pushed guard, in cells per second.
 const PUSH: f64 = 4.0;
 /// An upper bound on the number of steps for which a guard is baffled.
-const MOST_BAFFLED: u16 = 1000;
+const MAX_BAFFLED: u16 = 1000;
 /// The number of paces after which the count restarts at 0.
-pub(crate) const MOST_PACES: f64 = 1024.0;
+pub(crate) const MAX_PACES: f64 = 1024.0;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Guard {
@@ -418,9 +418,9 @@ impl Guard {
         check(wakes_nobody_else, "whom a guard wakes")?;
         let counts = self.awareness <= ALARMED
             && self.stop < stops.max(1)
-            && self.baffled <= MOST_BAFFLED
+            && self.baffled <= MAX_BAFFLED
             && self.route.still <= STUCK
-            && (0.0..MOST_PACES).contains(&self.paces)
+            && (0.0..MAX_PACES).contains(&self.paces)
             && self.state != (State::Down { left: 0 });
         check(counts, "a count of a guard")
     }

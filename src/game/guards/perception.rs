@@ -17,7 +17,7 @@ use crate::world::{Cell, Difficulty, GuardKind};
 /// A guard looks around in every fourth step.
 const LOOK_EACH: u64 = 4;
 /// The maximum that one look adds to awareness.
-const MOST_GAIN: u32 = 80;
+const MAX_GAIN: u32 = 80;
 /// The awareness that a guard loses with a look that finds nobody.
 const LOSS: u16 = 8;
 /// At this distance in front of a guard, a player is noticed at once, in cells.
@@ -62,7 +62,7 @@ impl Guard {
         }
         if most > 0 {
             let most = if self.is_wary && most < ALARMED { most + most / 2 } else { most };
-            let most = if most < ALARMED { most.min(MOST_GAIN as u16) } else { most };
+            let most = if most < ALARMED { most.min(MAX_GAIN as u16) } else { most };
             self.awareness = (self.awareness + most).min(ALARMED);
             self.react(context);
         } else {
@@ -104,8 +104,8 @@ impl Guard {
         let near = 256 - 208 * sixteenths / lit;
         let center = if along >= 0.866 * distance { 256 } else { 144 };
         let bright = 96 + light * 160 / 255;
-        let gain = MOST_GAIN * near / 256 * center / 256 * bright / 256 * parts / 3;
-        gain.clamp(3, MOST_GAIN) as u16
+        let gain = MAX_GAIN * near / 256 * center / 256 * bright / 256 * parts / 3;
+        gain.clamp(3, MAX_GAIN) as u16
     }
 
     /// The light on a player as this guard sees it, at most 255.
@@ -177,7 +177,7 @@ impl Guard {
 }
 
 /// The maximum awareness that a guard who sees can reach by sounds alone.
-const MOST_BY_EAR: u16 = 700;
+const MAX_BY_EAR: u16 = 700;
 
 impl Guard {
     /// The distance at which this guard hears `sound`, in half cells; 0 if they ignore it.
@@ -225,7 +225,7 @@ impl Guard {
             self.turn_to_sound(sound, place);
             return;
         }
-        self.awareness = (self.awareness + gain).min(MOST_BY_EAR.max(self.awareness));
+        self.awareness = (self.awareness + gain).min(MAX_BY_EAR.max(self.awareness));
         if self.awareness >= WONDERS || self.state == State::Asleep {
             self.wonder_about(context, place);
         }

@@ -10,7 +10,7 @@ use crate::world::{Cell, TileEffect, World};
 /// The number of steps for which a cell smells: 20 seconds.
 const LASTS: u64 = 1200;
 /// The maximum number of cells that are remembered.
-const MOST: usize = 128;
+const MAX: usize = 128;
 
 /// The cells that a player has visited, oldest first. Water keeps no smell.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -48,7 +48,7 @@ impl Trail {
     /// Removes the cells that no longer smell.
     fn fade(&mut self, now: u64) {
         let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
-        while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MOST {
+        while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MAX {
             self.marks.pop_front();
             self.first += 1;
         }
@@ -74,7 +74,7 @@ impl Trail {
     /// Returns an error if there are too many marks, or marks later than the step `now`.
     pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
-        check(are_past && self.marks.len() <= MOST, "a trail")
+        check(are_past && self.marks.len() <= MAX, "a trail")
     }
 
     /// Forgets all cells, for example when the whole map has changed.

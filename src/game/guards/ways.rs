@@ -8,7 +8,7 @@
 //! For each goal, all guards who go there share the distances of the cells around it. A search
 //! begins at the goal and ends when it has found the guards who ask for a path. Guards who follow
 //! the same player have the same goal, so twenty of them cost hardly more than one. All searches
-//! together find at most [`MOST_CELLS`] cells in a step and continue in the next step. A guard
+//! together find at most [`MAX_CELLS`] cells in a step and continue in the next step. A guard
 //! without a path yet continues to the previous point. Rejected: a search for each guard (A*). It
 //! finds fewer cells for one guard, but all of them again for the next.
 //!
@@ -273,9 +273,9 @@ fn cost_between(one: Cell, other: Cell) -> u16 {
 }
 
 /// The number of cells that all searches together find in one step.
-pub(crate) const MOST_CELLS: usize = 200;
+pub(crate) const MAX_CELLS: usize = 200;
 /// The maximum number of goals at once.
-const MOST_FIELDS: usize = 12;
+const MAX_FIELDS: usize = 12;
 /// The number of steps after which a search restarts: for a goal that could be reached, and for a
 /// goal that could not.
 const OLD: u64 = 1200;
@@ -284,7 +284,7 @@ const OLD_IN_VAIN: u64 = 150;
 /// The distances to several goals.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Ways {
-    #[serde(deserialize_with = "at_most::<MOST_FIELDS, _, _>")]
+    #[serde(deserialize_with = "at_most::<MAX_FIELDS, _, _>")]
     fields: Vec<Field>,
     /// The number of the current step.
     now: u64,
@@ -326,14 +326,14 @@ impl Ways {
     /// Begins a step of the game.
     pub(crate) fn begin_step(&mut self) {
         self.now += 1;
-        self.cells_left = MOST_CELLS;
+        self.cells_left = MAX_CELLS;
     }
 
     /// Advances the clock by `steps` steps in which nobody asks for a path.
     pub(crate) fn wait(&mut self, steps: u64) {
         self.now += steps;
         if steps > 0 {
-            self.cells_left = MOST_CELLS;
+            self.cells_left = MAX_CELLS;
         }
     }
 
@@ -401,7 +401,7 @@ impl Ways {
             return Some(index);
         }
         let (begun, used) = (self.now, self.now);
-        if self.fields.len() < MOST_FIELDS {
+        if self.fields.len() < MAX_FIELDS {
             self.fields.push(Field { goal, gait, distances: Distances::default(), begun, used });
         } else {
             let oldest = self.fields.iter_mut().min_by_key(|field| field.used)?;

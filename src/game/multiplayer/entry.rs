@@ -7,7 +7,7 @@ use crate::game::sight::Point;
 use crate::world::{Cell, Heading, ThingKind, World};
 
 /// The number of nearest cells that are considered.
-const MOST_CELLS: usize = 64;
+const MAX_CELLS: usize = 64;
 
 /// A requirement on the cell in which a player begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Game {
 
     /// The nearest position that meets `demand`.
     fn nearest_place(&self, start: Cell, demand: Demand) -> Option<Motion> {
-        let mut cells = [start; MOST_CELLS];
+        let mut cells = [start; MAX_CELLS];
         let (mut next, mut found) = (0, 1);
         let ahead = self.world.start().heading;
         while next < found {
@@ -48,7 +48,7 @@ impl Game {
             }
             for neighbor in neighbors(cell, ahead) {
                 let is_new = !cells[..found].contains(&neighbor);
-                if is_new && found < MOST_CELLS && self.leads(cell, neighbor, demand) {
+                if is_new && found < MAX_CELLS && self.leads(cell, neighbor, demand) {
                     cells[found] = neighbor;
                     found += 1;
                 }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use crate::game::Game;
 use crate::game::health::Flash;
 use crate::game::player::{Motion, RADIUS};
-use crate::game::rules::{MOST_LAG, PlayerId, Strikes};
+use crate::game::rules::{MAX_LAG, PlayerId, Strikes};
 use crate::game::sight::{Point, is_in_sight};
 use crate::world::{Heading, World};
 
 /// The number of remembered positions: the present position, and one for each of the last
-/// [`MOST_LAG`] steps.
-const STEPS: usize = MOST_LAG as usize + 1;
+/// [`MAX_LAG`] steps.
+const STEPS: usize = MAX_LAG as usize + 1;
 /// The gap between two bodies at which players still touch, in cells.
 const TOUCH: f64 = 0.25;
 
@@ -69,7 +69,7 @@ impl Stand {
 
 impl Game {
     /// Whether two players touched each other in the step `seen`, which is clamped to at most
-    /// [`MOST_LAG`] steps ago. The dead, and players who have reached the exit, touch nobody.
+    /// [`MAX_LAG`] steps ago. The dead, and players who have reached the exit, touch nobody.
     pub fn touches(&self, one: PlayerId, other: PlayerId, seen: u64) -> bool {
         let stands = [one, other].map(|player| self.stood(player.index(), seen));
         let [Some(one_stood), Some(other_stood)] = stands else { return false };
@@ -84,7 +84,7 @@ impl Game {
 
     /// The step that a player saw, clamped to the steps that count.
     pub(crate) fn clamp_seen(&self, seen: u64) -> u64 {
-        seen.clamp(self.steps.saturating_sub(MOST_LAG), self.steps)
+        seen.clamp(self.steps.saturating_sub(MAX_LAG), self.steps)
     }
 }
 

@@ -170,5 +170,5 @@ fn other_games_are_refused_with_a_sentence() {
     assert_eq!(refused(game.clone(), &older), Unrestorable::OtherVersion);
     let longer = [&bytes[..], &[0]].concat();
     assert_eq!(refused(game.clone(), &longer), Unrestorable::Longer);
-    assert_eq!(refused(game, &vec![0; MOST_BYTES + 1]), Unrestorable::TooLong);
+    assert_eq!(refused(game, &vec![0; MAX_BYTES + 1]), Unrestorable::TooLong);
 }

@@ -19,7 +19,7 @@ use crate::world::{Cell, World};
 /// The radius of every missile, in cells.
 const SIZE: Radius = Radius::new(0.04).expect("it is between nothing and a half");
 /// The number of steps after which a missile in flight is removed.
-const MOST_STEPS: u16 = 240;
+const MAX_STEPS: u16 = 240;
 /// The distance beside the body at which a bolt still hits a player, in cells.
 const MARGIN: f64 = 0.05;
 
@@ -165,7 +165,7 @@ impl Missile {
         self.rising = if height > ceiling { 0.0 } else { rising };
         self.height = height.clamp(room.floor, ceiling);
         self.steps += 1;
-        is_stopped || height <= room.floor || self.steps >= MOST_STEPS
+        is_stopped || height <= room.floor || self.steps >= MAX_STEPS
     }
 
     fn cell(&self) -> Cell {
@@ -222,7 +222,7 @@ impl Missiles {
 
     /// Returns an error if a missile has flown for too long.
     pub(crate) fn check(&self) -> Result<(), Unrestorable> {
-        check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
+        check(self.flying.iter().all(|missile| missile.steps < MAX_STEPS), "a missile")
     }
 
     /// The same missiles in a window that has moved.

@@ -21,8 +21,8 @@ const ITEM_PLACES: usize = 12;
 /// The minimum distance between a guard's post and the start, in cells.
 pub(crate) const GUARD_DISTANCE: u32 = 8;
 /// The number of guards at the lowest difficulty: on the first floor, and on the deepest floors.
-const FEWEST_GUARDS: u32 = 2;
-const MOST_GUARDS: u32 = 12;
+const MIN_GUARDS: u32 = 2;
+const MAX_GUARDS: u32 = 12;
 /// The minimum number of reachable cells for each guard.
 const CELLS_EACH: usize = 24;
 /// The distance between two guards along the grid, if there is room.
@@ -207,7 +207,7 @@ pub(crate) fn guards(
 /// The lowest difficulty at which each guard appears.
 fn from_difficulties(floor: u32, ground: &Ground) -> impl Iterator<Item = Difficulty> {
     let room = ground.reachable().len() / CELLS_EACH;
-    let wanted = (FEWEST_GUARDS + floor / 2).min(MOST_GUARDS) as usize;
+    let wanted = (MIN_GUARDS + floor / 2).min(MAX_GUARDS) as usize;
     let easy = wanted.min(room.max(1));
     let more = easy.div_ceil(2);
     let counts = [(Difficulty::Easy, easy), (Difficulty::Normal, more), (Difficulty::Hard, more)];

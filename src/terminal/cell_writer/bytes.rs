@@ -19,7 +19,7 @@ pub(crate) struct Bytes {
 /// A piece in progress at the end of [`Bytes`]. It counts as written only after [`Piece::finish`].
 pub(crate) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
-    /// The number of bytes in this piece, at most [`LONGEST`].
+    /// The number of bytes in this piece, at most [`MAX_LENGTH`].
     end: usize,
     /// The length of all bytes before the piece.
     length: &'a mut usize,
@@ -27,10 +27,10 @@ pub(crate) struct Piece<'a> {
 
 /// The maximum length of a piece. A motion, a style with all its parameters and a character together
 /// stay below it. All of its bits are set, because masking an offset takes less time than checking it.
-const LONGEST: usize = 127;
+const MAX_LENGTH: usize = 127;
 /// The number of bytes by which the last part of a piece may exceed it.
 const EXCESS: usize = 8;
-const ROOM: usize = LONGEST + 1 + EXCESS;
+const ROOM: usize = MAX_LENGTH + 1 + EXCESS;
 
 impl Bytes {
     /// The written bytes.
@@ -82,8 +82,8 @@ impl Piece<'_> {
     #[inline]
     pub(crate) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         const { assert!(LENGTH <= EXCESS) };
-        debug_assert!(self.end <= LONGEST, "a piece is too long");
-        let start = self.end & LONGEST;
+        debug_assert!(self.end <= MAX_LENGTH, "a piece is too long");
+        let start = self.end & MAX_LENGTH;
         self.room[start..start + LENGTH].copy_from_slice(&text);
         self.end = start + count;
     }
@@ -170,7 +170,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     #[inline]
     pub(crate) fn end(self, last: u8) {
         // Replace the separator before the first parameter.
-        self.piece.room[(self.start + 1) & LONGEST] = INTRODUCER[1];
+        self.piece.room[(self.start + 1) & MAX_LENGTH] = INTRODUCER[1];
         self.piece.push([last], 1);
     }
 }

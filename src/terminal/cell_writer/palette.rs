@@ -241,8 +241,8 @@ const SPARED: f32 = 8.0;
 /// The number of half cells in an exact frame that must use a colour before it is defined. The next
 /// constant is the same for inexact frames, in which most half cells are kept. There, the savings
 /// must also be as large as the savings of this number of full uses.
-const LEAST_USES: f32 = 2.0;
-const LEAST_USES_INEXACT: f32 = 4.0;
+const MIN_USES: f32 = 2.0;
+const MIN_USES_INEXACT: f32 = 4.0;
 
 impl Palette {
     /// Begins a frame, on a terminal with this `style`: counts the shown colours and the targets'
@@ -324,8 +324,8 @@ impl Palette {
         }
         // Each unit is half a use.
         let uses = f32::from(count) * 0.5;
-        let Some(price) = price else { return uses >= LEAST_USES };
-        if uses < LEAST_USES_INEXACT {
+        let Some(price) = price else { return uses >= MIN_USES };
+        if uses < MIN_USES_INEXACT {
             return false;
         }
         let wanted = Ink::new(shade);
@@ -333,7 +333,7 @@ impl Palette {
             let near = self.ink(near);
             price.of(near, wanted).min(SPARED)
         });
-        uses * spared >= LEAST_USES_INEXACT * SPARED
+        uses * spared >= MIN_USES_INEXACT * SPARED
     }
 
     /// Defines the most frequent colours, as far as that saves bytes and entries are free.
@@ -568,7 +568,7 @@ impl Quantizer {
 
 /// The maximum number of colours for which entries are chosen. In a large window, similar colours
 /// count as one.
-const MOST_SAMPLES: usize = 4096;
+const MAX_SAMPLES: usize = 4096;
 
 /// The colours of the targets, in the order of their bits.
 fn samples(screen: &Screen) -> Vec<Sample> {
@@ -586,7 +586,7 @@ fn samples(screen: &Screen) -> Vec<Sample> {
             let shade = Shade::rgb(group[group.len() / 2]);
             samples.push(Sample { shade, lab: [0.0; 3], count: group.len() as f32 });
         }
-        if samples.len() <= MOST_SAMPLES {
+        if samples.len() <= MAX_SAMPLES {
             break;
         }
     }

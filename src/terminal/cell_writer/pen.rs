@@ -433,7 +433,7 @@ fn push_right(by: u16, piece: &mut Piece) {
 }
 
 /// More line feeds than this take more bytes than an absolute row.
-const MOST_FEEDS: u16 = 5;
+const MAX_FEEDS: u16 = 5;
 
 fn push_far(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
     let Some(cursor) = cursor else { return push_absolute(target, piece) };
@@ -451,7 +451,7 @@ fn push_far(cursor: Option<Position>, target: Position, size: Size, piece: &mut 
         }
     }
     let feeds = target.y.wrapping_sub(cursor.y);
-    let is_near = feeds <= MOST_FEEDS && target.y < size.height;
+    let is_near = feeds <= MAX_FEEDS && target.y < size.height;
     if is_near && usize::from(feeds) + bytes_of_return(target.x) <= bytes_of_absolute(target) {
         piece.push([b'\r'], 1);
         (0..feeds).for_each(|_| piece.push([b'\n'], 1));

@@ -189,7 +189,7 @@ const FARTHEST: usize = 16;
 /// The number of places at which a mark is searched: a cell's own place and the places around it.
 const PLACES: usize = FARTHEST + 1 + FARTHEST;
 /// The number of moves that are tried for a row. Twice as many would save half a byte in a hundred.
-const MOST_TRIED: usize = 2;
+const MAX_TRIED: usize = 2;
 /// The number of landmarks that may agree by chance.
 const CHANCE: u16 = 2;
 
@@ -210,8 +210,8 @@ impl Landmarks {
     /// The moves with the most votes.
     fn likely_moves(&self) -> impl Iterator<Item = Move> {
         let votes = self.votes();
-        let mut likely = [None; MOST_TRIED];
-        let mut most = [CHANCE; MOST_TRIED];
+        let mut likely = [None; MAX_TRIED];
+        let mut most = [CHANCE; MAX_TRIED];
         for by in 1..=FARTHEST {
             for (way, count) in [(Way::Left, votes.left(by)), (Way::Right, votes.right(by))] {
                 if let Some(rank) = most.iter().position(|&most| count > most) {
@@ -229,8 +229,8 @@ impl Landmarks {
         let mut votes = Votes([0; PLACES]);
         let around = self.before.windows(PLACES);
         let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
-        for _ in 0..self.now.len().div_ceil(MOST_AT_ONCE) {
-            votes.add(places.by_ref().take(MOST_AT_ONCE));
+        for _ in 0..self.now.len().div_ceil(MAX_AT_ONCE) {
+            votes.add(places.by_ref().take(MAX_AT_ONCE));
         }
         votes
     }
@@ -247,10 +247,10 @@ impl Landmarks {
 struct Votes([u16; PLACES]);
 
 /// The number of votes that can be counted in eight bits.
-const MOST_AT_ONCE: usize = u8::MAX as usize;
+const MAX_AT_ONCE: usize = u8::MAX as usize;
 
 impl Votes {
-    /// Adds the votes of at most [`MOST_AT_ONCE`] landmarks, each with the previous marks around
+    /// Adds the votes of at most [`MAX_AT_ONCE`] landmarks, each with the previous marks around
     /// it.
     fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
         // One loop serves both sides. The compiler would unroll a shorter loop instead of counting sixteen places at

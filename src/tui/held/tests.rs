@@ -346,7 +346,7 @@ proptest! {
             now += gap;
             press(&mut held, key, now);
             held.step();
-            prop_assert!(held.keys.len() <= MOST_KEYS);
+            prop_assert!(held.keys.len() <= MAX_KEYS);
         }
         (0..200).for_each(|_| held.step());
         held.advance(at(now + 3000));

@@ -190,7 +190,7 @@ fn is_wall(kind: TileKind) -> bool {
 }
 
 /// Cells in which fog leaves less than this share of light are not seen.
-const LEAST_CLEARNESS: f64 = 1.0 / 32.0;
+const MIN_CLEARNESS: f64 = 1.0 / 32.0;
 
 /// An eye at a position in a world. All rays from that position share it.
 struct Observer<'a> {
@@ -237,7 +237,7 @@ impl<'a> Observer<'a> {
         let place = camera.position().floor();
         let tile = world.grid().tile(place.x as i64, place.y as i64);
         let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
-        let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(LEAST_CLEARNESS));
+        let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(MIN_CLEARNESS));
         let passages = [Passage::Other; TileId::MAX];
         let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
         observer.find_passages();
@@ -355,7 +355,7 @@ impl Observer<'_> {
     }
 
     fn is_hidden_by_fog(&self, t: f64) -> bool {
-        t > self.clear_to && self.world.fog().is_some_and(|fog| fog.clearness(t) < LEAST_CLEARNESS)
+        t > self.clear_to && self.world.fog().is_some_and(|fog| fog.clearness(t) < MIN_CLEARNESS)
     }
 
     /// The gap that contains the eye.

@@ -41,7 +41,7 @@ enum TileAppearance {
 /// The colour that shows through glass.
 const BELOW_GLASS: Rgb = Rgb::new(0x24, 0x24, 0x2c);
 /// The least opacity of glass, so that clear glass differs from floor.
-const LEAST_GLASS_OPACITY: u8 = 96;
+const MIN_GLASS_OPACITY: u8 = 96;
 
 impl<'a> TopView<'a> {
     /// A top view of `world`. `columns` are the hits of the picture from `camera`, cells that are
@@ -186,7 +186,7 @@ fn appearance_of(tile: &Tile, world: &World, eye: f64) -> TileAppearance {
         TileKind::Mirror(tint) => TileAppearance::Wall(of_wall(tint.color)),
         TileKind::Mask(texture) => TileAppearance::Wall(wall(Paint::Texture(texture))),
         TileKind::Glass(glass) => {
-            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(LEAST_GLASS_OPACITY));
+            let color = glass.color.over(BELOW_GLASS, glass.opacity.max(MIN_GLASS_OPACITY));
             TileAppearance::Door(of_wall(color))
         }
     }

@@ -94,7 +94,7 @@ impl Boxes {
         };
         let octaves = f64::from(1_u32 << (half_octaves / 2).min(31));
         let half = if half_octaves % 2 == 0 { 1.0 } else { SQRT_2 };
-        let extent = (LEAST * octaves * half).min(all);
+        let extent = (MIN * octaves * half).min(all);
         if extent == all {
             return Self { extent, count: 1 };
         }
@@ -105,8 +105,8 @@ impl Boxes {
 
 /// The extent of the first step, in texels. A pixel that covers less than this is drawn from the
 /// texture.
-const LEAST: f64 = 0.25;
-const LEAST_HALF_OCTAVES: i64 = -4;
+const MIN: f64 = 0.25;
+const MIN_HALF_OCTAVES: i64 = -4;
 /// The number of boxes that begin within one of them.
 const BOXES_IN_AN_EXTENT: f64 = 4.0;
 /// The largest number of boxes along an axis.
@@ -122,7 +122,7 @@ fn step_of(square: f64) -> u8 {
     const BIAS: i64 = f64::MAX_EXP as i64 - 1;
     // The exponent of a square is the number of half octaves.
     let half_octaves = ((square * SQRT_2).to_bits() >> BITS) as i64 - BIAS;
-    (half_octaves - LEAST_HALF_OCTAVES + 1).clamp(0, i64::from(u8::MAX)) as u8
+    (half_octaves - MIN_HALF_OCTAVES + 1).clamp(0, i64::from(u8::MAX)) as u8
 }
 
 /// The number of steps for an axis of `texels` texels, up to the extent of the whole axis.

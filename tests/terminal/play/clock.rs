@@ -16,7 +16,7 @@ pub(crate) const CLOCK: (&str, &str) = ("CELLCASTER_CLOCK", "focus");
 /// The report that the window has the focus, and the largest number of reports in one write. A
 /// write of less than 256 bytes is read at once, so no report is split.
 const STEP: &str = "\x1b[I";
-const MOST_STEPS: u32 = 64;
+const MAX_STEPS: u32 = 64;
 /// The number of steps before the first repetition of a key, half a second, and the number of steps
 /// between two repetitions.
 const FIRST_DELAY: u32 = 30;
@@ -40,7 +40,7 @@ impl Typist {
     /// Lets `steps` steps of the game pass.
     pub(crate) fn pass(&self, mut steps: u32) {
         while steps > 0 {
-            let some = steps.min(MOST_STEPS);
+            let some = steps.min(MAX_STEPS);
             self.send(STEP.repeat(some as usize));
             self.wait_until_read();
             steps -= some;

@@ -23,7 +23,7 @@ use super::server::between;
 const STREAM: &str = "CELLCASTER_LOAD";
 const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
 /// The time from one message of a room to the next.
-const PERIOD: Duration = Duration::from_micros(33_333);
+const INTERVAL: Duration = Duration::from_micros(33_333);
 /// The size of a message without entries, in bytes.
 const MESSAGE: usize = 25;
 /// The size of a checkpoint of a room with eight members, in bytes.
@@ -93,7 +93,7 @@ async fn write(
     let (mut last, mut times) = (0, Vec::new());
     // Rooms keep their checkpoints at different times.
     let mut count = room;
-    let mut ticks = interval(PERIOD);
+    let mut ticks = interval(INTERVAL);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         let due = ticks.tick().await;

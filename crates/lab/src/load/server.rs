@@ -169,7 +169,7 @@ pub(crate) fn pin(process: u32, processor: u32) {
 
 // OpenSSH's server, with one process of the game for each session.
 
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Starts a server whose only command is the game, on the level on which visitors of the other
 /// server walk.
@@ -209,7 +209,7 @@ fn user() -> Result<String, Box<dyn Error>> {
 }
 
 fn wait_for(port: u16) -> Result<(), Box<dyn Error>> {
-    let deadline = Instant::now() + PATIENCE;
+    let deadline = Instant::now() + TIMEOUT;
     while TcpStream::connect(("127.0.0.1", port)).is_err() {
         if Instant::now() > deadline {
             return Err("sshd does not listen".into());

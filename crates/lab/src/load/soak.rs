@@ -23,7 +23,7 @@ type Ends = Arc<Mutex<BTreeMap<Option<Leaving>, u64>>>;
 /// The number of parts of the time. The server is measured after each part.
 const PARTS: u32 = 10;
 /// The longest duration of a visit, without its end.
-const LONGEST: Duration = Duration::from_secs(20);
+const MAX_DURATION: Duration = Duration::from_secs(20);
 /// The time in which the server closes the last connections and rooms.
 const AFTERWARDS: Duration = Duration::from_secs(90);
 
@@ -45,8 +45,8 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
         let seed = plan.seed << 48 | client << 32;
         clients.spawn(async move {
             for visit in 0.. {
-                let visited = wanderer::visit(address, seed | visit, LONGEST);
-                let left = timeout(3 * LONGEST, visited).await;
+                let visited = wanderer::visit(address, seed | visit, MAX_DURATION);
+                let left = timeout(3 * MAX_DURATION, visited).await;
                 let left = left.ok().and_then(Result::ok);
                 *ends.lock().expect("no panic").entry(left).or_default() += 1;
                 if left.is_none() {

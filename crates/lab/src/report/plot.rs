@@ -213,8 +213,8 @@ fn color(method: usize) -> Rgb {
 }
 
 fn radius(method: usize) -> f64 {
-    const LARGEST: f64 = 8.0;
-    (LARGEST - method as f64).max(2.0)
+    const MAX: f64 = 8.0;
+    (MAX - method as f64).max(2.0)
 }
 
 /// A logarithmic axis.

@@ -27,7 +27,7 @@ pub const CROWDS: [usize; 3] = [100, 10_000, 100_000];
 const PICTURE: FrameSize = size(160, 90);
 /// The number of timings in a turn, and the smallest number in total.
 const A_TURN: usize = 8;
-const FEWEST: usize = 3 * A_TURN;
+const MIN: usize = 3 * A_TURN;
 
 /// The costs of open maps, measured within about `time`, which does not include making the maps.
 pub(crate) fn measure_maps(time: Duration) -> Table {
@@ -147,7 +147,7 @@ impl Drawing {
 fn in_turns<T>(subjects: &mut [T], time: Duration, work: impl Fn(&mut T)) -> Vec<f64> {
     let mut times = vec![Vec::new(); subjects.len()];
     let begun = Instant::now();
-    while times.first().is_some_and(|times| times.len() < FEWEST) || begun.elapsed() < time {
+    while times.first().is_some_and(|times| times.len() < MIN) || begun.elapsed() < time {
         for (subject, times) in subjects.iter_mut().zip(&mut times) {
             work(subject);
             times.extend((0..A_TURN).map(|_| seconds(|| work(subject))));
@@ -259,7 +259,7 @@ pub enum Vista {
 }
 
 /// The least side of a map with room for the longest hall.
-const SHORTEST_SIDE: u32 = 100;
+const MIN_SIDE: u32 = 100;
 
 impl Vista {
     /// All vistas.
@@ -279,7 +279,7 @@ impl Vista {
     /// Panics if `count` is less than the number of things in view, or more than the map has room
     /// for.
     pub fn world(self, count: usize) -> World {
-        let side = SHORTEST_SIDE.max((count as f64).sqrt() as u32 + 10);
+        let side = MIN_SIDE.max((count as f64).sqrt() as u32 + 10);
         let places = || (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
         let in_view = places().filter(|&(column, row)| self.is_plant(column, row)).count();
         let mut elsewhere = count - in_view;
@@ -320,7 +320,7 @@ impl Vista {
         match self {
             Self::Straight => (1..=24).contains(&column) && (1..=12).contains(&row),
             Self::Diagonal => {
-                let is_on_map = |place| (1..SHORTEST_SIDE - 2).contains(&place);
+                let is_on_map = |place| (1..MIN_SIDE - 2).contains(&place);
                 is_on_map(column) && is_on_map(row) && column.abs_diff(row) <= 1
             }
         }

@@ -26,7 +26,7 @@ const LINKS: [f64; 3] = [1.0, 10.0, 100.0];
 const FRAMES_PER_SECOND: u32 = 30;
 const STEPS_A_FRAME: usize = (STEPS_PER_SECOND / FRAMES_PER_SECOND) as usize;
 /// The smallest number of steps played of each stretch, unless the stretch is shorter.
-const FEWEST_STEPS: u32 = 4;
+const MIN_STEPS: u32 = 4;
 
 /// Plays the showcase in each window, with ratatui's own encoder (`stock`) and with Cellcaster's at
 /// the named fidelities. Plays as much of each stretch as `time` allows.
@@ -88,7 +88,7 @@ fn shortened(script: &Script, most: usize) -> Vec<Intents> {
     let share = script.iter().count().div_ceil(most.max(1)) as u32;
     let stretches = script.sections().iter().flat_map(|section| &section.stretches);
     let steps = stretches.flat_map(|stretch| {
-        let count = stretch.steps.div_ceil(share.max(1)).max(FEWEST_STEPS).min(stretch.steps);
+        let count = stretch.steps.div_ceil(share.max(1)).max(MIN_STEPS).min(stretch.steps);
         std::iter::repeat_n(stretch.intents, count as usize)
     });
     steps.collect()

@@ -9,7 +9,7 @@ use cellcaster::world::{Camera, FieldOfView, World};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// The largest allowed ratio.
-const MOST: f64 = 0.75;
+const MAX: f64 = 0.75;
 
 /// The mean change of a channel from frame to frame, in steps of 8 bits, over sixty frames.
 /// `camera` turns by a ninth of a degree before each. Edges that move change pixels with every
@@ -52,7 +52,7 @@ fn levels_turn_calmly() {
     for level in ["cellar", "museum", "citadel", "cistern", "observatory"] {
         let world = map::load(format!("{ROOT}/tests/maps/{level}.toml").as_ref()).unwrap();
         let share = share_left(&world);
-        assert!(share < MOST, "{level}: {share}");
+        assert!(share < MAX, "{level}: {share}");
     }
 }
 
@@ -61,6 +61,6 @@ fn textures_far_away_turn_calmly() {
     for name in ["flat", "floor", "checker", "mip"] {
         let world = map::load(Path::new(&format!("{ROOT}/maps/gallery/{name}.toml"))).unwrap();
         let share = share_left(&world);
-        assert!(share < MOST, "{name}: {share}");
+        assert!(share < MAX, "{name}: {share}");
     }
 }

@@ -52,7 +52,7 @@ pub struct AccountSettings {
     /// The choices in the game.
     pub preferences: Preferences,
     /// Keys, glyphs, colours and other settings, as the text of a configuration file. The store does
-    /// not read it. A text of more than [`Self::MOST_BYTES`] bytes is refused.
+    /// not read it. A text of more than [`Self::MAX_BYTES`] bytes is refused.
     pub configuration: String,
 }
 
@@ -84,10 +84,10 @@ impl UnixTime {
 
 impl AccountSettings {
     /// The longest configuration that is stored, in bytes.
-    pub const MOST_BYTES: usize = 16 << 10;
+    pub const MAX_BYTES: usize = 16 << 10;
 
     pub(crate) fn checked(&self) -> Result<&Self, StoreFailure> {
-        let is_short = self.configuration.len() <= Self::MOST_BYTES;
+        let is_short = self.configuration.len() <= Self::MAX_BYTES;
         is_short.then_some(self).ok_or_else(|| StoreFailure::new("the settings are too long"))
     }
 }

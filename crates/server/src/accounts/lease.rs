@@ -118,6 +118,6 @@ impl HostStore {
 
 /// A time in milliseconds, at most a year.
 pub(crate) fn milliseconds(time: Duration) -> i64 {
-    const LONGEST: Duration = Duration::from_hours(365 * 24);
-    time.min(LONGEST).as_millis() as i64
+    const MAX_DURATION: Duration = Duration::from_hours(365 * 24);
+    time.min(MAX_DURATION).as_millis() as i64
 }

@@ -44,10 +44,10 @@ pub struct Name(String);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NameFault {
     /// It is too short.
-    #[error("A name has at least {} letters.", Name::LEAST_COLUMNS)]
+    #[error("A name has at least {} letters.", Name::MIN_COLUMNS)]
     Short,
     /// It is too long.
-    #[error("A name is at most {} columns wide.", Name::MOST_COLUMNS)]
+    #[error("A name is at most {} columns wide.", Name::MAX_COLUMNS)]
     Long,
     /// It contains a character that is not allowed.
     #[error("A name has letters, digits, - and _, not {}.", shown(*.0))]
@@ -93,13 +93,13 @@ const INVISIBLE: [char; 9] = [
     '\u{fffc}',
 ];
 /// The longest text that is examined, in bytes.
-const MOST_BYTES: usize = 256;
+const MAX_BYTES: usize = 256;
 
 impl Name {
     /// The least width in columns.
-    pub const LEAST_COLUMNS: usize = 2;
+    pub const MIN_COLUMNS: usize = 2;
     /// The largest width in columns.
-    pub const MOST_COLUMNS: usize = 16;
+    pub const MAX_COLUMNS: usize = 16;
 
     /// Parses a name.
     ///
@@ -145,11 +145,11 @@ impl Name {
     /// A name that the store has kept. A text that would not be a name today is accepted, as far as it is
     /// printable.
     pub(crate) fn kept(text: &str) -> Self {
-        Self(printable(text, Self::MOST_COLUMNS))
+        Self(printable(text, Self::MAX_COLUMNS))
     }
 
     fn unreserved(text: &str) -> Result<Self, NameFault> {
-        if text.len() > MOST_BYTES {
+        if text.len() > MAX_BYTES {
             return Err(NameFault::Long);
         }
         let text: String = text.nfkc().collect();
@@ -157,8 +157,8 @@ impl Name {
             return Err(NameFault::Character(character));
         }
         match text.width() {
-            ..Self::LEAST_COLUMNS => return Err(NameFault::Short),
-            Self::LEAST_COLUMNS..=Self::MOST_COLUMNS => {}
+            ..Self::MIN_COLUMNS => return Err(NameFault::Short),
+            Self::MIN_COLUMNS..=Self::MAX_COLUMNS => {}
             _ => return Err(NameFault::Long),
         }
         if !text.starts_with(is_letter) {

@@ -5,8 +5,8 @@
 //! - **A change is on the server's disk when its method returns**, unless the server is configured not to wait for its
 //!   disk (`fsync = off`).
 //! - **Transactions are serializable**, unless each of their statements does everything by itself. A transaction that
-//!   conflicts with another one is run again, after a random wait that doubles, up to [`MOST_CONFLICTS`] times.
-//! - **Each call ends after [`PATIENCE`]**, whatever the server or the network does. Both sides enforce the limit: a
+//!   conflicts with another one is run again, after a random wait that doubles, up to [`MAX_CONFLICTS`] times.
+//! - **Each call ends after [`TIMEOUT`]**, whatever the server or the network does. Both sides enforce the limit: a
 //!   timer here, and `statement_timeout` there.
 //! - **A lost connection is made again.** A call that lost it before the commit is run once more. A call that lost it
 //!   during the commit fails, and its sentence says that the change may be kept or not. After a failed attempt to
@@ -44,17 +44,17 @@ use super::StoreFailure;
 use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The time limit for a call.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 /// The time limit for the end of a failed transaction.
-const UNDO_PATIENCE: Duration = Duration::from_secs(1);
+const UNDO_TIMEOUT: Duration = Duration::from_secs(1);
 /// The time limit for creating the tables, including the wait for another host that creates them.
-const SCHEMA_PATIENCE: Duration = Duration::from_secs(30);
+const SCHEMA_TIMEOUT: Duration = Duration::from_secs(30);
 /// How long calls fail at once after a failed attempt to connect.
 const PAUSE: Duration = Duration::from_secs(1);
 /// How many times a transaction is run again after conflicts.
-const MOST_CONFLICTS: u32 = 12;
+const MAX_CONFLICTS: u32 = 12;
 /// The longest wait before a transaction is run again.
-const LONGEST_WAIT: Duration = Duration::from_millis(128);
+const MAX_WAIT: Duration = Duration::from_millis(128);
 
 /// The lock under which tables are created, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
@@ -131,14 +131,14 @@ impl Server {
     /// Opens the database at an address. Creates the tables if there are none.
     pub(crate) fn open(address: &str) -> Result<Self, StoreFailure> {
         let mut server = Self::new(address, false)?;
-        make_tables(&server.call(SCHEMA_PATIENCE)?)?;
+        make_tables(&server.call(SCHEMA_TIMEOUT)?)?;
         Ok(server)
     }
 
     /// Opens the database at an address to read from it; `None` if it has no tables.
     pub(crate) fn open_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
         let mut server = Self::new(address, true)?;
-        let has_tables = has_tables(&server.call(PATIENCE)?)?;
+        let has_tables = has_tables(&server.call(TIMEOUT)?)?;
         Ok(has_tables.then_some(server))
     }
 
@@ -156,7 +156,7 @@ impl Server {
         isolation: Isolation,
         mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E> {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let (mut conflicts, mut was_lost) = (0, false);
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -179,7 +179,7 @@ impl Server {
                     self.session = None;
                     return Err(failure);
                 }
-                Some(Fault::Conflict) if conflicts < MOST_CONFLICTS => {
+                Some(Fault::Conflict) if conflicts < MAX_CONFLICTS => {
                     self.undo(isolation);
                     thread::sleep(wait(conflicts));
                     conflicts += 1;
@@ -197,7 +197,7 @@ impl Server {
         if isolation == Isolation::None {
             return;
         }
-        let is_undone = self.call(UNDO_PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
+        let is_undone = self.call(UNDO_TIMEOUT).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
         if !is_undone {
             self.session = None;
         }
@@ -249,7 +249,7 @@ impl Server {
                 tokio::spawn(connection);
                 client
             };
-            let patience = PATIENCE.as_millis();
+            let patience = TIMEOUT.as_millis();
             let settings = format!(
                 "{SETTINGS}; SET statement_timeout = {patience}; \
                  SET default_transaction_read_only = {read}"
@@ -432,7 +432,7 @@ fn in_transaction<T, E: From<StoreFailure>>(
 
 /// A random wait of up to 1 ms, 2 ms, 4 ms and so on.
 fn wait(conflicts: u32) -> Duration {
-    let longest = (Duration::from_millis(1) * (1 << conflicts.min(10))).min(LONGEST_WAIT);
+    let longest = (Duration::from_millis(1) * (1 << conflicts.min(10))).min(MAX_WAIT);
     // Without randomness, two transactions that met would meet again.
     let share = getrandom::u32().map_or(1.0, |number| f64::from(number) / f64::from(u32::MAX));
     longest.mul_f64(share)
@@ -441,7 +441,7 @@ fn wait(conflicts: u32) -> Duration {
 /// Creates the tables if there are none, all at once or not at all.
 fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
     // Not serializable, because it must see the tables that another host created while this one waited for the lock.
-    let patience = SCHEMA_PATIENCE.as_millis();
+    let patience = SCHEMA_TIMEOUT.as_millis();
     call.batch(&format!("BEGIN; SET LOCAL statement_timeout = {patience}"))?;
     let made = call.batch(&format!("SELECT pg_advisory_xact_lock({LOCK})")).and_then(|()| {
         if has_tables(call)? {
@@ -506,7 +506,7 @@ impl Address {
         if config.get_application_name().is_none() {
             config.application_name("cellcaster");
         }
-        config.connect_timeout(PATIENCE).tcp_user_timeout(PATIENCE);
+        config.connect_timeout(TIMEOUT).tcp_user_timeout(TIMEOUT);
         config.keepalives_idle(Duration::from_secs(30));
         let shown = format!("the database {database:?} at {host}");
         Ok(Self { config, tls, shown })

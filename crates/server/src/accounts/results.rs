@@ -12,10 +12,10 @@ use thiserror::Error;
 use super::{AccountId, Name, UnixTime};
 
 /// The longest script that is verified, in steps: half an hour.
-pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
+pub const MAX_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
 /// The longest script that is verified, in bytes. A player who moves the mouse in each step of half an hour writes
 /// less.
-pub const MOST_SCRIPT_BYTES: usize = 8 << 20;
+pub const MAX_SCRIPT_BYTES: usize = 8 << 20;
 
 /// A board: a built-in level or a map of the host, at one difficulty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -51,7 +51,7 @@ pub struct VerifiedRun {
 /// The reason why a script is not a run that counts.
 #[derive(Debug, Error)]
 pub enum Unverified {
-    /// It is longer than [`MOST_SCRIPT_STEPS`] or [`MOST_SCRIPT_BYTES`].
+    /// It is longer than [`MAX_SCRIPT_STEPS`] or [`MAX_SCRIPT_BYTES`].
     #[error("The run took longer than half an hour.")]
     TooLong,
     /// It is not a script.
@@ -73,7 +73,7 @@ pub enum Unverified {
 
 /// Replays a script in the level that its header names: a built-in level, or one of the host's maps. `map` returns the
 /// world of a map by its [key](cellcaster::app::store::map_key), so no file is read. The work is at most
-/// [`MOST_SCRIPT_STEPS`] steps.
+/// [`MAX_SCRIPT_STEPS`] steps.
 ///
 /// ```
 /// use cellcaster_server::accounts::{Unverified, verify};
@@ -88,11 +88,11 @@ pub fn verify(
     script: &str,
     map: impl FnOnce(&str) -> Option<World>,
 ) -> Result<VerifiedRun, Unverified> {
-    if script.len() > MOST_SCRIPT_BYTES {
+    if script.len() > MAX_SCRIPT_BYTES {
         return Err(Unverified::TooLong);
     }
     let script = Script::parse(script, "the script").map_err(Unverified::Faulty)?;
-    if script.steps() > MOST_SCRIPT_STEPS {
+    if script.steps() > MAX_SCRIPT_STEPS {
         return Err(Unverified::TooLong);
     }
     let rules = script.header().rules();
@@ -203,7 +203,7 @@ mod tests {
     fn a_script_that_wins_is_a_run() {
         let run = verify(WON, |_| None).unwrap();
         assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
-        assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
+        assert!(run.tally().steps > 0 && run.tally().steps <= MAX_SCRIPT_STEPS);
         // The stored script is a run, too, and the same one.
         assert_eq!(verify(run.script(), |_| None).unwrap(), run);
     }
@@ -221,7 +221,7 @@ mod tests {
     fn other_scripts_are_refused_in_a_sentence() {
         let shorter = WON.lines().take(6).collect::<Vec<_>>().join("\n");
         let steps = |count: u64| format!("level cellar\n{count} steps stand\n").repeat(1);
-        let long = steps(MOST_SCRIPT_STEPS) + "1 step stand\n";
+        let long = steps(MAX_SCRIPT_STEPS) + "1 step stand\n";
         for (script, expected) in [
             (shorter.as_str(), "reaches no exit"),
             ("2 s forward\n", "has no board"),
@@ -231,7 +231,7 @@ mod tests {
             ("level floor 1\n2 s forward\n", "has no board"),
             (&WON.replace("seed 0", "seed 1"), "another seed"),
             (&long, "longer than half an hour"),
-            (&"#".repeat(MOST_SCRIPT_BYTES + 1), "longer than half an hour"),
+            (&"#".repeat(MAX_SCRIPT_BYTES + 1), "longer than half an hour"),
             ("level cellar\n2 s fly\n", "nobody can want"),
             ("", "no stretch of time"),
         ] {

@@ -36,7 +36,7 @@ const FILE: &str = "host.db";
 /// The suffixes of SQLite's log, and of the index of the log.
 const LOGS: [&str; 2] = ["-wal", "-shm"];
 /// The most time to wait for another process.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Opens the file in `folder` to read and write. A damaged file is an error, and stays unchanged. If the loss is
 /// accepted, a damaged file is put aside, its readable rows are copied into a new file, and the returned sentence says
@@ -107,7 +107,7 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
     // This check does not open the file, because closing it again would release the locks of this process.
     private::check_is_file(&file).map_err(|error| unreadable(&error))?;
     let connection = Connection::open_with_flags(&file, flags).and_then(|connection| {
-        connection.busy_timeout(PATIENCE)?;
+        connection.busy_timeout(TIMEOUT)?;
         Ok((version(&connection)?, connection))
     });
     let (version, connection) = connection.map_err(|error| unreadable(&error))?;
@@ -147,7 +147,7 @@ fn connect(file: &Path) -> Result<Connection, Fault> {
     // Without SQLITE_OPEN_URI, so that a path is never read as a URI.
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let mut connection = Connection::open_with_flags(file, flags)?;
-    connection.busy_timeout(PATIENCE)?;
+    connection.busy_timeout(TIMEOUT)?;
     check_origin(&connection, file)?;
     check_content(&connection)?;
     let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;

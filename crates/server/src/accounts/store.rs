@@ -17,8 +17,8 @@ use super::results::with_run;
 use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
-    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime,
-    VerifiedRun, sqlite,
+    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, Refusal, StoreFailure,
+    UnixTime, VerifiedRun, sqlite,
 };
 
 /// The store of a host.
@@ -219,7 +219,7 @@ impl HostStore {
         self.database.change(|it| {
             let known = it.row(&select, params![id])?.as_ref().map(account).transpose()?;
             let known = known.ok_or(Refusal::NoAccount)?;
-            let next = known.named_at.after(RENAME_WAIT);
+            let next = known.named_at.after(RENAME_INTERVAL);
             if now < next {
                 return Err(Refusal::TooEarly { next });
             }

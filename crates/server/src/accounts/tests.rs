@@ -178,7 +178,7 @@ fn settings_are_kept_by_account() {
         let settings = AccountSettings { preferences, configuration };
         store.set_settings(ada, &settings).unwrap();
         assert_eq!(store.settings(ada).unwrap(), settings);
-        let configuration = "#".repeat(AccountSettings::MOST_BYTES + 1);
+        let configuration = "#".repeat(AccountSettings::MAX_BYTES + 1);
         let long = AccountSettings { configuration, ..AccountSettings::default() };
         assert!(store.set_settings(ada, &long).is_err());
         assert_eq!(store.settings(ada).unwrap(), settings);

@@ -12,7 +12,7 @@
 //! - **File and memory are bounded.** The file is replaced atomically. If a part of it cannot be read, the old
 //!   file is put aside.
 //! - **No result waits for ever:** if the store answers but refuses a result, the result is given up after
-//!   [`MOST_AGE`].
+//!   [`MAX_AGE`].
 //!
 //! Rejected: a queue only in memory. A database is often restarted together with its hosts.
 
@@ -31,11 +31,11 @@ use cellcaster::fault::printable_path;
 use cellcaster::world::World;
 
 /// The most results that wait.
-const MOST_RESULTS: usize = 1000;
+const MAX_RESULTS: usize = 1000;
 /// The most bytes of the file. One result takes about ten thousand.
-const MOST_BYTES: usize = 16 << 20;
+const MAX_BYTES: usize = 16 << 20;
 /// The seconds after which a refused result is given up.
-const MOST_AGE: u64 = 7 * 24 * 60 * 60;
+const MAX_AGE: u64 = 7 * 24 * 60 * 60;
 
 /// The waiting results, in the order in which they were added.
 #[derive(Debug)]
@@ -93,7 +93,7 @@ impl WaitingResults {
         match private::open(&file) {
             Ok(found) => {
                 // A host never writes more than this.
-                let most = 2 * MOST_BYTES as u64;
+                let most = 2 * MAX_BYTES as u64;
                 _ = found.take(most).read_to_end(&mut bytes).map_err(failed)?;
             }
             Err(error) if error.kind() == ErrorKind::NotFound => {}
@@ -124,7 +124,7 @@ impl WaitingResults {
     /// If too many wait.
     pub fn add(&mut self, result: WaitingResult) -> Result<(), StoreFailure> {
         let bytes = self.content().len() + result.line().len();
-        if self.results.len() >= MOST_RESULTS || bytes > MOST_BYTES {
+        if self.results.len() >= MAX_RESULTS || bytes > MAX_BYTES {
             return Err(StoreFailure::new("too many results wait for the store"));
         }
         self.results.push(result);
@@ -219,7 +219,7 @@ impl WaitingResult {
     fn refused(&self, failure: StoreFailure, now: UnixTime) -> Late {
         if failure.is_of_now() {
             Late::NotNow
-        } else if self.at.after(MOST_AGE) < now {
+        } else if self.at.after(MAX_AGE) < now {
             Late::GivenUp(self.clone(), failure)
         } else {
             Late::Refused(failure)

@@ -360,15 +360,15 @@ fn memory_for_networks_is_bounded() {
         AddressPrefix::network_of(IpAddr::V6(address))
     };
     let time = |number: u64| Duration::from_millis(number);
-    for number in 0..3 * MOST_NETWORKS as u64 {
+    for number in 0..3 * MAX_NETWORKS as u64 {
         penalties.charge(network(number), Outcome::LeftEarly, time(number));
         penalties.charge(network(0), Outcome::LeftEarly, time(number));
     }
-    assert_eq!(penalties.networks.len(), MOST_NETWORKS);
-    assert_eq!(penalties.order.len(), MOST_NETWORKS);
-    let last = 3 * MOST_NETWORKS as u64 - 1;
+    assert_eq!(penalties.networks.len(), MAX_NETWORKS);
+    assert_eq!(penalties.order.len(), MAX_NETWORKS);
+    let last = 3 * MAX_NETWORKS as u64 - 1;
     assert!(penalties.refused_share(network(0), time(last)) > 0.8);
-    for (number, is_known) in [(1, false), (last + 1 - MOST_NETWORKS as u64, false), (last, true)] {
+    for (number, is_known) in [(1, false), (last + 1 - MAX_NETWORKS as u64, false), (last, true)] {
         assert_eq!(penalties.networks.contains_key(&network(number)), is_known, "{number}");
     }
 }

@@ -297,7 +297,7 @@ fn difficulty(text: &str) -> Result<Difficulty, Takes> {
 
 /// Parses a time such as `7d`, up to a hundred years.
 fn time(text: &str) -> Result<Duration, Takes> {
-    const LONGEST: u64 = 100 * 365 * 24 * 60 * 60;
+    const MAX_LENGTH: u64 = 100 * 365 * 24 * 60 * 60;
     let seconds = || {
         let unit = text.chars().last()?;
         let seconds = match unit {
@@ -310,7 +310,7 @@ fn time(text: &str) -> Result<Duration, Takes> {
         let number = text.strip_suffix(unit)?;
         let is_number = number.bytes().all(|byte| byte.is_ascii_digit());
         let seconds = number.parse::<u64>().ok().filter(|_| is_number)?.checked_mul(seconds)?;
-        (1..=LONGEST).contains(&seconds).then(|| Duration::from_secs(seconds))
+        (1..=MAX_LENGTH).contains(&seconds).then(|| Duration::from_secs(seconds))
     };
     seconds().ok_or(Takes("a number with m, h, d or w, such as 30m or 7d"))
 }

@@ -14,7 +14,7 @@ use cellcaster::game::{STEP, STEPS_PER_SECOND};
 
 use super::arguments::Replay;
 use crate::rooms::maps::HostMaps;
-use crate::rooms::replayed::{MOST_RECORDED_BYTES, replayed};
+use crate::rooms::replayed::{MAX_RECORDED_BYTES, replayed};
 use crate::rooms::room::{Catalog, MemberId, MemberView, Room, RoomView};
 use crate::sessions::session::replayed::ReplayedScreen;
 
@@ -28,8 +28,8 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         Error::mistake(format!("{path} cannot be replayed: {reason}"))
     };
     let length = fs::metadata(&options.file).map_err(|error| cannot(&error))?;
-    if !length.is_file() || length.len() > MOST_RECORDED_BYTES {
-        return Err(cannot(&format!("it is no file of at most {MOST_RECORDED_BYTES} bytes")));
+    if !length.is_file() || length.len() > MAX_RECORDED_BYTES {
+        return Err(cannot(&format!("it is no file of at most {MAX_RECORDED_BYTES} bytes")));
     }
     let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
     if !text.starts_with(ROOM_RECORDING) {

@@ -15,7 +15,7 @@ use super::host_store::{Database, failed};
 use crate::accounts::{HostStore, LevelBoard, LevelScore, Name, StoreFailure};
 
 /// The most entries that are listed for a board.
-const MOST: usize = 100;
+const MAX: usize = 100;
 
 /// Boards, each with its entries.
 type Boards = Vec<(LevelBoard, Vec<LevelScore>)>;
@@ -44,7 +44,7 @@ fn boards(store: &mut HostStore, options: &Scores) -> Result<Boards, StoreFailur
             && options.difficulty.is_none_or(|difficulty| difficulty == board.difficulty())
     });
     let scored = |board: LevelBoard| {
-        let scores = store.level_scores(&board, MOST)?;
+        let scores = store.level_scores(&board, MAX)?;
         Ok((board, scores))
     };
     boards.map(scored).collect()
@@ -55,7 +55,7 @@ fn table((board, scores): &(LevelBoard, Vec<LevelScore>)) -> String {
     let mut text = format!("{}, {}\n", board.level(), board.difficulty().name());
     let mut push = |place: &str, name: &str, time: &str, rank: &str| {
         // A name can take more columns than it has characters.
-        let blanks = " ".repeat(Name::MOST_COLUMNS.saturating_sub(name.width()));
+        let blanks = " ".repeat(Name::MAX_COLUMNS.saturating_sub(name.width()));
         writeln!(text, "{place:>4}  {name}{blanks}  {time:<8}  {rank}")
             .expect("a string takes any text");
     };

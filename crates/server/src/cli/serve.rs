@@ -27,7 +27,7 @@ use crate::ssh::host_key::HostKey;
 use crate::visitors::Visitors;
 use cellcaster::app::store::private;
 use cellcaster::cli::Error;
-use cellcaster::cli::config::LARGEST;
+use cellcaster::cli::config::MAX_BYTES;
 use cellcaster::cli::machine::{configuration_file, data_folder};
 
 /// Serves until a signal ends it.
@@ -275,7 +275,7 @@ impl Configuration {
     /// The content of the file; empty if the default file does not exist.
     fn text(&self) -> Result<String, Error> {
         let Some(file) = &self.file else { return Ok(String::new()) };
-        match private::read_text(file, LARGEST) {
+        match private::read_text(file, MAX_BYTES) {
             Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
                 Ok(String::new())
             }

@@ -38,9 +38,9 @@ use cellcaster::rng;
 /// How long the record of a running room may stay unchanged before its host counts as gone.
 const ABANDONED: Duration = Duration::from_secs(15);
 /// The time between two rounds of maintenance.
-const MAINTENANCE_PERIOD: Duration = Duration::from_secs(5);
+const MAINTENANCE_INTERVAL: Duration = Duration::from_secs(5);
 /// The most requests to be a member that wait in one room.
-const MOST_REQUESTS: usize = 64;
+const MAX_REQUESTS: usize = 64;
 /// The time limit for leaving the rooms to other hosts.
 const ENDING: Duration = Duration::from_secs(2);
 /// How many times a request is tried, because a replica may end at that moment.
@@ -248,7 +248,7 @@ impl SharedRooms {
         }
         let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
         let loaded = context.load_state(id).await?;
-        let (requests, receiver) = mpsc::channel(MOST_REQUESTS);
+        let (requests, receiver) = mpsc::channel(MAX_REQUESTS);
         let closes_after = self.0.rooms.limits().closes_after;
         let interface = RoomInterface::new(&loaded.0.room, loaded.1.stands, closes_after);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
@@ -267,7 +267,7 @@ impl SharedRooms {
                     self.note(id, bytes.as_deref());
                 }
             }
-            sleep(MAINTENANCE_PERIOD).await;
+            sleep(MAINTENANCE_INTERVAL).await;
         }
     }
 
@@ -285,7 +285,7 @@ impl SharedRooms {
     /// Creates the standing rooms, forgets replicas that have ended, and runs rooms that have lost their host, again
     /// and again.
     async fn maintain(self) {
-        let mut periods = interval(MAINTENANCE_PERIOD);
+        let mut periods = interval(MAINTENANCE_INTERVAL);
         loop {
             periods.tick().await;
             if *self.0.context.ending.borrow() {

@@ -19,7 +19,7 @@ pub(crate) const LEASE_TIME: Duration = Duration::from_secs(3);
 /// How long the first renewal waits for others.
 pub(crate) const GATHERED: Duration = Duration::from_millis(50);
 /// The most calls that wait: one a second for each room.
-pub(crate) const MOST_CALLS: usize = 4_096;
+pub(crate) const MAX_CALLS: usize = 4_096;
 
 /// The leases of one host.
 pub(crate) struct Leases {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn leases_that_are_renewed_at_the_same_time_are_one_call() {
-        let (worker, mut queue) = StoreWorker::new(MOST_CALLS);
+        let (worker, mut queue) = StoreWorker::new(MAX_CALLS);
         let renewals = Arc::<Mutex<Vec<Renewal>>>::default();
         let host = "one".to_owned();
         let own =

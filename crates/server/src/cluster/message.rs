@@ -22,7 +22,7 @@ use cellcaster::game::{PlayerColor, RULES_VERSION};
 /// The version of the format of messages, records and checkpoints.
 const FORMAT: u32 = 3;
 /// The most steps in a message: ten seconds.
-const MOST_STEPS: u64 = 600;
+const MAX_STEPS: u64 = 600;
 
 /// A message of a room's log. A message without steps begins an epoch.
 ///
@@ -116,13 +116,13 @@ impl LogMessage {
     }
 
     fn check(&self) -> Result<(), Unrestorable> {
-        check(self.steps <= MOST_STEPS, "the steps of a message")?;
+        check(self.steps <= MAX_STEPS, "the steps of a message")?;
         check(self.entries.iter().all(|entry| entry.step < self.steps), "an entry")
     }
 
     /// Returns true if `next` fits into this message.
     pub(crate) fn has_room(&self, next: &Self) -> bool {
-        self.steps + next.steps <= MOST_STEPS
+        self.steps + next.steps <= MAX_STEPS
     }
 
     /// Appends the steps of the next message. Drops its checksum.
@@ -209,7 +209,7 @@ mod tests {
     use super::*;
     use crate::rooms::room::Mode;
     use cellcaster::game::Intents;
-    use cellcaster::game::stored::MOST_COUNT;
+    use cellcaster::game::stored::MAX_COUNT;
     use cellcaster::world::Difficulty;
 
     fn message(check: Option<Check>, entries: Vec<Entry>) -> LogMessage {
@@ -283,9 +283,9 @@ mod tests {
     #[test]
     fn bytes_that_are_damaged_or_of_another_version_are_refused() {
         let good = message(None, vec![leave(1)]);
-        let check = Check { tick: MOST_COUNT + 1, sum: 0 };
+        let check = Check { tick: MAX_COUNT + 1, sum: 0 };
         for damaged in [
-            LogMessage { steps: MOST_STEPS + 1, ..good.clone() },
+            LogMessage { steps: MAX_STEPS + 1, ..good.clone() },
             LogMessage { steps: 1, ..good.clone() },
             LogMessage { epoch: u64::MAX, ..good.clone() },
             LogMessage { last: u64::MAX, ..good.clone() },
@@ -301,7 +301,7 @@ mod tests {
             let entry = Entry { step: 0, member: MemberId(1), command };
             assert!(LogMessage::parse(&to_bytes(&message(None, vec![entry]))).is_err());
         }
-        let member = MemberId(MemberId::MOST.0 + 1);
+        let member = MemberId(MemberId::MAX.0 + 1);
         assert!(PeerMessage::parse(&to_bytes(&PeerMessage::Claim(vec![member]))).is_err());
         let bytes = to_bytes(&good);
         let other = [b"0.1", &bytes[version().len()..]].concat();

@@ -11,7 +11,7 @@
 //! The streams and the bucket are created if they are missing. To have copies on several servers, create them
 //! beforehand.
 //!
-//! A call ends after [`PATIENCE`]. Without a connection it fails at once, so that no message waits in memory until it
+//! A call ends after [`TIMEOUT`]. Without a connection it fails at once, so that no message waits in memory until it
 //! is out of date.
 
 use std::collections::BTreeMap;
@@ -35,15 +35,15 @@ use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
 /// The time limit for a call.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 /// The time limit for the first connection.
-const FIRST_PATIENCE: Duration = Duration::from_secs(5);
+const FIRST_TIMEOUT: Duration = Duration::from_secs(5);
 /// The time between two pings of the server.
 const PINGS: Duration = Duration::from_secs(2);
 /// The most messages in a room's log: some minutes without a checkpoint.
-const MOST_MESSAGES: i64 = 20_000;
+const MAX_MESSAGES: i64 = 20_000;
 /// The most broadcasts of a room, or changes in the list of rooms, that wait. Further ones are lost.
-const MOST_QUEUED: usize = 1_024;
+const MAX_QUEUED: usize = 1_024;
 
 const BUCKET: &str = "cellcaster";
 const NUMBERS: &str = "cellcaster.number";
@@ -74,17 +74,17 @@ impl NatsBus {
             servers.iter().map(|it| format!("{}:{}", it.host(), it.port())).collect();
         let names = names.join(", ");
         let options = ConnectOptions::new()
-            .connection_timeout(FIRST_PATIENCE)
-            .request_timeout(Some(PATIENCE))
+            .connection_timeout(FIRST_TIMEOUT)
+            .request_timeout(Some(TIMEOUT))
             .ping_interval(PINGS)
-            .subscription_capacity(MOST_QUEUED);
+            .subscription_capacity(MAX_QUEUED);
         let client = options.connect(servers).await;
         let client = client.map_err(|error| format!("NATS at {names}: {error}"))?;
         let mut context = jetstream::new(client.clone());
-        context.set_timeout(FIRST_PATIENCE);
+        context.set_timeout(FIRST_TIMEOUT);
         let made = Self::make(&context).await;
         let (log, store) = made.map_err(|error| format!("JetStream at {names}: {error}"))?;
-        context.set_timeout(PATIENCE);
+        context.set_timeout(TIMEOUT);
         Ok(Self { client, context, log, store, revisions: Mutex::default() })
     }
 
@@ -92,7 +92,7 @@ impl NatsBus {
         let log = stream::Config {
             name: "CELLCASTER_LOG".to_owned(),
             subjects: vec!["cellcaster.log.*".to_owned()],
-            max_messages_per_subject: MOST_MESSAGES,
+            max_messages_per_subject: MAX_MESSAGES,
             allow_direct: true,
             ..stream::Config::default()
         };
@@ -129,7 +129,7 @@ impl NatsBus {
             if self.client.connection_state() != State::Connected {
                 return Err(BusFault::Unknown);
             }
-            timeout(PATIENCE, act).await.unwrap_or(Err(BusFault::Unknown))
+            timeout(TIMEOUT, act).await.unwrap_or(Err(BusFault::Unknown))
         })
     }
 
@@ -285,7 +285,7 @@ impl Bus for NatsBus {
         self.call(async move {
             let keys = format!("{ROOMS}*");
             let mut watch = self.store.watch_with_history(keys).await.map_err(unknown)?;
-            let (changes, receiver) = mpsc::channel(MOST_QUEUED);
+            let (changes, receiver) = mpsc::channel(MAX_QUEUED);
             tokio::spawn(async move {
                 while let Some(Ok(entry)) = watch.next().await {
                     let number = entry.key.strip_prefix(ROOMS).and_then(|it| it.parse().ok());
@@ -311,7 +311,7 @@ fn forward<T: Send + 'static>(
     client: &Client,
     make: fn(&Client, Message) -> T,
 ) -> mpsc::Receiver<T> {
-    let (messages, receiver) = mpsc::channel(MOST_QUEUED);
+    let (messages, receiver) = mpsc::channel(MAX_QUEUED);
     let client = client.clone();
     tokio::spawn(async move {
         loop {

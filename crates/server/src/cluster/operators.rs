@@ -3,8 +3,8 @@
 //! # Rules
 //!
 //! - A host asks the others over the bus, and waits until all present hosts have answered, but at most for
-//!   [`PATIENCE`]. The database lists the present hosts.
-//! - A host answers only for itself, with at most [`MOST_ROWS`] visitors, so that the bus accepts the answer as a
+//!   [`TIMEOUT`]. The database lists the present hosts.
+//! - A host answers only for itself, with at most [`MAX_ROWS`] visitors, so that the bus accepts the answer as a
 //!   message.
 //! - Only some requests go to the other hosts. Only a host's own operator can end it.
 //!
@@ -24,13 +24,13 @@ use crate::admin::{AdminReply, AdminRequest, HostInfo};
 use cellcaster::app::store::name_in_map_key;
 
 /// The time limit for the answers of other hosts.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 /// The time limit for the database to list the hosts.
-const DATABASE_PATIENCE: Duration = Duration::from_secs(1);
+const DATABASE_TIMEOUT: Duration = Duration::from_secs(1);
 /// The pause before a bus that did not answer is asked again.
 const PAUSE: Duration = Duration::from_secs(1);
 /// The most visitors in a host's answer. Each takes about 250 bytes, and NATS accepts a megabyte.
-const MOST_ROWS: usize = 2_000;
+const MAX_ROWS: usize = 2_000;
 
 /// The answers of the other hosts.
 #[derive(Default)]
@@ -114,9 +114,9 @@ impl SharedRooms {
         let context = self.context();
         let question = Question { from: self.own_name().to_owned(), request: request.clone() };
         let question = serde_json::to_vec(&question).unwrap_or_default();
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIMEOUT;
         let (hosts, answers) = tokio::join!(
-            timeout(DATABASE_PATIENCE, context.visits.hosts()),
+            timeout(DATABASE_TIMEOUT, context.visits.hosts()),
             context.bus.ask_hosts(question),
         );
         let mut others = OtherHosts::default();
@@ -259,9 +259,9 @@ fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
 /// Shortens a reply so that the bus accepts it.
 fn bounded(reply: AdminReply, host: &str) -> AdminReply {
     match reply {
-        AdminReply::Visitors(mut rows) if rows.len() > MOST_ROWS => {
-            let remark = format!("host {host} has {} more visitors", rows.len() - MOST_ROWS);
-            rows.truncate(MOST_ROWS);
+        AdminReply::Visitors(mut rows) if rows.len() > MAX_ROWS => {
+            let remark = format!("host {host} has {} more visitors", rows.len() - MAX_ROWS);
+            rows.truncate(MAX_ROWS);
             let reply = Box::new(AdminReply::Visitors(rows));
             AdminReply::AllHosts { reply, remarks: vec![remark] }
         }

@@ -7,7 +7,7 @@
 //! # Rules
 //!
 //! - A replica applies only messages of the log.
-//! - A message contains the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round
+//! - A message contains the two steps of a [`MESSAGE_INTERVAL`]. So a command waits for up to a period and for the round
 //!   trip to the log. In a room of one process, it waits for up to a step.
 //! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
 //! - A member is in the room once the log has their `join` entry.
@@ -40,13 +40,13 @@ use crate::logging;
 use crate::metrics::RoomFigures;
 use crate::rooms::room::{MemberId, Room};
 use crate::rooms::sequencer::{
-    FAULT, MOST_CAUGHT_UP, RoomInterface, STEP, message as panic_message,
+    FAULT, MAX_CAUGHT_UP, RoomInterface, STEP, message as panic_message,
 };
 use crate::rooms::summary::{RoomId, RoomRefusal};
 use cellcaster::game::PlayerColor;
 
 /// The time between two messages of a sequencer.
-pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
+pub(crate) const MESSAGE_INTERVAL: Duration = STEP.saturating_mul(STEPS);
 /// The steps in a message period.
 const STEPS: u32 = 2;
 /// How long a replica receives no messages before it reads the log.
@@ -54,7 +54,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 /// How long a room takes no steps before members are told.
 const STANDSTILL: Duration = Duration::from_millis(1_500);
 /// The least time for which a replica exists without members and watchers.
-const LEAST_STAY: Duration = Duration::from_secs(3);
+const MIN_STAY: Duration = Duration::from_secs(3);
 /// The time between two claims, and between two renewals of the lease.
 const SECOND: Duration = Duration::from_secs(1);
 /// The time after which a request is sent again.
@@ -62,7 +62,7 @@ const REQUEST_RETRY: Duration = Duration::from_millis(500);
 /// The time after which a request fails. Another host takes over a room sooner.
 const TIMEOUT: Duration = Duration::from_secs(8);
 /// The most messages for which a host that ends waits until the log has its last entries.
-const MOST_LAST_MESSAGES: usize = 15;
+const MAX_LAST_MESSAGES: usize = 15;
 /// The time between two checkpoints.
 const CHECKPOINTS: Duration = Duration::from_secs(5);
 /// The time between two requests for the lease.
@@ -234,7 +234,7 @@ impl Replica {
             tokio::select! {
                 biased;
                 () = sleep_until(next) => {
-                    next = (next + MESSAGE_PERIOD).max(Instant::now());
+                    next = (next + MESSAGE_INTERVAL).max(Instant::now());
                     self.run_period().await;
                     if self.is_over() {
                         return self.end().await;
@@ -498,7 +498,7 @@ impl Replica {
         }
         let closes_after = *self.interface.closes_after.borrow();
         let stay = closes_after.filter(|_| self.sequencer.is_some()).unwrap_or_default();
-        let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
+        let is_idle = now.duration_since(self.times.needed) >= stay.max(MIN_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
     }
 }
@@ -661,11 +661,11 @@ impl Replica {
             self.interface.inbox.part(member);
         }
         self.send_commands().await;
-        for _ in 0..MOST_LAST_MESSAGES {
+        for _ in 0..MAX_LAST_MESSAGES {
             if self.sequencer.as_ref().is_none_or(ClusterSequencer::is_settled) {
                 return;
             }
-            sleep(MESSAGE_PERIOD).await;
+            sleep(MESSAGE_INTERVAL).await;
             self.sequence(Instant::now()).await;
         }
     }
@@ -867,10 +867,10 @@ impl Replica {
 
 /// The steps that are due since `stepped`. Moves `stepped` forward.
 fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
-    const MOST: u64 = MOST_CAUGHT_UP as u64;
+    const MAX: u64 = MAX_CAUGHT_UP as u64;
     let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
-    *stepped = if due > MOST { now } else { *stepped + STEP * due as u32 };
-    due.min(MOST)
+    *stepped = if due > MAX { now } else { *stepped + STEP * due as u32 };
+    due.min(MAX)
 }
 
 /// Returns true if `pause` has passed since `last`.

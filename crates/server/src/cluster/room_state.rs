@@ -16,12 +16,12 @@ use super::message::{Check, LogMessage, reader, to_bytes};
 use crate::rooms::room::{Catalog, Entry, Header, Room};
 use crate::rooms::sequencer::{Changes, RoundLog};
 use cellcaster::game::STEPS_PER_SECOND;
-use cellcaster::game::stored::{MOST_BYTES, Unrestorable};
+use cellcaster::game::stored::{MAX_BYTES, Unrestorable};
 
 /// The steps between two checksums.
 const CHECKED: u64 = STEPS_PER_SECOND as u64;
 /// The most checksums that are remembered.
-const MOST_SUMS: usize = 8;
+const MAX_SUMS: usize = 8;
 
 /// A room, and the position up to which the log is applied.
 pub(crate) struct RoomState {
@@ -105,7 +105,7 @@ impl RoomState {
             self.tick += 1;
             if self.tick.is_multiple_of(CHECKED) {
                 self.sums.push_back(Check { tick: self.tick, sum: self.room.checksum() });
-                if self.sums.len() > MOST_SUMS {
+                if self.sums.len() > MAX_SUMS {
                     self.sums.pop_front();
                 }
             }
@@ -131,7 +131,7 @@ impl RoomState {
         let mut input = reader(bytes).map_err(sentence)?;
         let numbers = input.read().map_err(sentence)?;
         let mut room = Vec::new();
-        let mut decoder = ZlibDecoder::new(input.rest()).take(MOST_BYTES as u64 + 1);
+        let mut decoder = ZlibDecoder::new(input.rest()).take(MAX_BYTES as u64 + 1);
         decoder.read_to_end(&mut room).map_err(|_| "the checkpoint is damaged".to_owned())?;
         Ok(Self::with(Room::restore(catalog, &room)?, numbers))
     }
@@ -143,7 +143,7 @@ mod tests {
     use crate::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode};
     use cellcaster::game::PlayerColor;
-    use cellcaster::game::stored::MOST_COUNT;
+    use cellcaster::game::stored::MAX_COUNT;
     use cellcaster::world::Difficulty;
 
     fn state() -> RoomState {
@@ -213,7 +213,7 @@ mod tests {
         let mut input = reader(&bytes).unwrap();
         let _numbers: (u64, u64, u64) = input.read().unwrap();
         for (numbers, is_possible) in [
-            ((MOST_COUNT - 1, MOST_COUNT - 1, MOST_COUNT - 1), true),
+            ((MAX_COUNT - 1, MAX_COUNT - 1, MAX_COUNT - 1), true),
             ((u64::MAX, 2, 3), false),
             ((4, u64::MAX, 3), false),
             ((4, 2, u64::MAX), false),

@@ -32,7 +32,7 @@ const UNCLAIMED: Duration = Duration::from_secs(4);
 /// How long a member must go unclaimed before somebody else may return to them.
 const UNHEARD: Duration = Duration::from_millis(2_500);
 /// The most requests of each kind that are remembered, with their answers.
-const MOST_REQUESTS: usize = 64;
+const MAX_REQUESTS: usize = 64;
 
 /// The waiting commands, the claimed members, and the message that is being appended.
 pub(crate) struct ClusterSequencer {
@@ -201,7 +201,7 @@ impl ClusterSequencer {
         }
         self.claimed.insert(member, now);
         self.joining.push_back(Joining { token, member, color: None, is_in: false });
-        if self.joining.len() > MOST_REQUESTS {
+        if self.joining.len() > MAX_REQUESTS {
             self.joining.pop_front();
         }
         None
@@ -228,7 +228,7 @@ impl ClusterSequencer {
         }
         let decision = Decision::Open;
         self.returning.push_back(Returning { token, member, since: now, decision });
-        if self.returning.len() > MOST_REQUESTS {
+        if self.returning.len() > MAX_REQUESTS {
             self.returning.pop_front();
         }
         if self.away.contains(&member) {

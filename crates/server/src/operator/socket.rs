@@ -43,9 +43,9 @@ pub enum AdminFailure {
 }
 
 /// The longest line of a request, in bytes.
-const MOST_REQUEST: u64 = 4096;
+const MAX_REQUEST_BYTES: u64 = 4096;
 /// The longest line of a reply, in bytes. A hundred thousand visitors take less.
-const MOST_REPLY: u64 = 32 << 20;
+const MAX_REPLY_BYTES: u64 = 32 << 20;
 /// The time limit for a request, on the server.
 const SERVER_TIMEOUT: Duration = Duration::from_secs(5);
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
@@ -102,7 +102,9 @@ where
     let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
         Some(Ok(request)) => operator.answer(&request).await,
         Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
-        None => AdminReply::Fault(format!("a request is a line of at most {MOST_REQUEST} bytes")),
+        None => {
+            AdminReply::Fault(format!("a request is a line of at most {MAX_REQUEST_BYTES} bytes"))
+        }
     };
     let mut line = serde_json::to_vec(&reply)?;
     line.push(b'\n');
@@ -112,7 +114,7 @@ where
 /// The first line without its end; `None` if it is too long or has no end.
 async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec<u8>>> {
     let mut line = Vec::new();
-    let mut stream = tokio::io::BufReader::new(stream.take(MOST_REQUEST));
+    let mut stream = tokio::io::BufReader::new(stream.take(MAX_REQUEST_BYTES));
     stream.read_until(b'\n', &mut line).await?;
     Ok((line.pop() == Some(b'\n')).then_some(line))
 }
@@ -141,7 +143,7 @@ fn exchange(socket: &Path, request: &AdminRequest) -> io::Result<AdminReply> {
     line.push(b'\n');
     stream.write_all(&line)?;
     let mut reply = Vec::new();
-    BufReader::new(stream.take(MOST_REPLY)).read_until(b'\n', &mut reply)?;
+    BufReader::new(stream.take(MAX_REPLY_BYTES)).read_until(b'\n', &mut reply)?;
     Ok(serde_json::from_slice(&reply)?)
 }
 

@@ -19,7 +19,7 @@ use cellcaster::game::{Game, PlayerColor, Rules, Script};
 use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
 
 /// The longest part of a run that is shown, in steps: ten minutes, the length of the longest race.
-const MOST_STEPS: usize = 10 * 60 * 60;
+const MAX_STEPS: usize = 10 * 60 * 60;
 /// The number of steps per stored pose.
 const EVERY: usize = 2;
 /// The opacity of a ghost, of 255; the same as at home.
@@ -27,7 +27,7 @@ const OPACITY: u8 = 96;
 /// The colour of the best run. It is the second to last colour that members are assigned.
 const BEST: PlayerColor = PlayerColor::Orange;
 /// The maximum number of cached runs, 10 MB in all.
-const MOST_KEPT: usize = 32;
+const MAX_KEPT: usize = 32;
 /// The number of headings in a full turn.
 const HEADINGS: f64 = 65_536.0;
 
@@ -61,7 +61,7 @@ impl Run {
         let mut game = Game::with_rules(world, rules);
         let mut walked = 0.0;
         let mut poses = Vec::new();
-        for (step, (_section, intents)) in script.iter().take(MOST_STEPS).enumerate() {
+        for (step, (_section, intents)) in script.iter().take(MAX_STEPS).enumerate() {
             if game.is_finished() {
                 break;
             }
@@ -188,7 +188,7 @@ impl KeptRuns {
         let run = Run::played(world.as_ref().clone(), script.header().rules(), &script);
         let run = Arc::new(run);
         self.runs.push_back((key, Arc::clone(&run)));
-        if self.runs.len() > MOST_KEPT {
+        if self.runs.len() > MAX_KEPT {
             self.runs.pop_front();
         }
         Ok(Some(run))
@@ -260,10 +260,10 @@ mod tests {
 
     #[test]
     fn the_longest_run_takes_less_than_300_kilobytes() {
-        let text = format!("level cellar\n{} steps stand\n", MOST_STEPS + 100);
+        let text = format!("level cellar\n{} steps stand\n", MAX_STEPS + 100);
         let script = Script::parse(&text, "it").unwrap();
         let run = Run::played(cellar().without_guards(), Rules::default(), &script);
-        assert_eq!(run.poses.len(), MOST_STEPS / EVERY);
+        assert_eq!(run.poses.len(), MAX_STEPS / EVERY);
         let bytes = size_of_val(&*run.poses);
         assert!(bytes < 300_000, "{bytes}");
     }
@@ -305,10 +305,10 @@ mod tests {
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         let board = LevelBoard::new(CELLAR.0, CELLAR.1).unwrap();
         let mut kept = KeptRuns::default();
-        for steps in 0..MOST_KEPT as u64 + 3 {
+        for steps in 0..MAX_KEPT as u64 + 3 {
             let run = kept.run(&mut store, &catalog, &board, (mara, steps)).unwrap();
             assert!(run.is_some());
         }
-        assert_eq!(kept.runs.len(), MOST_KEPT);
+        assert_eq!(kept.runs.len(), MAX_KEPT);
     }
 }

@@ -10,7 +10,7 @@
 //!   `_`. It must not be the name of a built-in level.
 //! - Logs, scripts and boards refer to a map by its [key](map_key), which contains a hash of its text.
 //!   Results from before a change to the map are therefore not compared with newer ones.
-//! - There are at most [`MOST_MAPS`] maps, of at most [`MOST_MAP_BYTES`] each and [`MOST_BYTES`] in total.
+//! - There are at most [`MAX_MAPS`] maps, of at most [`MAX_MAP_BYTES`] each and [`MAX_BYTES`] in total.
 //!
 //! Rejected: reloading maps while the server runs. Open rooms and the boards would then refer to two maps
 //! with the same name.
@@ -27,11 +27,11 @@ use cellcaster::world::World;
 use thiserror::Error;
 
 /// The maximum number of a host's maps.
-pub const MOST_MAPS: usize = 100;
+pub const MAX_MAPS: usize = 100;
 /// The maximum size of one map, in bytes.
-pub const MOST_MAP_BYTES: u64 = 256 << 10;
+pub const MAX_MAP_BYTES: u64 = 256 << 10;
 /// The maximum total size of a host's maps, in bytes.
-pub const MOST_BYTES: u64 = 4 << 20;
+pub const MAX_BYTES: u64 = 4 << 20;
 
 /// The host's own maps, ordered by name.
 #[derive(Clone, Debug, Default)]
@@ -72,8 +72,8 @@ impl HostMaps {
                 }
                 Err(error) => errors.push(error),
             }
-            if bytes > MOST_BYTES {
-                let most = MOST_BYTES >> 20;
+            if bytes > MAX_BYTES {
+                let most = MAX_BYTES >> 20;
                 return Err(MapsError::Sentence(format!(
                     "the maps in {} have more than {most} MiB together",
                     printable_path(path)
@@ -128,9 +128,9 @@ fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
         if file.extension().is_some_and(|ending| ending == "toml") {
             files.push(file);
         }
-        if files.len() > MOST_MAPS {
+        if files.len() > MAX_MAPS {
             return Err(MapsError::Sentence(format!(
-                "there are more than {MOST_MAPS} maps in {}",
+                "there are more than {MAX_MAPS} maps in {}",
                 printable_path(path)
             )));
         }
@@ -150,10 +150,10 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
-    file.take(MOST_MAP_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    file.take(MAX_MAP_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     let length = bytes.len() as u64;
-    if length > MOST_MAP_BYTES {
-        let most = MOST_MAP_BYTES >> 10;
+    if length > MAX_MAP_BYTES {
+        let most = MAX_MAP_BYTES >> 10;
         return Err(MapsError::Sentence(format!(
             "{shown} is larger than a map of a host may be, {most} KiB"
         )));
@@ -166,12 +166,12 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
 
 /// The name of the map in a file, or an error if the name is not allowed.
 fn map_name(path: &Path) -> Result<String, MapsError> {
-    const LONGEST: usize = 32;
+    const MAX_LENGTH: usize = 32;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'_');
-    if !(1..=LONGEST).contains(&name.len()) || !name.bytes().all(is_plain) {
+    if !(1..=MAX_LENGTH).contains(&name.len()) || !name.bytes().all(is_plain) {
         return Err(MapsError::Sentence(format!(
-            "{} needs another name: 1 to {LONGEST} of the characters a to z, 0 to 9, - and _, then .toml",
+            "{} needs another name: 1 to {MAX_LENGTH} of the characters a to z, 0 to 9, - and _, then .toml",
             printable_path(path)
         )));
     }

@@ -7,7 +7,7 @@ use crate::rooms::room::{
 };
 
 /// The maximum size of a room's recording, both written and replayed, in bytes.
-pub(crate) const MOST_RECORDED_BYTES: u64 = 64 << 20;
+pub(crate) const MAX_RECORDED_BYTES: u64 = 64 << 20;
 
 /// The result of a recorded round.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub(crate) struct RoundReport {
 }
 
 /// The maximum length of a recorded round: two hours, or 20 seconds in a fuzz target.
-const MOST_STEPS: u64 = if cfg!(feature = "fuzzing") { 20 * 60 } else { 2 * 60 * 60 * 60 };
+const MAX_STEPS: u64 = if cfg!(feature = "fuzzing") { 20 * 60 } else { 2 * 60 * 60 * 60 };
 
 /// Replays the rounds of a recording. Each round lasts until the next one begins, and the last round until
 /// its last entry. `look` receives the room before each step.
@@ -69,7 +69,7 @@ fn play(
         if is_over && entries.peek().is_none() {
             return Ok(report(&room, header));
         }
-        if room.step() >= MOST_STEPS {
+        if room.step() >= MAX_STEPS {
             return Err(format!("round {} does not end within two hours", header.round));
         }
         look(&room)?;

@@ -2,7 +2,7 @@
 //!
 //! # Rules
 //!
-//! - A room takes a step every [`STEP`]. After a delay it catches up on at most [`MOST_CAUGHT_UP`] steps at
+//! - A room takes a step every [`STEP`]. After a delay it catches up on at most [`MAX_CAUGHT_UP`] steps at
 //!   once. It skips the rest, so the room's time falls behind.
 //! - Only entries of its [log](RoundLog) change a room. The [`Inbox`] rejects or delays excessive commands
 //!   before they become entries.
@@ -36,7 +36,7 @@ use cellcaster::game::{
 };
 
 /// The maximum number of steps to catch up on after a delay.
-pub(crate) const MOST_CAUGHT_UP: u32 = 6;
+pub(crate) const MAX_CAUGHT_UP: u32 = 6;
 /// Shown to members after a fault.
 pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
 
@@ -124,7 +124,7 @@ impl Sequencer {
     fn catch_up(&mut self, next: &mut Instant, on_change: &mut impl FnMut(&Room)) {
         let now = Instant::now();
         self.load.note_lateness(now.saturating_duration_since(*next));
-        for _ in 0..MOST_CAUGHT_UP {
+        for _ in 0..MAX_CAUGHT_UP {
             if *next > now {
                 return;
             }
@@ -374,7 +374,7 @@ impl Run {
 
     fn record(&mut self, intents: Intents) {
         match self.stretches.last_mut() {
-            Some(last) if last.intents == intents && last.steps < Stretch::MOST_STEPS => {
+            Some(last) if last.intents == intents && last.steps < Stretch::MAX_STEPS => {
                 last.steps += 1;
             }
             _ => self.stretches.push(Stretch { steps: 1, intents }),
@@ -402,9 +402,9 @@ pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER
 /// The number of chat lines that a member may send in one burst.
 const CHAT_BURST: f64 = 4.0;
 /// The maximum number of queued changes of intents per member.
-const MOST_INTENTS: usize = 8;
+const MAX_INTENTS: usize = 8;
 /// The maximum number of queued arrivals and departures, all of which take effect in the next step.
-const MOST_MOVES: usize = 64;
+const MAX_MOVES: usize = 64;
 
 /// The commands of a room's members that the sequencer has not taken yet.
 ///
@@ -413,7 +413,7 @@ const MOST_MOVES: usize = 64;
 /// at once, and after that one of each per second.
 ///
 /// Intents take effect in the order of arrival, one change per step, so that a tap begins and ends in
-/// separate steps. If [`MOST_INTENTS`] changes are queued, a new one replaces the last. Sessions limit the
+/// separate steps. If [`MAX_INTENTS`] changes are queued, a new one replaces the last. Sessions limit the
 /// rate of changes.
 #[derive(Debug)]
 pub(crate) struct Inbox {
@@ -618,13 +618,13 @@ impl Waiting {
         if self.is_closed {
             return Err(RoomRefusal::Gone);
         }
-        if self.seats.len() >= self.most || self.moves.len() >= MOST_MOVES {
+        if self.seats.len() >= self.most || self.moves.len() >= MAX_MOVES {
             return Err(RoomRefusal::Full);
         }
         let worn = |color: &PlayerColor| self.seats.iter().filter(|it| it.color == *color).count();
         let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(RoomRefusal::Full)?;
         let id = MemberId(self.next);
-        if id > MemberId::MOST {
+        if id > MemberId::MAX {
             return Err(RoomRefusal::Full);
         }
         self.next += 1;
@@ -651,7 +651,7 @@ impl Seat {
     fn act(&mut self, command: Command, time: Duration) -> Result<(), CommandRefusal> {
         let bucket = match command {
             Command::Intents { .. } => {
-                if self.intents.len() >= MOST_INTENTS {
+                if self.intents.len() >= MAX_INTENTS {
                     self.intents.pop_back();
                 }
                 self.intents.push_back(command);

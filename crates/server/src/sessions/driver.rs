@@ -75,7 +75,7 @@ struct Shared {
 /// The interval between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
 /// The maximum number of queued calls to the store.
-const MOST_CALLS: usize = 256;
+const MAX_CALLS: usize = 256;
 /// How long the store may take to shut down.
 const STORE_END: Duration = Duration::from_secs(10);
 
@@ -113,7 +113,7 @@ impl HostParts {
             catalog: Catalog::builtin(),
             recordings: Recordings::in_folder(live.get().recordings.clone()),
             load: Load::new(Arc::clone(&metrics)),
-            store: StoreWorker::start("store", MOST_CALLS, store)?,
+            store: StoreWorker::start("store", MAX_CALLS, store)?,
             waiting: None,
             // If the system had no random numbers, the server would have no keys either.
             seed: getrandom::u64().unwrap_or_default(),

@@ -21,7 +21,7 @@ use tokio::sync::oneshot;
 use super::gate::Gate;
 use super::inbound::{Inlet, inbound};
 use super::outbox::Outbox;
-use super::visitor::{self, Departure, Link, MOST_VARIABLES, Visitor};
+use super::visitor::{self, Departure, Link, MAX_VARIABLES, Visitor};
 use super::wire::Line;
 use crate::accounts::AccountKey;
 use crate::admission::{Refusal, VisitId};
@@ -220,7 +220,7 @@ impl Handler for Client {
         session: &mut Session,
     ) -> Result<(), Error> {
         let has_room =
-            self.environment.len() < MOST_VARIABLES || self.environment.contains_key(name);
+            self.environment.len() < MAX_VARIABLES || self.environment.contains_key(name);
         let is_kept = visitor::is_kept(name) && has_room;
         if is_kept {
             self.environment.insert(name.to_owned(), visitor::word(value));

@@ -31,11 +31,11 @@ const VERSION_TIME: Duration = Duration::from_secs(3);
 /// How long a session may take to finish after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
 /// The shortest pause between two checks whether a client is gone.
-const LEAST_PAUSE: Duration = Duration::from_millis(50);
+const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// The time limit for a client to close the connection after its session has ended.
 const FAREWELL: Duration = Duration::from_secs(2);
 /// The maximum number of messages queued for russh: a frame, the three closing messages, and keep-alive questions.
-const MOST_MESSAGES: usize = 32;
+const MAX_MESSAGES: usize = 32;
 /// The channel's receive window, in bytes.
 const WINDOW: u32 = 32 << 10;
 
@@ -205,7 +205,7 @@ async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
             _ = timeout(pause.min(config.silence.saturating_sub(silent)), question).await;
         }
         let silent = line.last_sign().elapsed();
-        let end = config.silence.saturating_sub(silent).max(LEAST_PAUSE);
+        let end = config.silence.saturating_sub(silent).max(MIN_INTERVAL);
         sleep(pause.saturating_sub(silent).max(pause / 4).min(end)).await;
     }
 }
@@ -287,7 +287,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
         window_size: WINDOW,
         maximum_packet_size: WINDOW,
         channel_buffer_size: 1,
-        event_buffer_size: MOST_MESSAGES,
+        event_buffer_size: MAX_MESSAGES,
         max_auth_attempts: 10,
         inactivity_timeout: None,
         keepalive_interval: None,

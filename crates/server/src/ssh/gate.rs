@@ -7,7 +7,7 @@
 //! status 255. The server does no cryptography for it.
 //!
 //! In a flood, an explanation must not cost more than closing the connection. Only a few clients get one: at
-//! most [`MOST`] within [`LINGER`], of which at most [`MOST_OF_NETWORK`] in one network. This also limits the
+//! most [`MAX`] within [`LINGER`], of which at most [`MAX_PER_NETWORK`] in one network. This also limits the
 //! number of tasks and sockets, because no explanation lasts longer than [`LINGER`]. All other connections
 //! are closed silently.
 //!
@@ -196,11 +196,11 @@ pub(crate) const VERSION: &str = "SSH-2.0-cellcaster";
 /// The longest duration of an explanation. A client closes the connection once it has read the message.
 const LINGER: Duration = Duration::from_secs(2);
 /// The maximum number of explanations within [`LINGER`].
-const MOST: usize = 64;
+const MAX: usize = 64;
 /// The maximum number of explanations per network within [`LINGER`].
-const MOST_OF_NETWORK: usize = 8;
+const MAX_PER_NETWORK: usize = 8;
 /// The most bytes read from a client during an explanation. Its version and its offer of algorithms take about 2,000.
-const MOST_READ: u64 = 16 << 10;
+const MAX_READ: u64 = 16 << 10;
 
 const DISCONNECT: u8 = 1;
 const TOO_MANY_CONNECTIONS: u32 = 12;
@@ -212,7 +212,7 @@ impl Explanations {
             self.0.pop_front();
         }
         let of_network = self.0.iter().filter(|(_, other)| *other == network).count();
-        let is_allowed = self.0.len() < MOST && of_network < MOST_OF_NETWORK;
+        let is_allowed = self.0.len() < MAX && of_network < MAX_PER_NETWORK;
         if is_allowed {
             self.0.push_back((now, network));
         }
@@ -226,7 +226,7 @@ pub(crate) async fn explain(mut socket: TcpStream, sentence: String) {
         socket.write_all(&message(&sentence)).await?;
         socket.shutdown().await?;
         // Closing a socket with unread data resets the connection, and the client might lose the sentence.
-        tokio::io::copy(&mut (&mut socket).take(MOST_READ), &mut tokio::io::sink()).await
+        tokio::io::copy(&mut (&mut socket).take(MAX_READ), &mut tokio::io::sink()).await
     };
     _ = timeout(LINGER, told).await;
 }
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(told(&mut explanations, 1, 2000), 8);
         let all: usize = (0..=255).map(|number| told(&mut explanations, number, 9000)).sum();
         assert_eq!(all, 64);
-        assert!(explanations.0.len() <= MOST);
+        assert!(explanations.0.len() <= MAX);
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub struct HostKey {
 /// The file name in the data folder.
 const NAME: &str = "host_key";
 /// The largest file that is read, in bytes. A key takes about 400.
-const LARGEST: u64 = 16 << 10;
+const MAX_BYTES: u64 = 16 << 10;
 
 impl HostKey {
     /// Reads the key from the file `host_key` of `folder`. If the file does not exist, creates a new key in a
@@ -48,7 +48,7 @@ impl HostKey {
 fn read(file: File, path: &Path) -> Result<HostKey, String> {
     refuse_readable(&file, path)?;
     let mut text = String::new();
-    let read = file.take(LARGEST).read_to_string(&mut text);
+    let read = file.take(MAX_BYTES).read_to_string(&mut text);
     read.map_err(|error| unreadable(path, &error))?;
     let key = PrivateKey::from_openssh(&text).ok().filter(|key| key.key_data().is_ed25519());
     let no_key = || {

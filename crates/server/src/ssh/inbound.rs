@@ -18,7 +18,7 @@ use tokio::sync::Notify;
 use tokio::task::yield_now;
 use tokio::time::{Instant, timeout};
 
-use super::wire::{ByteLimits, FEWEST};
+use super::wire::{ByteLimits, MIN};
 use crate::bucket::Bucket;
 use crate::lock::locked;
 use cellcaster::terminal::WindowSize;
@@ -26,7 +26,7 @@ use cellcaster::terminal::WindowSize;
 /// An event from a visitor's connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// Typed bytes, at most [`Inbound::MOST_AT_ONCE`].
+    /// Typed bytes, at most [`Inbound::MAX_AT_ONCE`].
     Bytes(Vec<u8>),
     /// The new size of the visitor's window.
     Resized(WindowSize),
@@ -94,15 +94,15 @@ pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
 impl Arrival {
     /// Returns true if more bytes may be waiting.
     fn is_full(&self) -> bool {
-        matches!(self, Self::Bytes(bytes) if bytes.len() == Inbound::MOST_AT_ONCE)
+        matches!(self, Self::Bytes(bytes) if bytes.len() == Inbound::MAX_AT_ONCE)
     }
 }
 
 impl Inbound {
     /// The size of the buffer, in bytes.
-    pub const MOST_BYTES: usize = 16 << 10;
+    pub const MAX_BYTES: usize = 16 << 10;
     /// The maximum size of an arrival, in bytes. A session handles it in well under a millisecond.
-    pub const MOST_AT_ONCE: usize = 256;
+    pub const MAX_AT_ONCE: usize = 256;
 
     /// Waits for the next arrival. [`Arrival::Ended`] comes after all bytes, and on every later call.
     ///
@@ -183,7 +183,7 @@ impl Waiting {
             return Some(Arrival::Resized(size));
         }
         if !self.bytes.is_empty() {
-            let rest = self.bytes.split_off(self.bytes.len().min(Inbound::MOST_AT_ONCE));
+            let rest = self.bytes.split_off(self.bytes.len().min(Inbound::MAX_AT_ONCE));
             return Some(Arrival::Bytes(mem::replace(&mut self.bytes, rest)));
         }
         self.ended.then_some(Arrival::Ended)
@@ -193,12 +193,12 @@ impl Waiting {
         if self.is_abandoned || self.ended {
             return Appended::Some(bytes.len());
         }
-        let room = bytes.len().min(Inbound::MOST_BYTES - self.bytes.len());
+        let room = bytes.len().min(Inbound::MAX_BYTES - self.bytes.len());
         if room == 0 {
             return Appended::Full;
         }
         let allowed = self.bucket.fill(now);
-        let fewest = FEWEST.min(room as f64);
+        let fewest = MIN.min(room as f64);
         if allowed < fewest {
             return Appended::TooFast(self.bucket.time_until(fewest));
         }
@@ -239,13 +239,13 @@ mod tests {
         assert_eq!(poll(inlet.bytes(&flood)), None);
         let held =
             |inlet: &Inlet| locked(&inlet.shared.waiting, |waiting| waiting.bytes.capacity());
-        assert!(held(&inlet) <= 2 * Inbound::MOST_BYTES);
+        assert!(held(&inlet) <= 2 * Inbound::MAX_BYTES);
         let mut taken = 0;
         while let Some(Arrival::Bytes(bytes)) = next(&mut inbound) {
-            assert!(bytes.len() <= Inbound::MOST_AT_ONCE);
+            assert!(bytes.len() <= Inbound::MAX_AT_ONCE);
             taken += bytes.len();
         }
-        assert_eq!(taken, Inbound::MOST_BYTES);
+        assert_eq!(taken, Inbound::MAX_BYTES);
         assert_eq!(poll(inlet.bytes(b"d")), Some(()));
         assert_eq!(next(&mut inbound), Some(Arrival::Bytes(b"d".to_vec())));
     }
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn a_connection_never_waits_for_a_session_that_is_gone() {
         let (inlet, inbound) = inbound(LIMITS);
-        assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MOST_BYTES + 1])), None);
+        assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MAX_BYTES + 1])), None);
         drop(inbound);
         assert_eq!(poll(inlet.bytes(&vec![0; 1 << 20])), Some(()));
     }

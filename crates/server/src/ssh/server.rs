@@ -28,7 +28,7 @@ pub struct Server {
 }
 
 /// The pause after a failed `accept`, for example when the process has no file descriptors left.
-const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+const ACCEPT_RETRY_INTERVAL: Duration = Duration::from_millis(100);
 /// The interval over which events are summed for the log.
 const SECOND: Duration = Duration::from_secs(1);
 /// The size of a socket's send buffer, in bytes. It allows 640 KB per second on a link with a round trip of 0.2 s.
@@ -98,7 +98,7 @@ impl Server {
                     },
                     Err(error) => {
                         logging::fault("accept", error);
-                        sleep(ACCEPT_PAUSE).await;
+                        sleep(ACCEPT_RETRY_INTERVAL).await;
                     }
                 },
             }

@@ -57,9 +57,9 @@ pub struct Departure {
 }
 
 /// The maximum length of a user name, of `TERM`, and of a variable's value, in characters.
-pub(crate) const LONGEST_WORD: usize = 64;
+pub(crate) const MAX_WORD_BYTES: usize = 64;
 /// The maximum number of variables.
-pub(crate) const MOST_VARIABLES: usize = 16;
+pub(crate) const MAX_VARIABLES: usize = 16;
 
 impl Departure {
     /// For a refused visitor, who has to change something or come back later.
@@ -68,9 +68,9 @@ impl Departure {
     pub(crate) const FAILED: Self = Self { status: 1, refusal: None };
 }
 
-/// The first [`LONGEST_WORD`] printable characters of `text`.
+/// The first [`MAX_WORD_BYTES`] printable characters of `text`.
 pub(crate) fn word(text: &str) -> String {
-    text.chars().filter(|char| !char.is_control()).take(LONGEST_WORD).collect()
+    text.chars().filter(|char| !char.is_control()).take(MAX_WORD_BYTES).collect()
 }
 
 /// Returns true if the variable with this name is kept.
@@ -101,7 +101,7 @@ mod tests {
     fn a_word_has_no_control_characters_and_an_end() {
         assert_eq!(word("ann\u{1b}[31m\r\n\0"), "ann[31m");
         assert_eq!(word("\u{9b}31m"), "31m");
-        assert_eq!(word(&"é".repeat(1000)).chars().count(), LONGEST_WORD);
+        assert_eq!(word(&"é".repeat(1000)).chars().count(), MAX_WORD_BYTES);
     }
 
     #[test]

@@ -69,9 +69,9 @@ pub(crate) struct Line {
 /// The maximum burst, in seconds at the full rate.
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause. This keeps pauses rare.
-pub(crate) const FEWEST: f64 = 1024.0;
+pub(crate) const MIN: f64 = 1024.0;
 /// The largest allowed read, in bytes. Packets have 32 KB plus framing (RFC 4253, section 6.1).
-const LONGEST_PACKET: usize = 35_000;
+const MAX_PACKET_BYTES: usize = 35_000;
 const READER: usize = 0;
 const WRITER: usize = 1;
 
@@ -151,7 +151,7 @@ impl<S> Wire<S> {
                 left => Ok(left as usize),
             });
         }
-        let fewest = FEWEST.min(f64::from(limits.per_second));
+        let fewest = MIN.min(f64::from(limits.per_second));
         loop {
             let now = Instant::now();
             let bytes = self.bucket.fill(now.saturating_duration_since(self.line.begun));
@@ -178,7 +178,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         self.line.check(READER, cx)?;
-        if buffer.remaining() > LONGEST_PACKET {
+        if buffer.remaining() > MAX_PACKET_BYTES {
             return Poll::Ready(Err(io::ErrorKind::FileTooLarge.into()));
         }
         let most = ready!(self.allowance(cx))?.min(buffer.remaining());
@@ -265,7 +265,7 @@ impl Hello {
         }
         self.bytes.extend_from_slice(bytes);
         while self.step().is_some() {}
-        if self.stage == Stage::Done || self.bytes.len() > LONGEST_PACKET {
+        if self.stage == Stage::Done || self.bytes.len() > MAX_PACKET_BYTES {
             self.bytes = Vec::new();
         }
     }
@@ -293,7 +293,7 @@ impl Hello {
 
 fn packet_length(bytes: &[u8]) -> Option<usize> {
     let length = u32::from_be_bytes(*bytes.first_chunk()?) as usize;
-    (length <= LONGEST_PACKET).then_some(4 + length)
+    (length <= MAX_PACKET_BYTES).then_some(4 + length)
 }
 
 fn compresses(mut lists: &[u8]) -> bool {
@@ -366,7 +366,7 @@ mod tests {
             let mut parser = Hello::default();
             for piece in pieces {
                 parser.receive(&piece);
-                prop_assert!(parser.bytes.len() <= LONGEST_PACKET);
+                prop_assert!(parser.bytes.len() <= MAX_PACKET_BYTES);
             }
         }
     }

@@ -27,7 +27,7 @@ use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
 use self::wanderer::Leaving;
-use crate::transport::{PATIENCE, folder};
+use crate::transport::{TIMEOUT, folder};
 
 #[path = "../support/wanderer.rs"]
 mod wanderer;
@@ -59,7 +59,7 @@ struct Held {
 
 const CLIENTS: u64 = 16;
 const TIME: Duration = Duration::from_secs(10);
-const LONGEST: Duration = Duration::from_secs(2);
+const MAX_DURATION: Duration = Duration::from_secs(2);
 
 impl Counted {
     fn start() -> Self {
@@ -70,7 +70,7 @@ impl Counted {
         config.bytes_per_second = 1 << 20;
         config.silence = Duration::from_secs(3);
         // This test is not about clients that never read.
-        config.stall = 2 * PATIENCE;
+        config.stall = 2 * TIMEOUT;
         config.empty_room = Duration::from_secs(1);
         let key = HostKey::open(&folder).unwrap();
         let store = HostStore::open(&folder).unwrap();
@@ -103,7 +103,7 @@ impl Counted {
     }
 
     fn wait_until(&self, is_right: impl Fn(&Held) -> bool) {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIMEOUT;
         while !is_right(&self.held()) {
             assert!(Instant::now() < end, "{:?}", self.held());
             thread::sleep(Duration::from_millis(20));
@@ -188,7 +188,7 @@ async fn soak(address: SocketAddr) -> BTreeMap<Leaving, usize> {
             _ = timeout(TIME, async {
                 for visit in 0.. {
                     let seed = client << 32 | visit;
-                    match wanderer::visit(address, seed, LONGEST).await {
+                    match wanderer::visit(address, seed, MAX_DURATION).await {
                         Ok(leaving) => *ends.entry(leaving).or_default() += 1,
                         Err(_) => sleep(Duration::from_millis(50)).await,
                     }

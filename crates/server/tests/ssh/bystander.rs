@@ -42,7 +42,7 @@ const LIMIT: Duration = Duration::from_millis(100);
 const LIMIT_BESIDE_A_PICTURE: Duration = Duration::from_millis(20);
 /// The limit on a busy machine, as a multiple of the time without traffic.
 const FACTOR: u32 = 3;
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 /// The bytes that a sender sends per tick. With packet framing, they add up to the 64 KB per second that
 /// hosts permit.
 const CHUNK: usize = 1000;
@@ -160,7 +160,7 @@ impl Client {
                 self.read().await;
             }
         };
-        let has_come = timeout(PATIENCE, wait).await.is_ok();
+        let has_come = timeout(TIMEOUT, wait).await.is_ok();
         assert!(has_come, "{what} does not come:\n{}", self.emulator.text());
     }
 

@@ -10,7 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Long enough for a machine under load.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A server and the folder with its keys.
 pub(crate) struct Server {
@@ -82,7 +82,7 @@ impl Server {
     }
 
     fn wait_until_it_answers(&self) {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + TIMEOUT;
         let answers = || {
             let mut greeting = [0; 4];
             let stream = TcpStream::connect(("127.0.0.1", self.port));

@@ -27,7 +27,7 @@ enum State {
 }
 
 /// How long a key may go unanswered before it is forgotten.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 const WORD: &[u8] = b"lamp";
 
 impl Lamp {
@@ -53,7 +53,7 @@ impl Lamp {
     /// Returns true if a key was not answered in time, and forgets it.
     pub(crate) fn gives_up(&mut self, now: Instant) -> bool {
         let State::Awaited(pressed) = self.state else { return false };
-        let gives_up = now.saturating_duration_since(pressed) > PATIENCE;
+        let gives_up = now.saturating_duration_since(pressed) > TIMEOUT;
         if gives_up {
             self.state = State::Out;
         }
@@ -102,8 +102,8 @@ mod tests {
         let begun = Instant::now();
         let mut lamp = Lamp::default();
         lamp.press(begun);
-        assert!(!lamp.gives_up(begun + PATIENCE) && lamp.is_awaited());
-        assert!(lamp.gives_up(begun + PATIENCE + MILLISECOND) && !lamp.is_awaited());
-        assert!(!lamp.gives_up(begun + 2 * PATIENCE));
+        assert!(!lamp.gives_up(begun + TIMEOUT) && lamp.is_awaited());
+        assert!(lamp.gives_up(begun + TIMEOUT + MILLISECOND) && !lamp.is_awaited());
+        assert!(!lamp.gives_up(begun + 2 * TIMEOUT));
     }
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A server with a log on disk, and a watcher process that kills the server when this process ends.
 pub(crate) struct NatsServer {
@@ -65,7 +65,7 @@ impl NatsServer {
         self.watcher = Some(watcher);
         let start = Instant::now();
         while TcpStream::connect((self.address, self.port)).is_err() {
-            assert!(start.elapsed() < PATIENCE, "nats-server is installed, and starts");
+            assert!(start.elapsed() < TIMEOUT, "nats-server is installed, and starts");
             thread::sleep(Duration::from_millis(20));
         }
     }

@@ -15,7 +15,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Long enough for a machine under load.
-const PATIENCE: Duration = Duration::from_mins(1);
+const TIMEOUT: Duration = Duration::from_mins(1);
 const USER: &str = "postgres";
 
 /// A server, its folder, and a watcher process that kills the server and removes the folder when this process ends.
@@ -150,7 +150,7 @@ impl PostgresServer {
         let postmaster = self.postmaster();
         let start = Instant::now();
         while Path::new("/proc").join(&postmaster).exists() {
-            assert!(start.elapsed() < PATIENCE, "the server does not end");
+            assert!(start.elapsed() < TIMEOUT, "the server does not end");
             thread::sleep(Duration::from_millis(10));
         }
     }
@@ -158,7 +158,7 @@ impl PostgresServer {
     /// Starts the server, and waits until it answers.
     pub(crate) fn restart(&self) {
         let mut start = command("pg_ctl", &self.folder);
-        start.arg("start").arg("-w").args(["-t", &PATIENCE.as_secs().to_string()]);
+        start.arg("start").arg("-w").args(["-t", &TIMEOUT.as_secs().to_string()]);
         start.arg("-D").arg(self.folder.join("data")).arg("-l").arg(self.folder.join("log"));
         // The server inherits the output and does not exit, so the output cannot be captured.
         let status = start.stdout(Stdio::null()).stderr(Stdio::null()).status();

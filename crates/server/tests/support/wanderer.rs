@@ -52,7 +52,7 @@ const WAY_LENGTH: u32 = 6;
 const WAY_PAUSE: Duration = Duration::from_millis(150);
 const PAUSE: Duration = Duration::from_millis(50);
 /// How long a silent terminal stays, and the longest wait for a session to end.
-const PATIENCE: Duration = Duration::from_secs(25);
+const TIMEOUT: Duration = Duration::from_secs(25);
 
 impl Handler for Anyone {
     type Error = Error;
@@ -113,7 +113,7 @@ impl Wanderer {
     }
 
     async fn leave(mut self, leaving: Leaving) -> Result<(), Error> {
-        let patience = Instant::now() + PATIENCE;
+        let patience = Instant::now() + TIMEOUT;
         match leaving {
             Leaving::ByKeys => {
                 self.channel.data(&b"\x03\x03"[..]).await?;

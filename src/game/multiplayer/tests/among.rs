@@ -12,7 +12,7 @@ fn rules(strikes: Strikes) -> MultiplayerRules {
 fn players_join_at_the_start_or_beside_it_until_the_game_is_full() {
     let hall = [".................", "........@........", "................."];
     let rules = MultiplayerRules { collides: true, ..MultiplayerRules::default() };
-    let (mut game, ids) = with_players(level(&hall, "", ""), rules, MOST_PLAYERS);
+    let (mut game, ids) = with_players(level(&hall, "", ""), rules, MAX_PLAYERS);
     assert_eq!(position(&game, ids[0]), DVec2::new(8.5, 1.5));
     assert_eq!(game.players().collect::<Vec<_>>(), ids);
     assert_eq!(game.join(PlayerColor::Red), None);

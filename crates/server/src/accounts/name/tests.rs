@@ -97,7 +97,7 @@ fn names_that_look_alike_share_a_key() {
 fn no_account_has_the_name_of_a_guest() {
     for number in [0, 1, u32::MAX] {
         let name = Name::of_guest(number);
-        assert!(name.is_reserved() && name.as_str().width() <= Name::MOST_COLUMNS);
+        assert!(name.is_reserved() && name.as_str().width() <= Name::MAX_COLUMNS);
     }
 }
 
@@ -149,8 +149,8 @@ proptest! {
     fn every_name_is_printable_and_is_its_own_name(text in texts()) {
         if let Ok(name) = Name::new(&text) {
             let text = name.as_str();
-            prop_assert!((Name::LEAST_COLUMNS..=Name::MOST_COLUMNS).contains(&text.width()));
-            prop_assert_eq!(printable(text, Name::MOST_COLUMNS), text);
+            prop_assert!((Name::MIN_COLUMNS..=Name::MAX_COLUMNS).contains(&text.width()));
+            prop_assert_eq!(printable(text, Name::MAX_COLUMNS), text);
             prop_assert_eq!(Name::new(text), Ok(name.clone()));
             prop_assert_eq!(Name::kept(text), name);
         }

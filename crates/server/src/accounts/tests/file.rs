@@ -187,7 +187,7 @@ fn a_full_disk_is_told_from_other_failures() {
         store.connection().pragma_update(None, "max_page_count", most).unwrap();
     };
     set(&store, pages);
-    let script = "#".repeat(AccountSettings::MOST_BYTES);
+    let script = "#".repeat(AccountSettings::MAX_BYTES);
     let settings = AccountSettings { configuration: script, ..AccountSettings::default() };
     let failure = store.set_settings(account.id, &settings).unwrap_err();
     assert!(matches!(failure, StoreFailure::Full(_)), "{failure}");

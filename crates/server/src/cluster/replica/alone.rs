@@ -5,7 +5,7 @@
 //! - **The lease decides.** While the database renews it, no other host appends to the log, so the messages can be
 //!   appended later. Without the lease the room waits.
 //! - **Nobody joins meanwhile**, because a member who is told that they are in the room must be in the log.
-//! - **Messages wait in memory**, each with up to ten seconds, for [`MOST_ALONE`]. Then the room waits.
+//! - **Messages wait in memory**, each with up to ten seconds, for [`MAX_ALONE`]. Then the room waits.
 //! - If members are on other hosts, the sequencer releases the lease instead, and another host goes on.
 //!
 //! Rejected: a checkpoint in place of the messages. Watchers on other hosts would skip a part of the game, and the log
@@ -22,7 +22,7 @@ use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
 
 /// The longest time for which a room goes on alone.
-const MOST_ALONE: Duration = Duration::from_mins(10);
+const MAX_ALONE: Duration = Duration::from_mins(10);
 
 impl Replica {
     /// Goes on alone, or leaves the room to other hosts, if the log has not answered for a while.
@@ -58,7 +58,7 @@ impl Replica {
             (alone.probe, alone.probed) = (Some(tokio::spawn(probe)), now);
         }
         let (Some(alone), Some(sequencer)) = (&self.alone, &mut self.sequencer) else { return };
-        if !has_lease || now.duration_since(alone.since) >= MOST_ALONE {
+        if !has_lease || now.duration_since(alone.since) >= MAX_ALONE {
             self.times.stepped = now;
             return;
         }

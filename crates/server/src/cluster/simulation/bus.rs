@@ -7,7 +7,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Answer, Bus, BusFault, HostRequest, Key};
-use super::world::{Inner, Kept, LOOK, PATIENCE, World};
+use super::world::{Inner, Kept, LOOK, TIMEOUT, World};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
@@ -32,13 +32,13 @@ impl SimulatedBus {
         Box::pin(async move {
             world.pass(*host).await;
             if world.is_lost(*host) {
-                sleep(PATIENCE).await;
+                sleep(TIMEOUT).await;
                 return Err(BusFault::Unknown);
             }
             let answer = world.with(|inner| act(inner, *host));
             world.pass(*host).await;
             if world.is_lost(*host) {
-                sleep(PATIENCE).await;
+                sleep(TIMEOUT).await;
                 return Err(BusFault::Unknown);
             }
             answer

@@ -17,7 +17,7 @@ use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 use cellcaster::rng::SplitMix64;
 
-pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
+pub(crate) const TIMEOUT: Duration = Duration::from_secs(1);
 /// The time between two checks whether a fault is over.
 pub(crate) const LOOK: Duration = Duration::from_millis(10);
 
@@ -118,7 +118,7 @@ impl World {
             while let Some(call) = queue.recv().await {
                 world.pass(host).await;
                 if world.link(host).has_no_database {
-                    sleep(PATIENCE).await;
+                    sleep(TIMEOUT).await;
                     call(&mut HostStore::failing(StoreFailure::Away("no database".into())));
                     continue;
                 }

@@ -6,7 +6,7 @@
 //!   finished longer than [`Bounds::age`] ago. The oldest finished recordings are removed first. A file that
 //!   is still being written stays.
 //! - A recording ends, with a whole entry, when the folder is full of files that are still being written, or
-//!   when the recording reaches [`MOST_RECORDED_BYTES`]. Its room goes on, and the next round is recorded
+//!   when the recording reaches [`MAX_RECORDED_BYTES`]. Its room goes on, and the next round is recorded
 //!   again.
 //! - A round begins a new file if the last one has reached [`Bounds::file`], so that long recordings age, too.
 //!
@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 use crate::lock::locked;
-use crate::rooms::replayed::MOST_RECORDED_BYTES;
+use crate::rooms::replayed::MAX_RECORDED_BYTES;
 use crate::rooms::room::{Entry, Header};
 use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
@@ -169,7 +169,7 @@ impl RecordedFile {
     fn has_room_for(&mut self, more: u64) -> bool {
         let bytes = self.bytes + more;
         let has_room =
-            bytes <= MOST_RECORDED_BYTES && self.folder.take(blocks(bytes) - blocks(self.bytes));
+            bytes <= MAX_RECORDED_BYTES && self.folder.take(blocks(bytes) - blocks(self.bytes));
         if has_room {
             self.bytes = bytes;
         }

@@ -70,13 +70,13 @@ fn all_faults_of_all_maps_are_reported() {
 
 #[test]
 fn the_number_and_the_size_of_maps_have_limits() {
-    let long = format!("{HALL}#{}", " ".repeat(MOST_MAP_BYTES as usize));
+    let long = format!("{HALL}#{}", " ".repeat(MAX_MAP_BYTES as usize));
     let folder = Scratch::with("large", &[("large.toml", &long)]);
     assert_eq!(folder.fault(), "maps/large.toml is larger than a map of a host may be, 256 KiB");
-    let full = &long[..MOST_MAP_BYTES as usize];
-    let names: Vec<String> = (0..=MOST_MAPS).map(|number| format!("m{number}.toml")).collect();
+    let full = &long[..MAX_MAP_BYTES as usize];
+    let names: Vec<String> = (0..=MAX_MAPS).map(|number| format!("m{number}.toml")).collect();
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), full)).collect();
-    let most = (MOST_BYTES / MOST_MAP_BYTES) as usize;
+    let most = (MAX_BYTES / MAX_MAP_BYTES) as usize;
     let folder = Scratch::with("bytes", &files[..most]);
     assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), most);
     let folder = Scratch::with("more-bytes", &files[..=most]);

@@ -93,7 +93,7 @@ impl Room {
     /// Rejects a state in which a step could fail, or that contains text that no member can type.
     fn check(&self) -> Result<(), Unrestorable> {
         self.round.check(self.header.mode, self.step)?;
-        check(self.next_member <= MemberId::MOST.0 + 1, "the number of the next member")?;
+        check(self.next_member <= MemberId::MAX.0 + 1, "the number of the next member")?;
         check(self.members.len() <= self.header.mode.most(), "the number of members")?;
         check(self.are_members_possible(), "a member")?;
         let is_possible = |said: &Said| {

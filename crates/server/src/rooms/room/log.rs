@@ -165,7 +165,7 @@ impl Header {
                 && self.members[..index].iter().all(|other| other.id != seat.id)
                 && seat.kept.is_none_or(KeptPlace::is_possible)
         };
-        self.next_member <= MemberId::MOST.0 + 1
+        self.next_member <= MemberId::MAX.0 + 1
             && self.members.len() <= self.mode.most()
             && self.members.iter().enumerate().all(is_possible)
     }
@@ -323,7 +323,7 @@ mod tests {
         #[test]
         fn an_entry_reads_as_it_is_written(
             step: u64,
-            member in 0..=MemberId::MOST.0,
+            member in 0..=MemberId::MAX.0,
             command in command(),
         ) {
             let entry = Entry { step, member: MemberId(member), command };

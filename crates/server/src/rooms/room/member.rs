@@ -54,7 +54,7 @@ pub(crate) struct KeptPlace {
 
 impl MemberId {
     /// The greatest number. A room that somebody joins every second would reach it after 68 years.
-    pub(crate) const MOST: Self = Self(i32::MAX as u32);
+    pub(crate) const MAX: Self = Self(i32::MAX as u32);
 
     /// Parses a number; `None` if it is too large.
     pub(crate) fn parse(word: &str) -> Option<Self> {
@@ -66,7 +66,7 @@ impl TryFrom<u32> for MemberId {
     type Error = &'static str;
 
     fn try_from(number: u32) -> Result<Self, &'static str> {
-        if number <= Self::MOST.0 { Ok(Self(number)) } else { Err("a member") }
+        if number <= Self::MAX.0 { Ok(Self(number)) } else { Err("a member") }
     }
 }
 

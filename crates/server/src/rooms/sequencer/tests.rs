@@ -49,7 +49,7 @@ fn changes_of_intents_keep_their_order_one_in_a_step() {
     }
     inbox.act(id, want([])).unwrap();
     let intents: Vec<Command> = (0..60).flat_map(|_| taken(&inbox)).collect();
-    assert_eq!(intents.len(), MOST_INTENTS);
+    assert_eq!(intents.len(), MAX_INTENTS);
     assert_eq!(intents.last(), Some(&want([])));
     let mut count = 0;
     for step in 0..600 {
@@ -94,6 +94,6 @@ fn joins_and_departures_in_one_step_are_bounded() {
         inbox.leave(id);
         Some(id)
     });
-    assert!(ids.take(1000).count() <= MOST_MOVES);
-    assert!(taken(&inbox).len() <= MOST_MOVES + 1);
+    assert!(ids.take(1000).count() <= MAX_MOVES);
+    assert!(taken(&inbox).len() <= MAX_MOVES + 1);
 }

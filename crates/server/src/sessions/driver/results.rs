@@ -29,7 +29,7 @@ use cellcaster::app::store::Improved;
 use cellcaster::world::{Difficulty, World};
 
 /// The maximum number of board entries shown, and the lowest place that a player is told.
-const MOST_ROWS: usize = 100;
+const MAX_ROWS: usize = 100;
 
 /// Replays runs and records them, on the store's thread.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ impl Recorder {
         logging::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
         let what = if improved.time { "your best" } else { "not your best" };
         let what = format!("{}, rank {rank}: {what}.", of_steps(steps));
-        let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
+        let scores = store.level_scores(run.board(), MAX_ROWS).unwrap_or_else(|failure| {
             self.failed(&failure);
             Vec::new()
         });
@@ -142,7 +142,7 @@ pub(crate) fn board(
     own: Option<AccountId>,
 ) -> Vec<BoardRow> {
     let Some(board) = LevelBoard::new(level, difficulty) else { return Vec::new() };
-    let scores = store.level_scores(&board, MOST_ROWS).unwrap_or_else(|failure| {
+    let scores = store.level_scores(&board, MAX_ROWS).unwrap_or_else(|failure| {
         logging::store_failed(failure);
         Vec::new()
     });
@@ -158,9 +158,9 @@ pub(crate) fn board(
 }
 
 /// The pause between two passes over the waiting results.
-const PERIOD: Duration = Duration::from_secs(2);
+const INTERVAL: Duration = Duration::from_secs(2);
 /// The pause after a pass in which the store has refused results.
-const REFUSED_PERIOD: Duration = Duration::from_mins(1);
+const REFUSED_INTERVAL: Duration = Duration::from_mins(1);
 
 /// Records the waiting results in repeated passes, for as long as the host exists.
 pub(crate) async fn record_all(shared: Weak<Shared>) {
@@ -180,7 +180,7 @@ pub(crate) async fn record_all(shared: Weak<Shared>) {
                 Ok(Next::None) | Err(_) => break,
             }
         }
-        sleep(if refused > 0 { REFUSED_PERIOD } else { PERIOD }).await;
+        sleep(if refused > 0 { REFUSED_INTERVAL } else { INTERVAL }).await;
     }
 }
 

@@ -51,7 +51,7 @@ impl Simulated {
     /// Must be called within a runtime.
     pub(crate) fn new(setup: Setup) -> Self {
         let metrics = Arc::<Metrics>::default();
-        let (store, mut queue) = StoreWorker::new(super::MOST_CALLS);
+        let (store, mut queue) = StoreWorker::new(super::MAX_CALLS);
         let (mut database, time) = (setup.store, setup.store_time);
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {

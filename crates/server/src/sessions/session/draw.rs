@@ -37,7 +37,7 @@ const ROOM_KEYS: [&str; 2] = [
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
 /// The minimum height, in rows, for a banner above the menu.
-const LEAST_WITH_BANNER: u16 = 20;
+const MIN_WITH_BANNER: u16 = 20;
 
 thread_local! {
     /// The renderer shared by the sessions drawn on this thread. It takes half a megabyte in a level with
@@ -68,7 +68,7 @@ impl Ui {
     }
 
     fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
-        let below = if picture.height >= LEAST_WITH_BANNER {
+        let below = if picture.height >= MIN_WITH_BANNER {
             draw_banner(canvas, picture, self.glyphs(), self.depth())
         } else {
             picture

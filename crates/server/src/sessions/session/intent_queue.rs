@@ -12,7 +12,7 @@ use std::time::Duration;
 use cellcaster::game::{Intents, Look};
 
 /// The shortest interval between two changes: two steps, so that each change takes effect in a separate step.
-const LEAST_INTERVAL: Duration = Duration::from_millis(34);
+const MIN_INTERVAL: Duration = Duration::from_millis(34);
 /// The interval at which a moving member's intents are sent again.
 const RENEWAL_INTERVAL: Duration = Duration::from_millis(250);
 /// The maximum number of queued changes. If it is exceeded, all but the newest are dropped.
@@ -67,7 +67,7 @@ impl IntentQueue {
         let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
         let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
         match (is_renewed, self.sent.is_empty()) {
-            (false, _) => Some(after(LEAST_INTERVAL)),
+            (false, _) => Some(after(MIN_INTERVAL)),
             (true, false) => Some(after(RENEWAL_INTERVAL)),
             (true, true) => None,
         }

@@ -181,7 +181,7 @@ impl Ui {
             self.renew_menu();
         }
         let context = self.key_context();
-        for _ in 0..self.clock.steps_until(now).min(Clock::MOST_STEPS) {
+        for _ in 0..self.clock.steps_until(now).min(Clock::MAX_STEPS) {
             self.controls.advance(now, context);
             self.want();
             self.turn();

@@ -8,7 +8,7 @@ use super::{CLIENTS, HOSTILE, Run};
 /// configuration's default.
 const SILENCE: u64 = 12_000;
 /// The maximum number of frames sent to a client after it stops reading: one partly received, and one waiting.
-const MOST_HELD: u64 = 2;
+const MAX_HELD: u64 = 2;
 const KEYS: [&str; 20] = [
     "\x1b[119;1:1u",
     "\x1b[119;1:3u",
@@ -96,7 +96,7 @@ impl Run {
         if let Some(index) = silent.iter().position(|(other, _)| *other == client) {
             let (_, before) = silent.swap_remove(index);
             let held = rig.clients[client].frames() - before;
-            assert!(held <= MOST_HELD, "{held} frames");
+            assert!(held <= MAX_HELD, "{held} frames");
             rig.clients[client].set(|link| link.reads = true);
         }
     }

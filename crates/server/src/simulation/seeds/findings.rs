@@ -13,10 +13,10 @@ use crate::simulation::tapes::{assert_same, replayed};
 use crate::simulation::{ROOM, Speaks, catalog};
 
 /// The longest time between two frames of the steady member: three frames at thirty per second.
-const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+const MAX_PAUSE: Duration = Duration::from_millis(100);
 
 /// The longest time from the bystander's key to the frame that answers it.
-const LONGEST_ANSWER: Duration = Duration::from_millis(100);
+const MAX_ANSWER: Duration = Duration::from_millis(100);
 
 impl Run {
     /// Asserts that the frames of the steady member were never delayed.
@@ -26,7 +26,7 @@ impl Run {
             arrivals.into_iter().filter(|time| (begun..end).contains(time)).chain([end]).collect();
         let pauses = times.windows(2).map(|pair| pair[1] - pair[0]);
         let longest = pauses.chain([times[0] - begun]).max();
-        assert!(longest <= Some(LONGEST_PAUSE), "{longest:?} without a picture");
+        assert!(longest <= Some(MAX_PAUSE), "{longest:?} without a picture");
     }
 
     /// Asserts that each of the bystander's keys was answered in time.
@@ -36,7 +36,7 @@ impl Run {
         let arrivals = self.rig.clients[*client].arrivals();
         for key in pressed {
             let answer = arrivals.iter().find(|time| *time > key).map(|answer| *answer - *key);
-            let is_soon = answer.is_some_and(|time| time <= LONGEST_ANSWER);
+            let is_soon = answer.is_some_and(|time| time <= MAX_ANSWER);
             assert!(is_soon, "a key was answered after {answer:?}");
         }
     }

@@ -11,7 +11,7 @@ use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime};
 
 use super::running::Running;
 use crate::support::server;
-use crate::transport::{PATIENCE, folder};
+use crate::transport::{TIMEOUT, folder};
 
 fn admin(folder: &Path, arguments: &[&str]) -> Output {
     server(&["admin"]).args(arguments).args(["--data"]).arg(folder).output().unwrap()
@@ -153,7 +153,7 @@ fn what_is_wrong_is_told_in_a_sentence() {
 /// The response of a server's admin socket to `line`.
 fn answer(folder: &Path, line: &[u8]) -> String {
     let mut stream = UnixStream::connect(folder.join("admin.sock")).unwrap();
-    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
     _ = stream.write_all(line);
     let mut answer = String::new();
     _ = stream.read_to_string(&mut answer);

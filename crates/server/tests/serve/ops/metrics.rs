@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use super::running::Running;
-use crate::transport::PATIENCE;
+use crate::transport::TIMEOUT;
 
 /// A port that was free a moment ago.
 pub(crate) fn free_port() -> u16 {
@@ -23,7 +23,7 @@ fn measured() -> (Running, u16) {
 /// Sends a request and returns everything that the server sends until it closes the connection.
 fn answer(address: impl ToSocketAddrs, request: &[u8]) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
-    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
     // The server may close the connection before it has read everything.
     _ = stream.write_all(request);
     _ = stream.shutdown(Shutdown::Write);

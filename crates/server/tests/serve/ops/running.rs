@@ -14,7 +14,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use crate::emulator::Speaks;
 use crate::player::Player;
 use crate::support::server;
-use crate::transport::{PATIENCE, folder, wait_until};
+use crate::transport::{TIMEOUT, folder, wait_until};
 
 pub(crate) struct Running {
     pub(crate) folder: PathBuf,
@@ -128,7 +128,7 @@ impl Running {
 
     /// Waits for the process to exit; returns its exit status.
     pub(crate) fn wait_for_end(&mut self) -> Option<i32> {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIMEOUT;
         loop {
             if let Some(status) = self.process.try_wait().unwrap() {
                 return status.code();

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use super::house::{House, PATIENCE, wait_until};
+use super::house::{House, TIMEOUT, wait_until};
 
 #[test]
 fn a_paste_bomb_arrives_bit_by_bit() {
@@ -37,7 +37,7 @@ fn what_is_no_text_reaches_the_session_as_it_is() {
 #[test]
 fn clients_that_never_read_hold_one_frame_each() {
     const CLIENTS: usize = 5;
-    const MOST: i64 = CLIENTS as i64 * 2 * 80 * 24 * 40;
+    const MAX: i64 = CLIENTS as i64 * 2 * 80 * 24 * 40;
     let house = House::open();
     let players = [(); CLIENTS].map(|()| house.visitor(&[]));
     let held = || house.metrics.held.get();
@@ -50,7 +50,7 @@ fn clients_that_never_read_hold_one_frame_each() {
     for _ in 0..3 {
         house.assert_answers();
         // A frame of noise has 80×24 cells of at most 40 bytes, in a buffer that grew by doubling.
-        assert!(held() <= MOST, "{} bytes", held());
+        assert!(held() <= MAX, "{} bytes", held());
     }
     players[0].set_reading(true);
     players[0].send("awakef");
@@ -77,7 +77,7 @@ fn a_flood_of_refused_connections_is_told_seldom() {
     let player = house.visitor(&[]);
     let told = (0..200).filter(|_| {
         let mut stream = TcpStream::connect(house.address).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        stream.set_read_timeout(Some(TIMEOUT)).unwrap();
         let mut answer = Vec::new();
         // A connection that is closed silently may be reset.
         _ = stream.read_to_end(&mut answer);

@@ -22,7 +22,7 @@ use crate::emulator::Speaks;
 use crate::player::Player;
 
 /// Long enough for a machine under load.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
 const WINDOW: (u16, u16) = (80, 24);
 
 pub(crate) struct House {
@@ -175,7 +175,7 @@ fn due_of(text: &str) -> [u32; 2] {
 
 fn serve(runtime: &Runtime, server: Server, stopped: impl Future<Output = ()> + Send) {
     runtime.block_on(server.run(Echo, stopped));
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     while runtime.metrics().num_alive_tasks() > 0 {
         assert!(Instant::now() < end, "tasks are left over");
         thread::sleep(Duration::from_millis(10));
@@ -194,7 +194,7 @@ pub(crate) fn folder() -> PathBuf {
 
 /// Waits until `condition` holds.
 pub(crate) fn wait_until(what: &str, condition: impl Fn() -> bool) {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     while !condition() {
         assert!(Instant::now() < end, "{what}");
         thread::sleep(Duration::from_millis(20));

@@ -9,4 +9,4 @@ mod host_key;
 mod house;
 mod raw;
 
-pub(crate) use house::{PATIENCE, folder, wait_until};
+pub(crate) use house::{TIMEOUT, folder, wait_until};

@@ -12,14 +12,14 @@ use cellcaster_server::admission::Refusal;
 use tokio::net::TcpSocket;
 use tokio::runtime::Runtime;
 
-use super::house::{House, PATIENCE};
+use super::house::{House, TIMEOUT};
 
 const VERSION: &[u8] = b"SSH-2.0-test\r\n";
 
 fn connect(house: &House) -> TcpStream {
     let stream = TcpStream::connect(house.address).unwrap();
-    stream.set_read_timeout(Some(PATIENCE)).unwrap();
-    stream.set_write_timeout(Some(PATIENCE)).unwrap();
+    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
+    stream.set_write_timeout(Some(TIMEOUT)).unwrap();
     stream
 }
 
@@ -61,7 +61,7 @@ fn a_connection_that_says_nothing_is_closed() {
 /// A client sends its version at once, even if its key exchange takes long.
 #[test]
 fn the_version_has_less_time_than_the_keys() {
-    let house = House::open_with(|config| config.handshake = PATIENCE);
+    let house = House::open_with(|config| config.handshake = TIMEOUT);
     let mut versed = connect(&house);
     versed.write_all(VERSION).unwrap();
     let mut silent = connect(&house);
@@ -87,7 +87,7 @@ fn a_connection_that_drips_is_closed() {
         let begun = Instant::now();
         let dripped = bytes.iter().take_while(|byte| {
             thread::sleep(Duration::from_millis(20));
-            assert!(begun.elapsed() < PATIENCE, "it is not closed");
+            assert!(begun.elapsed() < TIMEOUT, "it is not closed");
             slow.write_all(&[**byte]).is_ok()
         });
         assert!(dripped.count() < bytes.len());

@@ -7,7 +7,7 @@ use super::proxy::{Cut, Proxy};
 use super::*;
 
 /// The most time that a call takes, with a margin for a machine under load.
-const MOST: Duration = Duration::from_secs(8);
+const MAX: Duration = Duration::from_secs(8);
 
 /// Calls the store until it answers again.
 fn until_it_answers(store: &mut HostStore) {
@@ -71,7 +71,7 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
         let failure = failure.to_string();
         assert!(failure.contains("can't be used") && failure.lines().count() == 1, "{failure}");
         assert!(store.create_account(None, &key(2), &name("Bob"), at(0)).is_err());
-        assert!(start.elapsed() < MOST, "{:?}", start.elapsed());
+        assert!(start.elapsed() < MAX, "{:?}", start.elapsed());
     }
     assert!(HostStore::connect(&address).is_err());
     server.restart();
@@ -98,7 +98,7 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
         );
         let changed = store.create_account(None, &key(1), &name("Ada"), at(0));
         assert!(matches!(changed, Err(Refusal::Failed(_))), "{changed:?}");
-        assert!(start.elapsed() < 2 * MOST, "{:?}", start.elapsed());
+        assert!(start.elapsed() < 2 * MAX, "{:?}", start.elapsed());
         thread::sleep(Duration::from_millis(1100));
     }
     server.resume();

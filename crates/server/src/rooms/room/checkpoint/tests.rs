@@ -213,7 +213,7 @@ fn members_whom_no_room_has_had_are_refused() {
         (room.next_member, room.members[0].id) = (next_member, MemberId(id));
         Room::restore(&catalog, &room.checkpoint()).is_ok()
     };
-    assert!(is_restored(MemberId::MOST.0 + 1, MemberId::MOST.0));
+    assert!(is_restored(MemberId::MAX.0 + 1, MemberId::MAX.0));
     assert!(!is_restored(u32::MAX, 1_000_000));
     assert!(!is_restored(1_000_000, 1_000_000));
 }
