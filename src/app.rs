@@ -26,7 +26,7 @@ pub mod parts {
     pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
     pub use crate::app::page::{
-        Effect, Kind, Menu, Page, Pages, is_answerable, is_too_small, leaving, message,
+        Effect, PageKind, Menu, Page, Pages, is_answerable, is_too_small, leaving, message,
         picture_and_status, too_small,
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
@@ -50,10 +50,10 @@ use picture::{MapPanel, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views, Watch};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder, Steps};
-pub use run::{Farewell, Opening, Replay, play};
-use screen::{Choice, Screen};
+pub use run::{ClosingLines, InitialState, Replay, play};
+use screen::{MenuChoice, AppScreen};
 pub use setting::MapDisplay;
-pub use settings::{Configuration, Given, Origin, Settings};
+pub use settings::{Configuration, SettingOrigins, Origin, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
 use title::TmuxOrder;
@@ -95,7 +95,7 @@ struct App {
     watch: Watch,
     /// The time that the earlier levels took, in seconds.
     earlier: f64,
-    pages: Pages<Screen, Choice>,
+    pages: Pages<AppScreen, MenuChoice>,
     /// The entries that the title offers; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
@@ -146,19 +146,19 @@ impl App {
     }
 
     /// A game that opens with the levels or the title in `opening`, and with the state in `store`.
-    fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+    fn opened(opening: InitialState, settings: Settings, store: Store) -> Self {
         let mut app = Self { store, ..Self::new(Levels::default(), settings) };
         match opening {
-            Opening::Levels(levels) => {
+            InitialState::Levels(levels) => {
                 app.difficulty = app.usual_difficulty();
                 app.begin(*levels);
             }
-            Opening::Title(offers) => app.offer(offers),
-            Opening::Daily(offers) => {
+            InitialState::Title(offers) => app.offer(offers),
+            InitialState::Daily(offers) => {
                 app.offer(offers);
-                app.open(Screen::Daily);
+                app.open(AppScreen::Daily);
             }
-            Opening::Endless(offers) => {
+            InitialState::Endless(offers) => {
                 app.offers = Some(offers);
                 app.begin_endless();
             }

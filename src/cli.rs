@@ -60,9 +60,9 @@ enum Command {
     Snapshot(snapshot::Snapshot),
     Cast(cast::Cast),
     Check(check::Check),
-    Levels(levels::Levels),
+    Levels(levels::LevelsCommand),
     Config(config::Config),
-    Replay(replay::Replay),
+    Replay(replay::ReplayCommand),
     Completions(help::Completions),
     Man(help::Manual),
 }

@@ -68,7 +68,7 @@ pub use rules::{
     Input, MAX_LAG, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
     Strikes,
 };
-pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
+pub use script::{Header, LevelName, ScriptWriter, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
 pub use stored::{RULES_VERSION, Unrestorable};
 pub use tally::{Rank, Share, Tally};
@@ -167,7 +167,7 @@ impl Game {
 
     /// A game in a generated level, which starts at `site` or near it. `None` if the player can
     /// stand nowhere there, for example outside the level.
-    pub fn in_level(level: generate::Level, site: Site) -> Option<Self> {
+    pub fn in_level(level: generate::GeneratedLevel, site: Site) -> Option<Self> {
         let (window, world) = Window::open(level, site)?;
         Some(Self::begun(world, Rules::default(), Some(window)))
     }

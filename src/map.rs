@@ -63,7 +63,7 @@ pub use files::{Folder, MAX_BYTES, NoFiles, TextureFileError, TextureFiles};
 use files::{open, read_text, too_large};
 use legend::Meaning;
 use plan::{Names, Plan};
-use textures::{Surface, Textures};
+use textures::{SurfaceText, Textures};
 use things::ThingList;
 use tiles::{Common, Faces, TileList};
 
@@ -230,7 +230,7 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
     // If one of the two has a fault, the tiles would only cause further faults.
     let black = Covering::from(Paint::Color(Rgb::BLACK));
     let (floor, ceiling) = (floor.unwrap_or(black), ceiling.unwrap_or(Ceiling::Covered(black)));
-    let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?);
+    let mut face = |surface: &Option<SurfaceText<'_>>| textures.paint(surface.as_ref()?);
     let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
     let map_ceiling = definitions.ceiling_height.unwrap_or(Heights::LEVEL.ceiling());
     let ground = Tile {

@@ -33,7 +33,7 @@ use planes::PlaneMemory;
 pub(crate) use sky::{SkyMemory, SkyView};
 pub(crate) use target::{SurfaceBuffer, Target};
 
-use crate::visibility::{DrawList, Filter, Scene};
+use crate::visibility::{DrawList, Filter, FrameContext};
 use sampling::{Means, MipLevels, Sampling};
 
 /// The memory of a drawing thread, reused from frame to frame.
@@ -46,7 +46,7 @@ pub(crate) struct RasterMemory {
 
 /// Draws the rows of `list` that `target` covers.
 pub(crate) fn draw(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
     memory: &mut RasterMemory,
@@ -63,7 +63,7 @@ pub(crate) fn draw(
 
 /// Draws the planes and the faces of `list`, which are behind its layers.
 fn draw_surfaces<M: Sampling>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
     memory: &mut RasterMemory,

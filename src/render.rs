@@ -30,7 +30,7 @@ pub use threads::{Threads, WhyOne};
 
 pub use crate::cast::DynCaster;
 use crate::raster::{self, RasterMemory, SkyMemory, SkyView, SurfaceBuffer};
-use crate::visibility::{self, DrawList, Scene, Stats, VisibilityMemory};
+use crate::visibility::{self, DrawList, FrameContext, StatsCounter, VisibilityMemory};
 #[cfg(feature = "terminal")]
 use crate::world::Figure;
 use crate::world::{Camera, World};
@@ -128,12 +128,12 @@ impl Renderer {
 
     /// Draws the view of `camera` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        self.draw(world, camera, frame, &mut Stats::default());
+        self.draw(world, camera, frame, &mut StatsCounter::default());
     }
 
     /// Draws as [`Renderer::render`] does, and returns the plan and the counts.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let mut counted = Stats::kept();
+        let mut counted = StatsCounter::kept();
         let (plan, threads) = self.draw(world, camera, frame, &mut counted);
         let mut stats = counted.counts();
         let size = u64::from(frame.width()) * u64::from(frame.height());
@@ -172,14 +172,14 @@ impl Renderer {
         world: &World,
         camera: &Camera,
         frame: &mut Frame,
-        stats: &mut Stats,
+        stats: &mut StatsCounter,
     ) -> (FramePlan, Threads) {
         let Self { caster, filter, seconds, threads, memory } = self;
         let plan = FramePlan::new(world, *filter);
         let threads = Threads::new(frame.size(), *threads);
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
         let scene =
-            Scene { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
+            FrameContext { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
         let caster = Some(&*caster).filter(|caster| !caster.is_default());
         let list = &mut memory.list;
         memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);

@@ -30,8 +30,8 @@ mod shadows;
 mod tree;
 
 pub use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, MIN_LENGTH, Plane, Scene, Shape,
-    SolidTexture, Sphere, Start, Sun,
+    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, MIN_LENGTH, Plane, Scene, BodyShape,
+    SolidTexture, Sphere, SceneStart, Sun,
 };
 pub use camera::{Axes, Camera};
 pub use ray::{Hit, Ray};

@@ -43,7 +43,7 @@ pub use self::event::{
 };
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::guard::Recorder;
-pub use self::known::{ColorSource, Detected, Options, locale_without_utf8};
+pub use self::known::{ColorSource, Detected, SessionOptions, locale_without_utf8};
 pub use self::protocol::Protocol;
 pub use self::session::Session;
 pub use self::tmux::TmuxClient;

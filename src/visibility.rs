@@ -33,16 +33,16 @@ pub(crate) use billboard::Billboard;
 #[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
-pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, Plane, PlaneKind};
+pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, VisiblePlane, PlaneKind};
 pub(crate) use edges::{FaceEdges, SlopedEdge};
 pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
 pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
-pub(crate) use sectors::{PlaneSide, Surface as PlaneSurface};
+pub(crate) use sectors::{PlaneSide, PlaneSurface as PlaneSurfaceAlias};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
-pub(crate) use stats::Stats;
+pub(crate) use stats::StatsCounter;
 pub use stats::{FrameStats, Pass, PassStats, WalkStats};
 pub(crate) use texture_stepper::{FaceTexels, TextureStepper};
 
@@ -53,7 +53,7 @@ use walk::WalkMemory;
 
 /// A world, the camera that views it, and the projection and plan of the frame.
 #[derive(Clone, Copy)]
-pub(crate) struct Scene<'a> {
+pub(crate) struct FrameContext<'a> {
     pub(crate) world: &'a World,
     pub(crate) camera: &'a Camera,
     /// The time for which animated sprites are drawn, in seconds.
@@ -72,11 +72,11 @@ pub(crate) struct VisibilityMemory {
 /// Fills `list` with the contents of `scene`. The rays from the camera use `caster`, or the exact caster if it
 /// is `None`. Returns the time at which a thing in view next changes its appearance; `None` for never.
 pub(crate) fn fill(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     caster: Option<&DynCaster>,
     memory: &mut VisibilityMemory,
     list: &mut DrawList,
-    stats: &mut Stats,
+    stats: &mut StatsCounter,
 ) -> Option<f64> {
     let VisibilityMemory { walk, layers } = memory;
     let width = scene.projection.columns();

@@ -18,7 +18,7 @@ use crate::app::controls::{Action, Bindings};
 use crate::app::picture::{DrawOptions, Overlay};
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
-use crate::app::screen::Screen;
+use crate::app::screen::AppScreen;
 use crate::app::status::whole_seconds;
 use crate::app::status::{HealthSigns, Part, hint};
 use crate::app::{App, Shown, page, title};
@@ -40,7 +40,7 @@ impl App {
     pub(crate) fn render(
         &mut self,
         window: Size,
-        go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
+        go_on: &mut dyn FnMut(AppScreen, &Bindings) -> bool,
     ) -> bool {
         let area = Rect::from(window);
         if page::is_too_small(area) {
@@ -76,14 +76,14 @@ impl App {
     fn draw_panel(&mut self, canvas: &mut impl Canvas, picture: Rect) {
         let bindings = &self.settings.bindings;
         match self.screen() {
-            Screen::Playing => {}
-            Screen::Help => {
+            AppScreen::Playing => {}
+            AppScreen::Help => {
                 self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
-            Screen::Leaving => {
+            AppScreen::Leaving => {
                 page::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
-            Screen::Title => {
+            AppScreen::Title => {
                 let below = title::draw_banner(canvas, picture, self.settings.glyphs, self.depth());
                 self.pages.menu.draw(canvas, below);
             }
@@ -147,7 +147,7 @@ impl App {
         let Some(overlay) = overlay else { return options.draw_middle(canvas, area) };
         let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
         overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
-        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
+        overlay.draw_hud(canvas, area, self.screen() == AppScreen::Playing);
     }
 
     fn draw_options(&self) -> DrawOptions {
@@ -224,7 +224,7 @@ impl App {
         if self.demo.is_some() {
             return Some(self.clock.step_after(0));
         }
-        if self.screen() != Screen::Playing {
+        if self.screen() != AppScreen::Playing {
             return self.pages.pending_until();
         }
         if self.controls.held.has_taps() {
@@ -240,7 +240,7 @@ impl App {
     /// Returns true if the player wants nothing and the next step changes only what others do.
     pub(crate) fn waits_for_others(&self) -> bool {
         let wanted = self.wanted();
-        self.screen() == Screen::Playing
+        self.screen() == AppScreen::Playing
             && self.demo.is_none()
             && wanted.is_empty()
             && !self.controls.held.has_taps()
@@ -288,7 +288,7 @@ impl App {
 }
 
 /// Returns true if `event` must be handled before the picture is finished.
-fn comes_first(event: &Event, screen: Screen, bindings: &Bindings) -> bool {
+fn comes_first(event: &Event, screen: AppScreen, bindings: &Bindings) -> bool {
     match event {
         Event::Quit(_) | Event::Suspend | Event::Resized => true,
         Event::Key(event) => {
@@ -296,7 +296,7 @@ fn comes_first(event: &Event, screen: Screen, bindings: &Bindings) -> bool {
                 let key = bindings.resolve(*event).key;
                 bindings.action(key) == Some(Action::Leave)
             };
-            event.phase == Phase::Press && (screen != Screen::Playing || leaves())
+            event.phase == Phase::Press && (screen != AppScreen::Playing || leaves())
         }
         _ => false,
     }

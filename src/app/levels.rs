@@ -21,7 +21,7 @@ use crate::app::App;
 use crate::app::page::{Menu, panel, wrapped};
 use crate::app::played::{Goal, Played, Watch};
 use crate::app::recording::{Ghost, RunLog};
-use crate::app::screen::{Choice, Screen};
+use crate::app::screen::{MenuChoice, AppScreen};
 use crate::app::status::whole_seconds;
 use crate::app::store::{Descent, Reached, Save};
 use crate::app::title::OwnLevel;
@@ -49,7 +49,7 @@ pub struct Levels {
 
 /// A level before it begins. It can begin any number of times.
 pub(crate) enum Stage {
-    Builtin(&'static builtin::Level),
+    Builtin(&'static builtin::BuiltinLevel),
     Level(Level),
     Own(OwnLevel),
     Game(Box<Game>),
@@ -233,7 +233,7 @@ impl App {
     pub(crate) fn next_level(&mut self) {
         let stage = self.levels.rest.next();
         let begun = stage.and_then(|stage| Some((stage.begin(self.difficulty)?, stage)));
-        let Some((game, stage)) = begun else { return self.show(Screen::End) };
+        let Some((game, stage)) = begun else { return self.show(AppScreen::End) };
         self.earlier += self.game.elapsed();
         self.levels.number.number += 1;
         self.levels.stage = stage;
@@ -265,7 +265,7 @@ impl App {
         self.record(retry, 1);
         self.watch = Watch::begin(self.game.grid());
         self.release_keys();
-        self.show(Screen::Playing);
+        self.show(AppScreen::Playing);
     }
 
     /// Leaves the game and returns to the title.
@@ -284,7 +284,7 @@ impl App {
         self.ghost = None;
         self.begin_demo();
         self.release_keys();
-        self.show(Screen::Title);
+        self.show(AppScreen::Title);
     }
 
     fn begin_level(&mut self, game: Played) {
@@ -297,7 +297,7 @@ impl App {
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
         self.release_keys();
-        self.show(Screen::Playing);
+        self.show(AppScreen::Playing);
     }
 }
 
@@ -327,7 +327,7 @@ impl App {
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
                 if self.shows_result() {
-                    self.show(Screen::Playing);
+                    self.show(AppScreen::Playing);
                 }
                 self.shown = None;
             }
@@ -360,7 +360,7 @@ const PRACTICE: &str = "Practice: the first try of the day counts";
 impl App {
     /// The menu before the daily run. It offers to begin or continue the try that counts, or to
     /// practise once that try is over.
-    pub(crate) fn daily_menu(&self) -> Menu<Choice> {
+    pub(crate) fn daily_menu(&self) -> Menu<MenuChoice> {
         let menu = Menu::new("daily run");
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
         let menu = menu.line(format!("The descent of {}, the same for all.", date_of(date.into())));
@@ -371,15 +371,15 @@ impl App {
             None => menu
                 .line("One try counts, and it ends with your death.")
                 .line("If you leave, it is saved, and you can go on.")
-                .entry("Begin the try that counts", Choice::Daily),
+                .entry("Begin the try that counts", MenuChoice::Daily),
             Some(_) if self.store.has_saved(id) => menu
                 .line("The try that counts is where you left it.")
-                .entry("Continue the try that counts", Choice::Continue(id)),
+                .entry("Continue the try that counts", MenuChoice::Continue(id)),
             Some(tried) => menu
                 .line(format!("The try that counts reached {}.", described(tried)))
-                .entry("Practise", Choice::Daily),
+                .entry("Practise", MenuChoice::Daily),
         };
-        menu.entry("Return to the title", Choice::Back)
+        menu.entry("Return to the title", MenuChoice::Back)
     }
 
     /// Begins the daily descent, at the same difficulty for everybody.
@@ -442,16 +442,16 @@ impl App {
     }
 
     /// Adds the two kinds of descent to the title's menu.
-    pub(crate) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_descents(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
         let Some(offers) = &self.offers else { return menu };
         let reached = |reached: Option<Reached>| reached.map_or_else(String::new, short);
         let daily = offers.today.map(|date| {
-            ("Daily run", reached(self.store.daily(date)), Choice::Open(Screen::Daily))
+            ("Daily run", reached(self.store.daily(date)), MenuChoice::Open(AppScreen::Daily))
         });
         menu.entries(daily).entry_with(
             "Endless",
             reached(self.store.best_descent()),
-            Choice::Endless,
+            MenuChoice::Endless,
         )
     }
 }

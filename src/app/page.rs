@@ -38,12 +38,12 @@ use crate::tui::{HeldKeys, Minimap, Press};
 /// A page. Its kind decides which keys work on it.
 pub trait Page: Copy + PartialEq {
     /// The kind of the page.
-    fn kind(self) -> Kind;
+    fn kind(self) -> PageKind;
 }
 
 /// A kind of page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PageKind {
     /// The picture, or a page whose owner handles the keys.
     Bare,
     /// A menu. If its entries have values, the left and right keys change them.
@@ -163,14 +163,14 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
     ) -> Effect {
         self.pending = None;
         match self.page.kind() {
-            Kind::Help if self.help.scroll(key) => Effect::Redraw,
-            Kind::Leaving => self.press_to_answer(key, press, bindings, now),
-            Kind::Result
+            PageKind::Help if self.help.scroll(key) => Effect::Redraw,
+            PageKind::Leaving => self.press_to_answer(key, press, bindings, now),
+            PageKind::Result
                 if press == Press::Repeat || !is_answerable(held, self.shown_since, now) =>
             {
                 Effect::None
             }
-            Kind::Result => match key {
+            PageKind::Result => match key {
                 Key::Up | Key::Down => {
                     self.menu.select_neighbour(key == Key::Down);
                     Effect::Redraw
@@ -178,7 +178,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
                 Key::Enter => self.press_to_answer(key, press, bindings, now),
                 _ => Effect::None,
             },
-            Kind::Menu { has_values } => {
+            PageKind::Menu { has_values } => {
                 if let Some(selected) = self.menu.selected_by(key, bindings) {
                     self.menu.selected = selected;
                     Effect::Redraw
@@ -190,7 +190,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
                     Effect::Other
                 }
             }
-            Kind::Help | Kind::Bare => Effect::Other,
+            PageKind::Help | PageKind::Bare => Effect::Other,
         }
     }
 
@@ -219,18 +219,18 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
 
     fn answer(&mut self, key: Key, bindings: &Bindings) -> Effect {
         match self.page.kind() {
-            Kind::Leaving => {
+            PageKind::Leaving => {
                 let leaves = bindings.action(key) == Some(Action::Leave) && key != Key::Escape;
                 Effect::Leave(leaves || key == Key::Enter)
             }
-            Kind::Menu { .. } | Kind::Result => match self.menu.chosen_by(key) {
+            PageKind::Menu { .. } | PageKind::Result => match self.menu.chosen_by(key) {
                 Some(chosen) => {
                     self.menu.selected = chosen;
                     Effect::Choose
                 }
                 None => Effect::Answer(key),
             },
-            Kind::Help | Kind::Bare => Effect::Answer(key),
+            PageKind::Help | PageKind::Bare => Effect::Answer(key),
         }
     }
 
@@ -262,7 +262,7 @@ const REPETITION: Duration = Duration::from_millis(150);
 pub struct Menu<C> {
     title: String,
     text: Vec<String>,
-    entries: Vec<Entry<C>>,
+    entries: Vec<MenuEntry<C>>,
     selected: usize,
     /// The first visible entry, and the number of entries visible in the last drawing.
     first: usize,
@@ -270,7 +270,7 @@ pub struct Menu<C> {
 }
 
 #[derive(Clone, Debug)]
-struct Entry<C> {
+struct MenuEntry<C> {
     label: String,
     /// The text at the right.
     value: String,
@@ -332,7 +332,7 @@ impl<C: Copy> Menu<C> {
         value: impl Into<String>,
         choice: C,
     ) -> Self {
-        self.entries.push(Entry { label: label.into(), value: value.into(), choice });
+        self.entries.push(MenuEntry { label: label.into(), value: value.into(), choice });
         self
     }
 
@@ -421,7 +421,7 @@ impl<C: Copy> Menu<C> {
         let is_separated = !text.is_empty() && text.len() < room_for_text && self.page > 0;
         let shown = &self.entries[self.first..][..self.page];
         let text_width = text.iter().map(|line| line.chars().count()).max().unwrap_or(0);
-        let width = shown.iter().map(Entry::width).max().unwrap_or(0).max(text_width);
+        let width = shown.iter().map(MenuEntry::width).max().unwrap_or(0).max(text_width);
         let title = self.shown_title();
         let width = width.max(title.chars().count()).min(most_columns);
         let above = text.iter().map(|line| Line::raw(line.as_str()).centered());
@@ -455,7 +455,7 @@ impl<C: Copy> Menu<C> {
 /// The style of the selected entry.
 const SELECTED: Style = Style::new().add_modifier(Modifier::REVERSED);
 
-impl<C> Entry<C> {
+impl<C> MenuEntry<C> {
     fn width(&self) -> usize {
         let value = Span::raw(&self.value).width();
         MARK.len() + Span::raw(&self.label).width() + if value > 0 { GAP + value } else { 0 }

@@ -330,14 +330,14 @@ fn angle(heard: &Heard, heading: Heading) -> f64 {
 
 /// The side of the ring that shows a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+enum RingSide {
     Ahead,
     Right,
     Behind,
     Left,
 }
 
-impl Side {
+impl RingSide {
     fn of(angle: f64) -> Self {
         match angle {
             -45.0..=45.0 => Self::Ahead,
@@ -352,16 +352,16 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     let strength = usize::from(heard.strength.clamp(1, 3));
     let (character, word) = sign(heard.kind);
     let characters: String = std::iter::repeat_n(character, strength).collect();
-    let characters = match (word.filter(|_| has_words), Side::of(angle(heard, heading))) {
+    let characters = match (word.filter(|_| has_words), RingSide::of(angle(heard, heading))) {
         (None, _) => characters,
-        (Some(word), Side::Right) => format!("{word} {characters}"),
+        (Some(word), RingSide::Right) => format!("{word} {characters}"),
         (Some(word), _) => format!("{characters} {word}"),
     };
-    match Side::of(angle(heard, heading)) {
-        Side::Ahead => format!("^{characters}"),
-        Side::Right => format!("{characters}>"),
-        Side::Behind => format!("v{characters}"),
-        Side::Left => format!("<{characters}"),
+    match RingSide::of(angle(heard, heading)) {
+        RingSide::Ahead => format!("^{characters}"),
+        RingSide::Right => format!("{characters}>"),
+        RingSide::Behind => format!("v{characters}"),
+        RingSide::Left => format!("<{characters}"),
     }
 }
 
@@ -369,7 +369,7 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
 fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect> {
     let width = text.chars().count() as u16;
     let place = place(ring, angle, width);
-    let along_a_side = matches!(Side::of(angle), Side::Left | Side::Right);
+    let along_a_side = matches!(RingSide::of(angle), RingSide::Left | RingSide::Right);
     let moved = |by: i32| {
         let (by_x, by_y) = if along_a_side { (0, by) } else { (by * i32::from(width + 1), 0) };
         let x = u16::try_from(i32::from(place.x) + by_x).ok()?;
@@ -386,11 +386,11 @@ fn place(ring: Rect, angle: f64, width: u16) -> Rect {
     let spare = [ring.width - width, ring.height - 1].map(f64::from);
     // The position along the side, from 0 to 1: from left to right, or from top to bottom.
     let along = |angle: f64| ((angle + 45.0) / 90.0).clamp(0.0, 1.0);
-    let (x, y) = match Side::of(angle) {
-        Side::Ahead => (along(angle), 0.0),
-        Side::Right => (1.0, along(angle - 90.0)),
-        Side::Left => (0.0, 1.0 - along(angle + 90.0)),
-        Side::Behind => (1.0 - along(angle - 180.0_f64.copysign(angle)), 1.0),
+    let (x, y) = match RingSide::of(angle) {
+        RingSide::Ahead => (along(angle), 0.0),
+        RingSide::Right => (1.0, along(angle - 90.0)),
+        RingSide::Left => (0.0, 1.0 - along(angle + 90.0)),
+        RingSide::Behind => (1.0 - along(angle - 180.0_f64.copysign(angle)), 1.0),
     };
     Rect {
         x: ring.x + (x * spare[0]).round() as u16,
@@ -426,10 +426,10 @@ const NEAR_SIDE: f64 = 0.3;
 const OTHER_SIDES: f64 = 0.08;
 
 /// The side of the picture from which the player was hurt; `None` if the flash covers all sides.
-fn side_of(flash: &Flash, heading: Heading) -> Option<Side> {
+fn side_of(flash: &Flash, heading: Heading) -> Option<RingSide> {
     let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { return None };
     let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
-    let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
+    let clockwise_from_ahead = [RingSide::Ahead, RingSide::Right, RingSide::Behind, RingSide::Left];
     Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4])
 }
 
@@ -450,10 +450,10 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     let share = |distance: f64, reach: f64| (1.0 - distance / reach.max(1.0)).max(0.0);
     for (y, row) in frame.rows_mut().enumerate() {
         let (top, bottom) = ((y as f64 + 0.5) * aspect, (height - y as f64 - 0.5) * aspect);
-        let rows = share(top, reach(Side::Ahead)).max(share(bottom, reach(Side::Behind)));
+        let rows = share(top, reach(RingSide::Ahead)).max(share(bottom, reach(RingSide::Behind)));
         for (x, pixel) in row.iter_mut().enumerate() {
             let (left, right) = (x as f64 + 0.5, width - x as f64 - 0.5);
-            let columns = share(left, reach(Side::Left)).max(share(right, reach(Side::Right)));
+            let columns = share(left, reach(RingSide::Left)).max(share(right, reach(RingSide::Right)));
             let alpha = opacity * rows.max(columns);
             if alpha >= 1.0 {
                 *pixel = color.over(*pixel, alpha as u8);
@@ -474,11 +474,11 @@ fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: He
     let (last_column, last_row) =
         (picture.right().saturating_sub(1), picture.bottom().saturating_sub(1));
     for x in picture.left()..picture.right() {
-        let rows = [(Side::Ahead, picture.top()), (Side::Behind, last_row)];
+        let rows = [(RingSide::Ahead, picture.top()), (RingSide::Behind, last_row)];
         rows.into_iter().filter(|row| is_hit(row.0)).for_each(|(_, y)| draw(x, y));
     }
     for y in picture.top()..picture.bottom() {
-        let columns = [(Side::Left, picture.left()), (Side::Right, last_column)];
+        let columns = [(RingSide::Left, picture.left()), (RingSide::Right, last_column)];
         columns.into_iter().filter(|column| is_hit(column.0)).for_each(|(_, x)| draw(x, y));
     }
 }

@@ -27,7 +27,7 @@ pub struct Recording {
 }
 
 /// Writes a script while the game is played.
-pub(crate) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
+pub(crate) type ScriptRecorder = game::ScriptWriter<Box<dyn Write>>;
 
 impl fmt::Debug for Recording {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,7 +4,7 @@
 use crate::app::App;
 use crate::app::page::Menu;
 use crate::app::recording::{self, RunLog, Steps};
-use crate::app::screen::Choice;
+use crate::app::screen::MenuChoice;
 use crate::app::status::{tenths, whole_seconds};
 use crate::app::store::{Improved, Run};
 use crate::game::{Game, Header, LevelName, Outcome, STEP, Script, Share, Tally};
@@ -103,7 +103,7 @@ pub(crate) fn builtin_named(name: &str) -> Option<usize> {
 
 impl App {
     /// The menu with the result of the level and the ways to continue.
-    pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
+    pub(crate) fn level_done_menu(&self) -> Menu<MenuChoice> {
         let is_fastest = self.improved.is_some_and(|improved| improved.time);
         let fastest = if is_fastest { " (your fastest)" } else { "" };
         let result = self.improved.zip(self.game.grid()).map(result_lines);
@@ -111,14 +111,14 @@ impl App {
             .lines(self.level_lines())
             .line(format!("in {}{fastest}", tenths(self.game.elapsed())))
             .lines(result.into_iter().flatten())
-            .entry("Go on", Choice::NextLevel)
-            .entries((!self.is_descent()).then_some(("Play it again", "", Choice::Restart)));
+            .entry("Go on", MenuChoice::NextLevel)
+            .entries((!self.is_descent()).then_some(("Play it again", "", MenuChoice::Restart)));
         self.with_leaving(menu)
     }
 
     /// The menu with the cause of death and the ways to continue. The first entry retries
     /// immediately.
-    pub(crate) fn death_menu(&self) -> Menu<Choice> {
+    pub(crate) fn death_menu(&self) -> Menu<MenuChoice> {
         let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
@@ -130,12 +130,12 @@ impl App {
         let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
         let menu = menu
             .lines((deaths > 1).then(|| format!("for the {} time", ordinal(deaths))))
-            .entry("Try again", Choice::Retry)
-            .entry("Restart the level", Choice::Restart);
+            .entry("Try again", MenuChoice::Retry)
+            .entry("Restart the level", MenuChoice::Restart);
         self.with_leaving(menu)
     }
 
-    pub(crate) fn end_menu(&self) -> Menu<Choice> {
+    pub(crate) fn end_menu(&self) -> Menu<MenuChoice> {
         let seconds = self.earlier + self.game.elapsed();
         let menu = Menu::new("the end").line("all levels").line(format!("in {}", tenths(seconds)));
         self.with_leaving(menu)

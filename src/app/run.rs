@@ -34,7 +34,7 @@ use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
 use crate::app::picture::TerminalLook;
 use crate::app::recording::{Ghost, Recording};
-use crate::app::screen::Screen;
+use crate::app::screen::AppScreen;
 use crate::app::settings::Settings;
 use crate::app::status::Meter;
 use crate::app::store::Store;
@@ -42,13 +42,13 @@ use crate::app::title::Offers;
 use crate::game::{Game, Intents, PlayerId, STEPS_PER_SECOND, Script};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
-use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::terminal::{Detected, Error, Event, SessionOptions, Session, locale_without_utf8};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
 /// The state in which the program starts.
 #[derive(Debug)]
-pub enum Opening {
+pub enum InitialState {
     /// The title screen with these entries.
     Title(Offers),
     /// The daily run, with the title behind it.
@@ -65,13 +65,13 @@ pub enum Opening {
 /// # Errors
 /// If there is no terminal, or if it fails.
 pub fn play(
-    opening: Opening,
+    opening: InitialState,
     settings: Settings,
     store: Store,
     recording: Recording,
-) -> Result<Farewell, Error> {
+) -> Result<ClosingLines, Error> {
     let settings = settings.preferring(&store.preferences());
-    let mut options = Options::from_environment(|name| env::var(name).ok());
+    let mut options = SessionOptions::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
     }
@@ -130,12 +130,12 @@ pub fn play(
     }
     _ = app.leave_game();
     let trouble = app.store.trouble().map(str::to_owned);
-    Ok(Farewell { done: app.left, trouble })
+    Ok(ClosingLines { done: app.left, trouble })
 }
 
 /// The lines to print after the terminal has been restored.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub struct Farewell {
+pub struct ClosingLines {
     /// A line about the last game; `None` if no game was played.
     pub done: Option<String>,
     /// A sentence about damaged data or data that could not be saved.
@@ -323,7 +323,7 @@ impl App {
                 }
             }
         }
-        while steps > 0 && moves < Clock::MAX_STEPS && self.screen() == Screen::Playing {
+        while steps > 0 && moves < Clock::MAX_STEPS && self.screen() == AppScreen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = controls::after(step, passed);
             steps -= passed;
@@ -378,9 +378,9 @@ impl App {
     fn follow_outcome(&mut self) {
         if self.game.is_finished() {
             self.improved = self.record_result();
-            self.show(Screen::LevelDone);
+            self.show(AppScreen::LevelDone);
         } else if self.game.grid().is_some_and(Game::is_dead) {
-            self.show(Screen::Dead);
+            self.show(AppScreen::Dead);
         }
     }
 }
@@ -403,14 +403,14 @@ impl Replay {
 
     /// Advances by one step with `intents`.
     pub fn step(&mut self, intents: Intents) {
-        if self.app.screen() == Screen::LevelDone {
+        if self.app.screen() == AppScreen::LevelDone {
             self.app.next_level();
         }
-        if self.app.screen() == Screen::Playing {
+        if self.app.screen() == AppScreen::Playing {
             self.app.game.step(intents);
             self.app.goal.moved(u64::from(!intents.is_empty()));
             if self.app.game.is_finished() {
-                self.app.show(Screen::LevelDone);
+                self.app.show(AppScreen::LevelDone);
             }
         }
     }

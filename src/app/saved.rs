@@ -15,9 +15,9 @@ use super::page::Menu;
 use super::played::Watch;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
-use super::screen::{Choice, capitalized};
+use super::screen::{MenuChoice, capitalized};
 use super::status::whole_seconds;
-use super::{App, Levels, Screen};
+use super::{App, Levels, AppScreen};
 use crate::app::store::{Descent, MAX_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
@@ -89,38 +89,38 @@ impl App {
     /// At the start of a level, asks what to do if the level has a saved game, or if there is no
     /// room to save another one.
     pub(crate) fn ask_about_saved(&mut self) {
-        let is_at_start = self.screen() == Screen::Playing && self.log.is_empty();
+        let is_at_start = self.screen() == AppScreen::Playing && self.log.is_empty();
         let Some(save) = self.as_save().filter(|_| is_at_start) else { return };
         if self.store.has_saved(save.id()) {
-            self.show(Screen::HasSaved);
+            self.show(AppScreen::HasSaved);
         } else if !self.store.has_room_for(save.id()) {
-            self.show(Screen::NoRoom);
+            self.show(AppScreen::NoRoom);
         }
     }
 
     /// The menu that asks which game to play in a level with a saved game.
-    pub(crate) fn has_saved_menu(&self) -> Menu<Choice> {
+    pub(crate) fn has_saved_menu(&self) -> Menu<MenuChoice> {
         let menu = Menu::new("a saved game");
         let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
         let menu = menu
             .lines(self.store.saves().find(|save| save.id() == id).map(described))
             .line("A new game takes its place when you leave it or win.")
-            .entry("Continue", Choice::Resume(id))
-            .entry("Begin anew", Choice::GoOn);
+            .entry("Continue", MenuChoice::Resume(id))
+            .entry("Begin anew", MenuChoice::GoOn);
         self.with_leaving(menu)
     }
 
     /// The menu that asks how to begin a level if no more games can be saved.
-    pub(crate) fn no_room_menu(&self) -> Menu<Choice> {
+    pub(crate) fn no_room_menu(&self) -> Menu<MenuChoice> {
         let menu = self.with_removal(Menu::new("no room"));
-        self.with_leaving(menu.entry("Play without saving", Choice::GoOn))
+        self.with_leaving(menu.entry("Play without saving", MenuChoice::GoOn))
     }
 
     /// Adds an entry that removes the oldest saved game.
-    pub(crate) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_removal(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
         let oldest = self.store.saves().last();
         menu.line(format!("{MAX_SAVES} games are saved, and no more are kept."))
-            .entries(oldest.map(|it| ("Remove the oldest", name_of(it), Choice::RemoveOldest)))
+            .entries(oldest.map(|it| ("Remove the oldest", name_of(it), MenuChoice::RemoveOldest)))
     }
 
     /// Removes the oldest saved game to make room for the new one.
@@ -128,17 +128,17 @@ impl App {
         if let Some(id) = self.store.saves().last().map(Save::id) {
             self.store.remove_saved(id);
         }
-        if self.screen() == Screen::Daily {
+        if self.screen() == AppScreen::Daily {
             self.renew_menu();
         } else {
-            self.show(Screen::Playing);
+            self.show(AppScreen::Playing);
             self.ask_about_saved();
         }
     }
 
     /// Adds a "Continue" entry to the title's menu. It continues directly if there is only one
     /// game, and opens a list otherwise.
-    pub(crate) fn with_continue(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_continue(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
         let mut ways = self.ways_on();
         let (first, second) = (ways.next(), ways.next());
         match (first, second) {
@@ -146,25 +146,25 @@ impl App {
             (Some((name, _, choice)), None) => menu.entry_with("Continue", name, choice),
             (Some(_), Some(_)) => {
                 let count = 2 + ways.count();
-                menu.entry_with("Continue", format!("{count} games"), Choice::Open(Screen::Saves))
+                menu.entry_with("Continue", format!("{count} games"), MenuChoice::Open(AppScreen::Saves))
             }
         }
     }
 
     /// The list of saved games, newest first, followed by the next level of the campaign.
-    pub(crate) fn saves_menu(&self) -> Menu<Choice> {
+    pub(crate) fn saves_menu(&self) -> Menu<MenuChoice> {
         Menu::new("continue").line("x removes a saved game").entries(self.ways_on())
     }
 
     /// The games that can be continued: name, time played, and choice.
-    fn ways_on(&self) -> impl Iterator<Item = (String, String, Choice)> {
+    fn ways_on(&self) -> impl Iterator<Item = (String, String, MenuChoice)> {
         let saves = self.store.saves();
-        let saves = saves.map(|save| (name_of(save), time_of(save), Choice::Continue(save.id())));
+        let saves = saves.map(|save| (name_of(save), time_of(save), MenuChoice::Continue(save.id())));
         saves.chain(self.next_of_campaign())
     }
 
     /// The first level that is not yet won, unless it has a saved game.
-    fn next_of_campaign(&self) -> Option<(String, String, Choice)> {
+    fn next_of_campaign(&self) -> Option<(String, String, MenuChoice)> {
         let index = self.first_not_won()?;
         let name = builtin::LEVELS[index].name;
         let difficulty = self.store.preferences().difficulty;
@@ -173,23 +173,23 @@ impl App {
                 && save.file.is_none()
         };
         let name = on_difficulty(&capitalized(name), difficulty);
-        (!self.store.saves().any(is_it)).then_some((name, "new".to_owned(), Choice::Level(index)))
+        (!self.store.saves().any(is_it)).then_some((name, "new".to_owned(), MenuChoice::Level(index)))
     }
 
     /// The menu that asks whether to remove a saved game.
-    pub(crate) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
+    pub(crate) fn remove_menu(&self, id: SaveId) -> Menu<MenuChoice> {
         Menu::new("remove the saved game?")
             .lines(self.store.saves().find(|save| save.id() == id).map(described))
-            .entry("Keep it", Choice::Back)
-            .entry("Remove it", Choice::Remove(id))
+            .entry("Keep it", MenuChoice::Back)
+            .entry("Remove it", MenuChoice::Remove(id))
     }
 
     /// Removes a saved game, and returns to the list, or to the title if the list is now empty.
     pub(crate) fn remove_saved(&mut self, id: SaveId) {
         self.store.remove_saved(id);
-        self.show(Screen::Title);
+        self.show(AppScreen::Title);
         if self.store.saves().next().is_some() {
-            self.open(Screen::Saves);
+            self.open(AppScreen::Saves);
         }
     }
 
@@ -250,7 +250,7 @@ impl App {
             }
         }
         self.watch = Watch::begin(self.game.grid());
-        self.show(Screen::Playing);
+        self.show(AppScreen::Playing);
         if save.descent.is_some() {
             // A descent can be continued only once, so a death cannot be undone.
             self.store.remove_saved(save.id());
@@ -282,21 +282,21 @@ impl App {
             Some(_) => _ = self.begin_saved(save),
             None => self.begin_again(),
         }
-        self.show(Screen::Outdated(save.id()));
+        self.show(AppScreen::Outdated(save.id()));
     }
 
-    pub(crate) fn outdated_menu(&self, id: SaveId) -> Menu<Choice> {
+    pub(crate) fn outdated_menu(&self, id: SaveId) -> Menu<MenuChoice> {
         let what = if self.is_descent() { "The floors of descents have" } else { "The level has" };
         let menu = Menu::new("the saved game")
             .line(format!("{what} changed since you left it."))
-            .entry("Begin anew", Choice::BeginAnew(id));
+            .entry("Begin anew", MenuChoice::BeginAnew(id));
         self.with_leaving(menu)
     }
 
     /// Plays the level that has just begun, and removes the saved game that cannot continue.
     pub(crate) fn begin_anew(&mut self, id: SaveId) {
         self.store.remove_saved(id);
-        self.show(Screen::Playing);
+        self.show(AppScreen::Playing);
     }
 
     /// The level of a saved game and the levels after it: built-in levels, or one of the player's

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::app::App;
 use crate::app::controls::{Action, KeyContext};
-use crate::app::page::{Effect, Kind, Menu, Page};
+use crate::app::page::{Effect, PageKind, Menu, Page};
 use crate::app::picture::widened;
 use crate::app::status::{of_steps, whole_seconds};
 use crate::app::store::{Preferences, SaveId};
@@ -18,7 +18,7 @@ use crate::world::Difficulty;
 
 /// The panel over the picture. It decides the effect of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) enum Screen {
+pub(crate) enum AppScreen {
     Title,
     /// The choice of a difficulty for a new game.
     NewGame,
@@ -55,9 +55,9 @@ pub(crate) enum Screen {
 
 /// The effect of a menu entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Choice {
+pub(crate) enum MenuChoice {
     /// Opens a screen.
-    Open(Screen),
+    Open(AppScreen),
     /// Begins the campaign.
     Begin(Difficulty),
     /// Begins the built-in level with this index.
@@ -98,20 +98,20 @@ pub(crate) enum Choice {
     Leave,
 }
 
-impl Page for Screen {
-    fn kind(self) -> Kind {
+impl Page for AppScreen {
+    fn kind(self) -> PageKind {
         match self {
-            Self::Playing => Kind::Bare,
-            Self::Help => Kind::Help,
-            Self::Leaving => Kind::Leaving,
-            Self::LevelDone | Self::Dead | Self::End => Kind::Result,
-            Self::Settings | Self::Levels | Self::Maps => Kind::Menu { has_values: true },
-            _ => Kind::Menu { has_values: false },
+            Self::Playing => PageKind::Bare,
+            Self::Help => PageKind::Help,
+            Self::Leaving => PageKind::Leaving,
+            Self::LevelDone | Self::Dead | Self::End => PageKind::Result,
+            Self::Settings | Self::Levels | Self::Maps => PageKind::Menu { has_values: true },
+            _ => PageKind::Menu { has_values: false },
         }
     }
 }
 
-impl Screen {
+impl AppScreen {
     /// Returns true if the screen is a question before the first step of a level.
     fn is_before_start(self) -> bool {
         matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
@@ -119,24 +119,24 @@ impl Screen {
 }
 
 impl App {
-    pub(crate) fn screen(&self) -> Screen {
+    pub(crate) fn screen(&self) -> AppScreen {
         self.pages.page()
     }
 
     /// Returns true if a result is shown.
     pub(crate) fn shows_result(&self) -> bool {
-        self.screen().kind() == Kind::Result
+        self.screen().kind() == PageKind::Result
     }
 
     /// Shows `screen`, with no way back.
-    pub(crate) fn show(&mut self, screen: Screen) {
+    pub(crate) fn show(&mut self, screen: AppScreen) {
         let menu = self.menu_of(screen);
         self.pages.show(screen, menu, self.now);
         self.shown = None;
     }
 
     /// Opens `screen` over the current one.
-    pub(crate) fn open(&mut self, screen: Screen) {
+    pub(crate) fn open(&mut self, screen: AppScreen) {
         let menu = self.menu_of(screen);
         self.pages.open(screen, menu, self.now);
         self.shown = None;
@@ -144,7 +144,7 @@ impl App {
 
     /// Returns to the screen from which the current one was opened, or to the game.
     pub(crate) fn close(&mut self) {
-        self.pages.close(Screen::Playing, self.now);
+        self.pages.close(AppScreen::Playing, self.now);
         // The menu may offer different entries now.
         self.renew_menu();
     }
@@ -166,24 +166,24 @@ impl App {
 
 impl App {
     /// The menu of `screen`; empty if the screen has none.
-    pub(crate) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
+    pub(crate) fn menu_of(&mut self, screen: AppScreen) -> Menu<MenuChoice> {
         match screen {
-            Screen::Title => self.title_menu(),
-            Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
-            Screen::Levels => self.level_menu(),
-            Screen::Maps => self.map_menu(),
-            Screen::Saves => self.saves_menu(),
-            Screen::Remove(id) => self.remove_menu(id),
-            Screen::Daily => self.daily_menu(),
-            Screen::HasSaved => self.has_saved_menu(),
-            Screen::NoRoom => self.no_room_menu(),
-            Screen::Outdated(id) => self.outdated_menu(id),
-            Screen::Paused => self.pause_menu(),
-            Screen::Settings => self.settings_menu(),
-            Screen::Tmux => self.tmux_menu(),
-            Screen::Dead => self.death_menu(),
-            Screen::LevelDone => self.level_done_menu(),
-            Screen::End => self.end_menu(),
+            AppScreen::Title => self.title_menu(),
+            AppScreen::NewGame => new_game_menu(self.store.preferences().difficulty),
+            AppScreen::Levels => self.level_menu(),
+            AppScreen::Maps => self.map_menu(),
+            AppScreen::Saves => self.saves_menu(),
+            AppScreen::Remove(id) => self.remove_menu(id),
+            AppScreen::Daily => self.daily_menu(),
+            AppScreen::HasSaved => self.has_saved_menu(),
+            AppScreen::NoRoom => self.no_room_menu(),
+            AppScreen::Outdated(id) => self.outdated_menu(id),
+            AppScreen::Paused => self.pause_menu(),
+            AppScreen::Settings => self.settings_menu(),
+            AppScreen::Tmux => self.tmux_menu(),
+            AppScreen::Dead => self.death_menu(),
+            AppScreen::LevelDone => self.level_done_menu(),
+            AppScreen::End => self.end_menu(),
             _ => Menu::default(),
         }
     }
@@ -192,64 +192,64 @@ impl App {
     pub(crate) fn choose(&mut self) {
         let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
-            Choice::Open(screen) => self.open(screen),
-            Choice::Begin(difficulty) => {
+            MenuChoice::Open(screen) => self.open(screen),
+            MenuChoice::Begin(difficulty) => {
                 self.difficulty = difficulty;
                 self.prefer(|it| it.difficulty = difficulty);
                 self.begin_builtin(0);
             }
-            Choice::Level(index) => {
+            MenuChoice::Level(index) => {
                 self.difficulty = self.store.preferences().difficulty;
                 self.begin_builtin(index);
             }
-            Choice::Map(index) => self.begin_own_map(index),
-            Choice::Daily => self.begin_daily(),
-            Choice::Endless => self.begin_endless(),
-            Choice::Continue(id) => {
-                if self.screen() != Screen::Daily {
+            MenuChoice::Map(index) => self.begin_own_map(index),
+            MenuChoice::Daily => self.begin_daily(),
+            MenuChoice::Endless => self.begin_endless(),
+            MenuChoice::Continue(id) => {
+                if self.screen() != AppScreen::Daily {
                     // A recorded script covers only the level with which the program began.
                     self.script = None;
                 }
                 self.continue_saved(id);
             }
-            Choice::Resume(id) => self.resume(id),
-            Choice::BeginAnew(id) => self.begin_anew(id),
-            Choice::Remove(id) => self.remove_saved(id),
-            Choice::RemoveOldest => self.remove_oldest(),
-            Choice::Back => self.close(),
-            Choice::Change(setting) => self.change_setting(setting, true),
-            Choice::Retry => self.retry(),
-            Choice::GoOn => self.show(Screen::Playing),
-            Choice::Restart => self.restart_level(),
-            Choice::NextLevel => self.next_level(),
-            Choice::ToTitle => self.return_to_title(),
-            Choice::TellTmux => self.order_tmux(),
-            Choice::Leave => self.leave(),
+            MenuChoice::Resume(id) => self.resume(id),
+            MenuChoice::BeginAnew(id) => self.begin_anew(id),
+            MenuChoice::Remove(id) => self.remove_saved(id),
+            MenuChoice::RemoveOldest => self.remove_oldest(),
+            MenuChoice::Back => self.close(),
+            MenuChoice::Change(setting) => self.change_setting(setting, true),
+            MenuChoice::Retry => self.retry(),
+            MenuChoice::GoOn => self.show(AppScreen::Playing),
+            MenuChoice::Restart => self.restart_level(),
+            MenuChoice::NextLevel => self.next_level(),
+            MenuChoice::ToTitle => self.return_to_title(),
+            MenuChoice::TellTmux => self.order_tmux(),
+            MenuChoice::Leave => self.leave(),
         }
     }
 
-    fn title_menu(&self) -> Menu<Choice> {
+    fn title_menu(&self) -> Menu<MenuChoice> {
         let menu = self
             .with_continue(Menu::default())
-            .entry("New game", Choice::Open(Screen::NewGame))
-            .entry("Levels", Choice::Open(Screen::Levels));
+            .entry("New game", MenuChoice::Open(AppScreen::NewGame))
+            .entry("Levels", MenuChoice::Open(AppScreen::Levels));
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
         self.with_descents(menu)
-            .entries(has_maps.then_some(("My maps", "", Choice::Open(Screen::Maps))))
-            .entry("Settings", Choice::Open(Screen::Settings))
-            .entry("Help", Choice::Open(Screen::Help))
+            .entries(has_maps.then_some(("My maps", "", MenuChoice::Open(AppScreen::Maps))))
+            .entry("Settings", MenuChoice::Open(AppScreen::Settings))
+            .entry("Help", MenuChoice::Open(AppScreen::Help))
             .entries(self.tmux_offer())
-            .entry("Leave", Choice::Leave)
+            .entry("Leave", MenuChoice::Leave)
     }
 
     /// The built-in levels, each with its best time and best rank.
-    fn level_menu(&self) -> Menu<Choice> {
+    fn level_menu(&self) -> Menu<MenuChoice> {
         let difficulty = self.store.preferences().difficulty;
         Menu::new(format!("levels, {}", difficulty.name()))
             .line("left and right: another difficulty")
             .entries(builtin::LEVELS.iter().enumerate().map(|(index, level)| {
                 let best = self.best_of(level.name, difficulty);
-                (capitalized(level.name), best, Choice::Level(index))
+                (capitalized(level.name), best, MenuChoice::Level(index))
             }))
     }
 
@@ -268,7 +268,7 @@ impl App {
     }
 
     /// The menu of own maps, after a fresh search for them.
-    fn map_menu(&mut self) -> Menu<Choice> {
+    fn map_menu(&mut self) -> Menu<MenuChoice> {
         self.find_own_maps();
         let difficulty = self.store.preferences().difficulty;
         let menu = Menu::new(format!("my maps, {}", difficulty.name()));
@@ -277,11 +277,11 @@ impl App {
         }
         menu.entries(self.own_maps.iter().enumerate().map(|(index, map)| {
             let best = self.best_of(&map.key, difficulty);
-            (map.name.as_str(), best, Choice::Map(index))
+            (map.name.as_str(), best, MenuChoice::Map(index))
         }))
     }
 
-    fn pause_menu(&self) -> Menu<Choice> {
+    fn pause_menu(&self) -> Menu<MenuChoice> {
         let keys = self.settings.bindings.key_names(Action::TogglePause);
         let carried = self.game.grid().into_iter().flat_map(Game::keys);
         let menu = Menu::new("paused")
@@ -290,27 +290,27 @@ impl App {
             .lines(self.level_lines())
             .line(whole_seconds(self.game.elapsed()).to_string())
             .lines(carried.map(|key| format!("{key} key")))
-            .entry("Continue", Choice::GoOn)
-            .entries((!self.is_descent()).then_some(("Restart the level", "", Choice::Restart)))
-            .entry("Settings", Choice::Open(Screen::Settings))
-            .entry("Help", Choice::Open(Screen::Help));
+            .entry("Continue", MenuChoice::GoOn)
+            .entries((!self.is_descent()).then_some(("Restart the level", "", MenuChoice::Restart)))
+            .entry("Settings", MenuChoice::Open(AppScreen::Settings))
+            .entry("Help", MenuChoice::Open(AppScreen::Help));
         self.with_leaving(menu)
     }
 
     /// Adds the entries that leave the game.
-    pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
-        let title = self.offers.as_ref().map(|_| ("Leave to the title", "", Choice::ToTitle));
-        menu.entries(title).entry("Leave", Choice::Leave)
+    pub(crate) fn with_leaving(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
+        let title = self.offers.as_ref().map(|_| ("Leave to the title", "", MenuChoice::ToTitle));
+        menu.entries(title).entry("Leave", MenuChoice::Leave)
     }
 }
 
-fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
+fn new_game_menu(usual: Difficulty) -> Menu<MenuChoice> {
     let about = |difficulty| match difficulty {
         Difficulty::Easy => "what you found stays found",
         Difficulty::Normal => "guards call each other",
         Difficulty::Hard => "no checkpoints",
     };
-    let entry = |it: Difficulty| (capitalized(it.name()), about(it), Choice::Begin(it));
+    let entry = |it: Difficulty| (capitalized(it.name()), about(it), MenuChoice::Begin(it));
     let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
     Menu::new("new game").entries(Difficulty::ALL.map(entry)).selecting(usual.unwrap_or(0))
 }
@@ -356,7 +356,7 @@ impl App {
 
     pub(crate) fn key_context(&self) -> KeyContext {
         KeyContext {
-            plays: self.screen() == Screen::Playing,
+            plays: self.screen() == AppScreen::Playing,
             is_airborne: self.game.grid().is_some_and(Game::is_airborne),
             flies: self.game.grid().is_none(),
         }
@@ -366,7 +366,7 @@ impl App {
         let (bindings, held) = (&self.settings.bindings, &self.controls.held);
         match self.pages.press((key, press), bindings, held, self.now) {
             Effect::Other => match self.pages.menu.choice() {
-                Some(Choice::Continue(id)) if self.removes(key) => self.open(Screen::Remove(id)),
+                Some(MenuChoice::Continue(id)) if self.removes(key) => self.open(AppScreen::Remove(id)),
                 _ => self.press_command(key, press),
             },
             effect => self.carry_out(effect),
@@ -397,28 +397,28 @@ impl App {
 
     fn change_value(&mut self, forward: bool) {
         match (self.screen(), self.pages.menu.choice()) {
-            (Screen::Levels | Screen::Maps, _) => self.change_difficulty(forward),
-            (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
+            (AppScreen::Levels | AppScreen::Maps, _) => self.change_difficulty(forward),
+            (_, Some(MenuChoice::Change(setting))) => self.change_setting(setting, forward),
             _ => {}
         }
     }
 
     /// Returns true if `key` removes the selected saved game.
     fn removes(&self, key: Key) -> bool {
-        self.screen() == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
+        self.screen() == AppScreen::Saves && matches!(key, Key::Char('x') | Key::Delete)
     }
 
     fn command(&mut self, key: Key, action: Action) {
         match (self.screen(), action) {
-            (screen, Action::Leave) if key == Key::Escape && screen != Screen::Playing => {
+            (screen, Action::Leave) if key == Key::Escape && screen != AppScreen::Playing => {
                 self.go_back();
             }
             (_, Action::Leave) => self.ask_to_leave(),
-            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
+            (AppScreen::Help, Action::ToggleHelp) | (AppScreen::Paused, Action::TogglePause) => {
                 self.close();
             }
-            (_, Action::ToggleHelp) => self.open(Screen::Help),
-            (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
+            (_, Action::ToggleHelp) => self.open(AppScreen::Help),
+            (AppScreen::Playing, Action::TogglePause) => self.open(AppScreen::Paused),
             _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
@@ -427,7 +427,7 @@ impl App {
             (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
             (_, Action::ToggleGhost) => self.toggle_ghost(),
             (_, Action::ToggleStats) => toggle(&mut self.settings.shows_stats, &mut self.shown),
-            (Screen::Playing, Action::ToggleWalkOn) => {
+            (AppScreen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
             }
             (_, Action::ToggleMouse) => {
@@ -453,8 +453,8 @@ impl App {
     /// Returns to the previous screen. If there is none, leaves to the title or leaves the program.
     fn go_back(&mut self) {
         match self.screen() {
-            Screen::Playing => {}
-            Screen::Title => self.leave(),
+            AppScreen::Playing => {}
+            AppScreen::Title => self.leave(),
             screen if !screen.is_before_start() => self.close(),
             _ if self.offers.is_some() => self.return_to_title(),
             _ => self.leave(),
@@ -466,7 +466,7 @@ impl App {
         if self.demo.is_some() || self.screen().is_before_start() {
             self.leave();
         } else {
-            self.open(Screen::Leaving);
+            self.open(AppScreen::Leaving);
         }
     }
 
@@ -479,7 +479,7 @@ impl App {
     /// Handles a mouse event at time `now`.
     pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
-        self.pointer.handle(event, self.screen() == Screen::Playing);
+        self.pointer.handle(event, self.screen() == AppScreen::Playing);
     }
 
     /// The player's intents for the next step, from keys and mouse.

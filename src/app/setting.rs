@@ -127,7 +127,7 @@ pub trait Value: Copy + PartialEq {
 }
 
 /// A value, its name in files, and its label on a settings page.
-type Named<T> = (T, &'static str, &'static str);
+type NamedValue<T> = (T, &'static str, &'static str);
 
 /// A value from a small set of named values.
 pub trait Choice: Copy + PartialEq + 'static {
@@ -135,7 +135,7 @@ pub trait Choice: Copy + PartialEq + 'static {
     /// that.
     const AUTO: Option<&'static str> = None;
     /// The values in the order of a settings page.
-    const ALL: &'static [Named<Self>];
+    const ALL: &'static [NamedValue<Self>];
 
     /// The name in files.
     fn name(self) -> &'static str {
@@ -155,7 +155,7 @@ pub trait Choice: Copy + PartialEq + 'static {
 }
 
 impl Choice for GlyphSet {
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::Half, "half", "half blocks"),
         (Self::Quadrant, "quadrant", "quadrants"),
         (Self::Sextant, "sextant", "sextants"),
@@ -167,7 +167,7 @@ impl Choice for GlyphSet {
 
 impl Choice for ColorDepth {
     const AUTO: Option<&'static str> = Some("the terminal's");
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::True, "true", "all"),
         (Self::Indexed256, "256", "256"),
         (Self::Indexed16, "16", "16"),
@@ -176,7 +176,7 @@ impl Choice for ColorDepth {
 }
 
 impl Choice for Correction {
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::None, "none", "as it is"),
         (Self::Contrast, "contrast", "more contrast"),
         (Self::RedGreen, "red-green", "red and green apart"),
@@ -184,7 +184,7 @@ impl Choice for Correction {
 }
 
 impl Choice for Difficulty {
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::Easy, "easy", "easy"),
         (Self::Normal, "normal", "normal"),
         (Self::Hard, "hard", "hard"),
@@ -204,7 +204,7 @@ pub enum MapDisplay {
 }
 
 impl Choice for MapDisplay {
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::Seen, "seen", "what was seen"),
         (Self::All, "all", "all"),
         (Self::Off, "off", "off"),
@@ -217,7 +217,7 @@ impl Choice for MapDisplay {
 }
 
 impl Choice for Preset {
-    const ALL: &'static [Named<Self>] = &[
+    const ALL: &'static [NamedValue<Self>] = &[
         (Self::Qwerty, "qwerty", "qwerty"),
         (Self::Azerty, "azerty", "azerty"),
         (Self::Hjkl, "hjkl", "hjkl"),

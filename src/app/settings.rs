@@ -78,13 +78,13 @@ pub struct Settings {
     /// `true` if the mouse turns the player from the start.
     pub mouse: bool,
     /// The origins of the settings that the store also keeps.
-    pub given: Given,
+    pub given: SettingOrigins,
 }
 
 /// The origin of each setting that the store also keeps. A setting with an origin overrides the
 /// player's stored choice. `None` means that neither a flag nor the configuration file sets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Given {
+pub struct SettingOrigins {
     /// The origin of the glyph set.
     pub glyphs: Option<Origin>,
     /// The origin of the colour depth.
@@ -431,14 +431,14 @@ const ROWS: [Setting<Choices>; 11] = [
 ];
 
 impl App {
-    pub(crate) fn settings_menu(&self) -> Menu<screen::Choice> {
+    pub(crate) fn settings_menu(&self) -> Menu<screen::MenuChoice> {
         let given = self.settings.given;
-        let note = (given != Given::default())
+        let note = (given != SettingOrigins::default())
             .then_some("A flag or the file holds again at the next start.");
         let choices = self.choices();
         let rows = ROWS.iter().enumerate().map(|(index, row)| {
             let value = row.value.label(&choices) + origin(given, row.key);
-            (row.about, value, screen::Choice::Change(index))
+            (row.about, value, screen::MenuChoice::Change(index))
         });
         settings_menu(note, self.detection.ascii_locale.is_none(), rows)
     }
@@ -511,7 +511,7 @@ impl Settings {
 }
 
 /// A suffix that names the origin of the setting `key`; empty if it has none.
-fn origin(given: Given, key: &str) -> &'static str {
+fn origin(given: SettingOrigins, key: &str) -> &'static str {
     let origin = match key {
         "glyphs" => given.glyphs,
         "colors" => given.depth,

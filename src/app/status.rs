@@ -72,49 +72,49 @@ const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
 
 /// The short or the long form of a part. The two forms may be equal.
 #[derive(Clone, Copy, Debug)]
-enum Form {
+enum PartLength {
     Short,
     Long,
 }
 
 /// The order in which forms receive space, the most important first.
-const PRIORITIES: [(Part, Form); 21] = [
-    (Part::Help, Form::Short),
-    (Part::Health, Form::Short),
-    (Part::Alarm, Form::Short),
-    (Part::Notice, Form::Short),
-    (Part::Light, Form::Short),
-    (Part::Supplies, Form::Short),
-    (Part::Alarm, Form::Long),
-    (Part::Title, Form::Short),
-    (Part::Help, Form::Long),
-    (Part::Keys, Form::Short),
-    (Part::Treasure, Form::Short),
-    (Part::Modes, Form::Short),
-    (Part::Notice, Form::Long),
-    (Part::Time, Form::Short),
-    (Part::Treasure, Form::Long),
-    (Part::Supplies, Form::Long),
-    (Part::Level, Form::Short),
-    (Part::Site, Form::Short),
-    (Part::Level, Form::Long),
-    (Part::Seen, Form::Short),
-    (Part::Keys, Form::Long),
+const PRIORITIES: [(Part, PartLength); 21] = [
+    (Part::Help, PartLength::Short),
+    (Part::Health, PartLength::Short),
+    (Part::Alarm, PartLength::Short),
+    (Part::Notice, PartLength::Short),
+    (Part::Light, PartLength::Short),
+    (Part::Supplies, PartLength::Short),
+    (Part::Alarm, PartLength::Long),
+    (Part::Title, PartLength::Short),
+    (Part::Help, PartLength::Long),
+    (Part::Keys, PartLength::Short),
+    (Part::Treasure, PartLength::Short),
+    (Part::Modes, PartLength::Short),
+    (Part::Notice, PartLength::Long),
+    (Part::Time, PartLength::Short),
+    (Part::Treasure, PartLength::Long),
+    (Part::Supplies, PartLength::Long),
+    (Part::Level, PartLength::Short),
+    (Part::Site, PartLength::Short),
+    (Part::Level, PartLength::Long),
+    (Part::Seen, PartLength::Short),
+    (Part::Keys, PartLength::Long),
 ];
 /// The forms that come before [`PRIORITIES`] if the player has switched the statistics on. The
 /// statistics take the space of the title and the goal, but not the space of the player's state.
-const PRIORITIES_WITH_STATS: [(Part, Form); 11] = [
-    (Part::Help, Form::Short),
-    (Part::Health, Form::Short),
-    (Part::Alarm, Form::Short),
-    (Part::Light, Form::Short),
-    (Part::Supplies, Form::Short),
-    (Part::Modes, Form::Short),
-    (Part::Keys, Form::Short),
-    (Part::Treasure, Form::Short),
-    (Part::Stats, Form::Short),
-    (Part::Notice, Form::Short),
-    (Part::Stats, Form::Long),
+const PRIORITIES_WITH_STATS: [(Part, PartLength); 11] = [
+    (Part::Help, PartLength::Short),
+    (Part::Health, PartLength::Short),
+    (Part::Alarm, PartLength::Short),
+    (Part::Light, PartLength::Short),
+    (Part::Supplies, PartLength::Short),
+    (Part::Modes, PartLength::Short),
+    (Part::Keys, PartLength::Short),
+    (Part::Treasure, PartLength::Short),
+    (Part::Stats, PartLength::Short),
+    (Part::Notice, PartLength::Short),
+    (Part::Stats, PartLength::Long),
 ];
 /// The number of blank columns between parts.
 const GAP: u16 = 2;
@@ -142,7 +142,7 @@ impl StatusLine {
             let text = self.texts[part as usize][form as usize].as_str();
             let (_, taken) = fitted[part as usize];
             let columns = Span::raw(text).width() as u16;
-            if columns == 0 || (taken == 0 && matches!(form, Form::Long) && part == Part::Notice) {
+            if columns == 0 || (taken == 0 && matches!(form, PartLength::Long) && part == Part::Notice) {
                 continue;
             }
             let before = if taken == 0 { 0 } else { taken + GAP };

@@ -76,7 +76,7 @@ impl Store {
     /// Opens the store in `folder`. The folder is created with the first change. Also returns a
     /// sentence if something in it is damaged or unusable.
     pub fn open(folder: &Path) -> (Self, Option<String>) {
-        Self::at(Home::new(folder.to_owned(), Box::new(home::Real)))
+        Self::at(Home::new(folder.to_owned(), Box::new(home::SystemFiles)))
     }
 
     fn at(mut home: Home) -> (Self, Option<String>) {

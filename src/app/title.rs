@@ -22,7 +22,7 @@ use crate::app::App;
 use crate::app::page::Menu;
 use crate::app::played::Played;
 use crate::app::recording::{self, Steps};
-use crate::app::screen::{Choice, Screen};
+use crate::app::screen::{MenuChoice, AppScreen};
 use crate::color::palette::ColorDepth;
 use crate::game::Script;
 use crate::map::{Level, builtin};
@@ -133,20 +133,20 @@ impl App {
     }
 
     /// The title's entry for the offer to tell tmux.
-    pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, Choice)> {
-        self.tmux_remedy().map(|_| ("24-bit colours in tmux", "", Choice::Open(Screen::Tmux)))
+    pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, MenuChoice)> {
+        self.tmux_remedy().map(|_| ("24-bit colours in tmux", "", MenuChoice::Open(AppScreen::Tmux)))
     }
 
-    pub(crate) fn tmux_menu(&self) -> Menu<Choice> {
+    pub(crate) fn tmux_menu(&self) -> Menu<MenuChoice> {
         let menu = Menu::new("tmux sends 256 colours");
-        let Some(remedy) = self.tmux_remedy() else { return menu.entry("Back", Choice::Back) };
+        let Some(remedy) = self.tmux_remedy() else { return menu.entry("Back", MenuChoice::Back) };
         let menu = match self.tmux_order {
             TmuxOrder::None => menu
                 .line("Tell this server, then detach and attach again:")
                 .line(format!("tmux {remedy}"))
                 .line("For good, add to ~/.tmux.conf:")
                 .line(remedy)
-                .entry("Tell tmux", Choice::TellTmux),
+                .entry("Tell tmux", MenuChoice::TellTmux),
             TmuxOrder::Given | TmuxOrder::Running => menu.line("Telling tmux."),
             TmuxOrder::Done => menu
                 .line("Done. Detach (prefix d), attach again, and press a key.")
@@ -154,7 +154,7 @@ impl App {
                 .line(remedy),
             TmuxOrder::Failed => menu.line("tmux did not take the command; see docs/terminals.md."),
         };
-        menu.entry("Back", Choice::Back)
+        menu.entry("Back", MenuChoice::Back)
     }
 
     pub(crate) fn order_tmux(&mut self) {
@@ -174,7 +174,7 @@ impl App {
     /// Shows whether telling tmux has succeeded.
     pub(crate) fn tmux_told(&mut self, has_worked: bool) {
         self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
-        if self.screen() == Screen::Tmux {
+        if self.screen() == AppScreen::Tmux {
             self.renew_menu();
         }
     }
@@ -187,8 +187,8 @@ impl App {
         }
         self.tmux_order = TmuxOrder::None;
         match self.screen() {
-            Screen::Tmux if now.is_none() => self.close(),
-            Screen::Tmux | Screen::Title => self.renew_menu(),
+            AppScreen::Tmux if now.is_none() => self.close(),
+            AppScreen::Tmux | AppScreen::Title => self.renew_menu(),
             _ => {}
         }
     }

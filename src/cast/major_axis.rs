@@ -31,13 +31,13 @@ use crate::world::{BeamTable, Beams, Cell, DistanceField, FRACTION_BITS, Grid, S
 #[derive(Clone)]
 pub(crate) struct MajorAxisTraversal<'grid> {
     grid: &'grid Grid,
-    path: Path,
-    at: Progress,
+    path: IntegerRay,
+    at: TraversalProgress,
 }
 
 /// The progress of a ray.
 #[derive(Clone, Copy)]
-struct Progress {
+struct TraversalProgress {
     /// The number of lines crossed.
     line: i64,
     /// The current band: a row if the major axis is x, a column if it is y.
@@ -48,7 +48,7 @@ struct Progress {
 
 /// A ray in the integers of the traversal.
 #[derive(Clone, Copy)]
-struct Path {
+struct IntegerRay {
     origin: DVec2,
     direction: DVec2,
     /// The kind of line by which the ray enters a cell at a line.
@@ -87,8 +87,8 @@ impl<'grid> MajorAxisTraversal<'grid> {
         let distance_field = grid.distance_field();
         let [to_east, to_south] = distance_field.strides();
         let [east_block, south_block] = distance_field.strides_of_blocks();
-        let x = Axis::new(origin.x, direction.x, grid.width(), [to_east, east_block])?;
-        let y = Axis::new(origin.y, direction.y, grid.height(), [to_south, south_block])?;
+        let x = AxisSetup::new(origin.x, direction.x, grid.width(), [to_east, east_block])?;
+        let y = AxisSetup::new(origin.y, direction.y, grid.height(), [to_south, south_block])?;
         let is_steep = direction.x.abs() < direction.y.abs();
         let (major, minor) = if is_steep { (y, x) } else { (x, y) };
         let slope = units(minor.direction / major.direction.abs());
@@ -101,7 +101,7 @@ impl<'grid> MajorAxisTraversal<'grid> {
         // Both are halved: the product of two whole cells has one bit too many.
         let moved = (to_first / 2) * (slope / 2) / (UNITS / 4);
         let start = major.start;
-        let path = Path {
+        let path = IntegerRay {
             origin,
             direction,
             side: if is_steep { Side::Y } else { Side::X },
@@ -114,7 +114,7 @@ impl<'grid> MajorAxisTraversal<'grid> {
             band_stride: minor.stride,
             block_strides: [major.block_stride, minor.block_stride],
         };
-        Some(Self { grid, path, at: Progress { line: 0, band: minor.start, lookups: 0 } })
+        Some(Self { grid, path, at: TraversalProgress { line: 0, band: minor.start, lookups: 0 } })
     }
 
     /// The cell that the ray is in.
@@ -151,16 +151,16 @@ impl MajorAxisTraversal<'_> {
     #[inline(always)]
     fn advance(
         &mut self,
-        to_something: impl Fn(Path, Progress) -> (i64, Progress),
+        to_something: impl Fn(IntegerRay, TraversalProgress) -> (i64, TraversalProgress),
     ) -> Option<Crossing> {
         let Self { grid, path, .. } = *self;
         loop {
             let (before, at) = to_something(path, self.at);
-            let Progress { line, band, lookups } = at;
+            let TraversalProgress { line, band, lookups } = at;
             if band != before {
                 let (cell, tile) = path.cell_in(grid, line - 1, band)?;
                 if grid.is_solid_tile(tile) {
-                    self.at = Progress { line: line - 1, band, lookups };
+                    self.at = TraversalProgress { line: line - 1, band, lookups };
                     return Some(Crossing { cell, tile, side: path.side.other() });
                 }
             }
@@ -188,12 +188,12 @@ impl MajorAxisTraversal<'_> {
     }
 }
 
-impl Path {
+impl IntegerRay {
     /// Advances by one line or more, one at a time, until the cell behind a line, or the cell
     /// before the line in the new band, is not clear. Also returns the band at the line before.
     #[inline]
-    fn step(self, distance_field: &DistanceField, from: Progress) -> (i64, Progress) {
-        let Progress { mut line, mut band, mut lookups } = from;
+    fn step(self, distance_field: &DistanceField, from: TraversalProgress) -> (i64, TraversalProgress) {
+        let TraversalProgress { mut line, mut band, mut lookups } = from;
         let mut position = self.position + self.slope * line;
         let mut before_line = self.corner + self.line_stride * line;
         let first = line;
@@ -208,15 +208,15 @@ impl Path {
                 && distance_field.is_clear(beside + self.line_stride))
             {
                 lookups += (line - first) as u64;
-                return (band_before, Progress { line, band, lookups });
+                return (band_before, TraversalProgress { line, band, lookups });
             }
         }
     }
 
     /// The same as [`Path::step`], but crosses as many lines at once as are clear.
     #[inline]
-    fn leap(self, distance_field: &DistanceField, from: Progress) -> (i64, Progress) {
-        let Progress { mut line, mut band, mut lookups } = from;
+    fn leap(self, distance_field: &DistanceField, from: TraversalProgress) -> (i64, TraversalProgress) {
+        let TraversalProgress { mut line, mut band, mut lookups } = from;
         let mut clear = 1;
         loop {
             lookups += 1;
@@ -232,7 +232,7 @@ impl Path {
             clear = distance_field.lines_at(ahead);
             // A cell at distance 2 or more has no solid neighbour.
             if clear < 2 && (clear == 0 || !distance_field.is_clear(ahead - self.line_stride)) {
-                return (band_before, Progress { line, band, lookups });
+                return (band_before, TraversalProgress { line, band, lookups });
             }
         }
     }
@@ -243,14 +243,14 @@ impl Path {
         self,
         distance_field: &DistanceField,
         [along_rows, along_columns]: &[BeamTable; 2],
-        from: Progress,
-    ) -> (i64, Progress) {
+        from: TraversalProgress,
+    ) -> (i64, TraversalProgress) {
         let table = match self.side {
             Side::X => along_rows,
             Side::Y => along_columns,
         };
         let beams = table.beams(self.slope * self.step, self.step < 0);
-        let Progress { mut line, mut band, mut lookups } = from;
+        let TraversalProgress { mut line, mut band, mut lookups } = from;
         let mut clear = 1;
         loop {
             line += clear;
@@ -277,7 +277,7 @@ impl Path {
             let is_clear_beside =
                 || is_past_beam || clear >= 2 || distance_field.is_clear(ahead - self.line_stride);
             if clear == 0 || !is_clear_beside() {
-                return (band_before, Progress { line, band, lookups });
+                return (band_before, TraversalProgress { line, band, lookups });
             }
         }
     }
@@ -350,7 +350,7 @@ fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64
 
 /// A ray and a map along one axis.
 #[derive(Clone, Copy)]
-struct Axis {
+struct AxisSetup {
     /// The column or row in which the ray starts; the previous one if it starts on a line that it
     /// crosses.
     start: i64,
@@ -362,7 +362,7 @@ struct Axis {
     block_stride: i64,
 }
 
-impl Axis {
+impl AxisSetup {
     /// `None` if the ray does not start on the map.
     #[inline]
     fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {

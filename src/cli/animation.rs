@@ -21,7 +21,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Rect, Size};
 
-use self::palette::Palette;
+use self::palette::IndexedPalette;
 use super::Error;
 use super::options::{frames, pair, window};
 use super::output_file::OutputFile;
@@ -54,7 +54,7 @@ fn part(text: &str) -> Result<(f64, f64), Takes> {
 /// The frames of an animated PNG.
 #[derive(Debug)]
 pub struct Frames {
-    changes: Vec<Frame>,
+    changes: Vec<FrameChange>,
     last: Buffer,
     part: Range<u64>,
     /// The maximum length of `changes`.
@@ -65,7 +65,7 @@ pub struct Frames {
 
 /// The change from one frame to the next.
 #[derive(Debug)]
-struct Frame {
+struct FrameChange {
     area: Rect,
     /// The cells of the area, row by row.
     cells: Vec<Cell>,
@@ -119,7 +119,7 @@ impl Frames {
         // After the longest time that a frame can be shown, the same frame begins again.
         let area = if area.is_empty() { Rect::new(0, 0, 1, 1) } else { area };
         let cells = area.positions().map(|position| picture[position].clone()).collect();
-        self.changes.push(Frame { area, cells, length: 1 });
+        self.changes.push(FrameChange { area, cells, length: 1 });
         self.last.clone_from(picture);
         Ok(())
     }
@@ -142,7 +142,7 @@ impl Frames {
             (u32::from(columns) * cell.width, u32::from(rows) * cell.height)
         };
         let cells = self.changes.iter().flat_map(|frame| &frame.cells);
-        let palette = Palette::of(cells.flat_map(pixels::colors));
+        let palette = IndexedPalette::of(cells.flat_map(pixels::colors));
         let (width, height) = in_pixels(size.width, size.height);
         let mut encoder = Encoder::new(output, width, height);
         encoder.set_color(ColorType::Indexed);
@@ -154,7 +154,7 @@ impl Frames {
         encoder.set_animated(self.changes.len() as u32, 0)?;
         let mut writer = encoder.write_header()?;
         let mut data = Vec::new();
-        for Frame { area, cells, length } in &self.changes {
+        for FrameChange { area, cells, length } in &self.changes {
             let (width, height) = in_pixels(area.width, area.height);
             let (x, y) = in_pixels(area.x, area.y);
             writer.reset_frame_position()?;

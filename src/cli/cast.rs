@@ -61,7 +61,7 @@ pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
             return verdict(wrong_lines);
         }
         let answer = answer(&world, caster, &line);
-        wrong_lines += u64::from(matches!(answer, Answer::Error { .. }));
+        wrong_lines += u64::from(matches!(answer, OutputLine::Error { .. }));
         write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
         // The other program may wait for this answer before it sends the next ray.
         if input.buffer().is_empty() {
@@ -82,25 +82,25 @@ fn verdict(wrong_lines: u64) -> Result<(), Error> {
 /// The output line for one ray.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-enum Answer {
+enum OutputLine {
     Hit { cell: [u32; 2], side: &'static str, t: f64, u: f64, tile: char },
     Escaped { escaped: bool },
     Error { error: String },
 }
 
-fn answer(world: &World, caster: &DynCaster, line: &[u8]) -> Answer {
+fn answer(world: &World, caster: &DynCaster, line: &[u8]) -> OutputLine {
     let ray = match read_ray(line) {
         Ok(ray) => ray,
-        Err(error) => return Answer::Error { error },
+        Err(error) => return OutputLine::Error { error },
     };
     let mut nearest = None;
     let behind = caster.cast_through(world, &ray, |hit| _ = nearest.get_or_insert(hit));
     let Some(hit) = nearest.or(behind) else {
-        return Answer::Escaped { escaped: true };
+        return OutputLine::Escaped { escaped: true };
     };
     let (column, row) = (hit.cell.column, hit.cell.row);
     let tile = world.grid().tile(i64::from(column), i64::from(row));
-    Answer::Hit {
+    OutputLine::Hit {
         cell: [column, row],
         side: match hit.side {
             Side::X => "x",
@@ -128,7 +128,7 @@ fn read_ray(line: &[u8]) -> Result<Ray, String> {
     Ray::new(DVec2::new(x, y), DVec2::new(dx, dy)).map_err(|error| error.to_string())
 }
 
-fn write(answer: &Answer, output: &mut impl Write) -> io::Result<()> {
+fn write(answer: &OutputLine, output: &mut impl Write) -> io::Result<()> {
     serde_json::to_writer(&mut *output, answer)?;
     output.write_all(b"\n")
 }

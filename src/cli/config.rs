@@ -27,7 +27,7 @@ pub(crate) struct Config {
 }
 
 /// The current configuration, and the path of its file.
-pub(crate) struct InForce {
+pub(crate) struct CurrentConfiguration {
     pub(crate) configuration: Configuration,
     pub(crate) path: Option<PathBuf>,
     /// `true` if the file exists.
@@ -36,7 +36,7 @@ pub(crate) struct InForce {
 
 /// Prints the configuration as a file that produces the same settings.
 pub(crate) fn run(options: Config) -> Result<(), Error> {
-    let InForce { configuration, path, is_there } = load(options.config)?;
+    let CurrentConfiguration { configuration, path, is_there } = load(options.config)?;
     let place = match path {
         Some(path) if is_there => format!("# Settings of Cellcaster, from {}", path.display()),
         Some(path) => format!(
@@ -52,10 +52,10 @@ pub(crate) fn run(options: Config) -> Result<(), Error> {
 }
 
 /// The configuration in the file `named`, or in the user's own file if it exists.
-pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
+pub(crate) fn load(named: Option<PathBuf>) -> Result<CurrentConfiguration, Error> {
     let is_named = named.is_some();
     let Some(path) = named.or_else(|| configuration_file("config.toml")) else {
-        return Ok(InForce {
+        return Ok(CurrentConfiguration {
             configuration: Configuration::default(),
             path: None,
             is_there: false,
@@ -69,5 +69,5 @@ pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
         }
         Err(error) => return Err(Error::mistake(format!("{name} can't be read: {error}"))),
     };
-    Ok(InForce { configuration, path: Some(path), is_there })
+    Ok(CurrentConfiguration { configuration, path: Some(path), is_there })
 }

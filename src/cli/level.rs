@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::{fs, io, iter};
 
 use super::Error;
-use super::options::{COMMANDS, Place, STANDARD_INPUT};
-use super::watch::Watch;
+use super::options::{COMMANDS, LevelOptions, STANDARD_INPUT};
+use super::watch::MapWatcher;
 use crate::app::store::map_key;
 use crate::app::{Levels, OwnLevel, OwnMap};
 use crate::fault::nearest;
@@ -36,7 +36,7 @@ pub(crate) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
 /// The level called `argument`, which is a built-in level or a map file. Without an argument, the
 /// first built-in level.
 pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
-    let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
+    let of_grid = |level: &builtin::BuiltinLevel| Ok(Level::from(level.world()?));
     let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
     if let Some(index) = builtin_level(argument) {
         return of_grid(&builtin::LEVELS[index]);
@@ -56,10 +56,10 @@ pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
 }
 
 /// The level in the map file of `place`, and its [`Watch`]. Only files can be watched.
-pub(crate) fn watch(place: &Place) -> Result<(Level, Watch), Error> {
+pub(crate) fn watch(place: &LevelOptions) -> Result<(Level, MapWatcher), Error> {
     match place.map.as_deref() {
         Some(name) if name != STANDARD_INPUT && Path::new(name).is_file() => {
-            let (level, watch) = Watch::load(Path::new(name));
+            let (level, watch) = MapWatcher::load(Path::new(name));
             Ok((level?, watch))
         }
         // For a name that looks like a map, the error says why the map cannot be loaded.
@@ -88,7 +88,7 @@ pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
 }
 
 /// As [`load_series`]; or the generated level, followed by the levels with the next seeds.
-pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
+pub(crate) fn load_or_generate(place: &LevelOptions) -> Result<Levels, Error> {
     let Some(generator) = place.generate else { return load_series(place.map.as_deref()) };
     let (seed, extent) = (place.seed.unwrap_or(FIRST_SEED), place.level_size.unwrap_or_default());
     let game = move |seed: u64, start: Option<Site>| {
@@ -102,7 +102,7 @@ pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
 }
 
 /// The levels in the options; if there are none, the level in the script's header.
-pub(crate) fn of_script(place: &Place, header: &Header) -> Result<Levels, Error> {
+pub(crate) fn of_script(place: &LevelOptions, header: &Header) -> Result<Levels, Error> {
     let rules = header.rules();
     match &header.level {
         Some(name) if place.map.is_none() && place.generate.is_none() => {
@@ -149,7 +149,7 @@ pub(crate) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
 /// The part around `site` of a generated level. Without a site, the part around the start.
 pub(crate) fn generate(
     generator: Generator,
-    place: &Place,
+    place: &LevelOptions,
     site: Option<Site>,
 ) -> Result<(Window, World), Error> {
     let seed = place.seed.unwrap_or(FIRST_SEED);

@@ -19,22 +19,22 @@ use crate::world::{Difficulty, World};
 /// rank.
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:\n  cellcaster levels\n  cellcaster levels --format json")]
-pub(crate) struct Levels {
+pub(crate) struct LevelsCommand {
     /// How the list is written
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ListFormat,
 }
 
 /// The format of the list.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
-enum Format {
+enum ListFormat {
     #[default]
     Table,
     Json,
 }
 
 /// A built-in level with its best results.
-struct Entry {
+struct LevelEntry {
     /// The position in the playing order, counted from 1.
     order: usize,
     name: &'static str,
@@ -44,26 +44,26 @@ struct Entry {
 }
 
 /// Writes the list in the format that `options` select.
-pub(crate) fn run(options: &Levels) -> Result<(), Error> {
+pub(crate) fn run(options: &LevelsCommand) -> Result<(), Error> {
     let (store, damage) = open_store();
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
     let levels = (1..).zip(builtin::LEVELS).map(|(order, level)| {
         let bests = Difficulty::ALL.map(|difficulty| store.best(level.name, difficulty).copied());
-        Ok(Entry { order, name: level.name, world: level.world()?, bests })
+        Ok(LevelEntry { order, name: level.name, world: level.world()?, bests })
     });
-    let entries = levels.collect::<Result<Vec<Entry>, Error>>()?;
+    let entries = levels.collect::<Result<Vec<LevelEntry>, Error>>()?;
     let text = match options.format {
-        Format::Table => table(&entries),
-        Format::Json => {
+        ListFormat::Table => table(&entries),
+        ListFormat::Json => {
             format!("{}\n", json!(entries.iter().map(object).collect::<Vec<_>>()))
         }
     };
     print(text.as_bytes())
 }
 
-fn table(entries: &[Entry]) -> String {
+fn table(entries: &[LevelEntry]) -> String {
     let mut rows = vec![["", "name", "title", "par", "easy", "normal", "hard"].map(str::to_owned)];
     rows.extend(entries.iter().map(|entry| {
         let par = entry.world.par().map_or("-".to_owned(), |seconds| tenths(seconds.into()));
@@ -85,7 +85,7 @@ fn table(entries: &[Entry]) -> String {
     rows.iter().map(line).collect()
 }
 
-fn object(entry: &Entry) -> Value {
+fn object(entry: &LevelEntry) -> Value {
     let best = |best: Best| {
         let tally = best.tally;
         json!({

@@ -39,7 +39,7 @@ pub(crate) const COMMANDS: [&str; 10] = [
 
 /// The level of a command: a map, or a generated level.
 #[derive(Args, Clone, Debug, Default)]
-pub(crate) struct Place {
+pub(crate) struct LevelOptions {
     /// A map file, "-" for standard input, or a built-in level, as "cellcaster levels" lists them
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) map: Option<OsString>,
@@ -60,7 +60,7 @@ pub(crate) struct Place {
 
 /// How a picture is seen and drawn; the command decides what is not given.
 #[derive(Args, Debug)]
-pub(crate) struct Look {
+pub(crate) struct PictureOptions {
     /// The height of a cell over its width, from 0.1 to 10 [default: 2; when playing, what the terminal says]
     #[arg(long, value_name = "RATIO", value_parser = cell_aspect)]
     pub(crate) cell_aspect: Option<CellAspect>,
@@ -80,12 +80,12 @@ pub(crate) struct Look {
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
     pub(crate) caster: String,
     #[command(flatten)]
-    pub(crate) view: View,
+    pub(crate) view: ViewOptions,
 }
 
 /// The view and the colours of any picture.
 #[derive(Args, Debug)]
-pub(crate) struct View {
+pub(crate) struct ViewOptions {
     /// The field of view from left to right, above 0 and below 180 degrees [default: 66]
     #[arg(long = "fov", value_name = "DEG", value_parser = field_of_view)]
     pub(crate) field_of_view: Option<FieldOfView>,

@@ -46,7 +46,7 @@ impl CellSize {
     ) {
         for y in 0..self.height {
             for cell in cells {
-                let glyph = Glyph::of(cell.symbol());
+                let glyph = GlyphPicture::of(cell.symbol());
                 let colors = colors(cell).map(&bytes);
                 for x in 0..self.width {
                     pixels.extend(colors[usize::from(glyph.covers([x, y], self))]);
@@ -66,14 +66,14 @@ pub(crate) fn colors(cell: &Cell) -> [Rgb; 2] {
 }
 
 /// The picture of a character.
-enum Glyph {
+enum GlyphPicture {
     /// Dots that fill a cell of any size, as terminals draw them.
     Mosaic(Mosaic),
     /// Rows from the top. The lowest bit of a row is the leftmost dot.
     Bitmap([u8; GLYPH_SIDE as usize]),
 }
 
-impl Glyph {
+impl GlyphPicture {
     fn of(symbol: &str) -> Self {
         let character = symbol.chars().next().unwrap_or(' ');
         if let Some(mosaic) = Mosaic::of_character(character) {

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 
-use super::config::InForce;
+use super::config::CurrentConfiguration;
 use super::machine::{data_folder, open_store, today};
-use super::options::{Look, Place, STANDARD_INPUT, choice, fidelity, frames, replace_art};
+use super::options::{PictureOptions, LevelOptions, STANDARD_INPUT, choice, fidelity, frames, replace_art};
 use super::parse::Takes;
 use super::recording::RecordingFile;
 use super::{Error, config, level};
 use crate::app;
-use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin, Settings};
+use crate::app::{Configuration, ClosingLines, SettingOrigins, Levels, Offers, InitialState, Origin, Settings};
 use crate::game::{Header, LevelName, Rules};
 use crate::render::DynCaster;
 use crate::terminal::{self, Fidelity, locale_without_utf8, take_keys_from_terminal};
@@ -46,7 +46,7 @@ pub(crate) struct Play {
     #[arg(long = "fps", value_name = "N", value_parser = frames)]
     frames_per_second: Option<NonZeroU32>,
     #[command(flatten)]
-    pub(crate) look: Look,
+    pub(crate) look: PictureOptions,
     /// How exact colours are while something moves: as the link allows (auto), exact, high, low, or how far they may be
     /// off, from 0 to 255 [default: auto]
     #[arg(long, value_name = "LEVEL", value_parser = fidelity_or_auto)]
@@ -65,7 +65,7 @@ pub(crate) struct Play {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    place: Place,
+    place: LevelOptions,
 }
 
 /// The examples in the help.
@@ -98,15 +98,15 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
         None => level::name(options.place.map.as_deref()),
         Some(_) => None,
     };
-    let Look { cell_aspect, glyphs, filter, art, view, .. } = options.look;
-    let InForce { configuration, path, .. } = config::load(options.config)?;
+    let PictureOptions { cell_aspect, glyphs, filter, art, view, .. } = options.look;
+    let CurrentConfiguration { configuration, path, .. } = config::load(options.config)?;
     // The folder in a configuration file is relative to the file.
     let beside = path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     let configured = configuration.art.as_ref().map(|folder| beside.join(folder));
     replace_art(art.or(configured).as_deref())?;
     let frames_per_second = options.frames_per_second.unwrap_or(configuration.frames_per_second);
     let usual = Configuration::default().frames_per_second;
-    let given = Given {
+    let given = SettingOrigins {
         glyphs: origin(glyphs.is_some(), configuration.glyphs.is_some()),
         depth: origin(view.depth.is_some(), configuration.colors.is_some()),
         frame_time: origin(
@@ -154,22 +154,22 @@ fn origin(by_flag: bool, by_file: bool) -> Option<Origin> {
 
 /// The header for a script of the first game in the program. The seed is 0 unless the level is a
 /// descent.
-fn header(opening: &Opening, level: Option<LevelName>, difficulty: Difficulty) -> Header {
+fn header(opening: &InitialState, level: Option<LevelName>, difficulty: Difficulty) -> Header {
     let first_floor = || Some(LevelName::of_floor(1));
     match opening {
-        Opening::Daily(offers) => {
+        InitialState::Daily(offers) => {
             let seed = offers.today.unwrap_or_default().into();
             Header::of(first_floor(), Rules { difficulty: Difficulty::default(), seed })
         }
-        Opening::Endless(offers) => {
+        InitialState::Endless(offers) => {
             Header::of(first_floor(), Rules { difficulty, seed: offers.seed })
         }
-        Opening::Title(_) | Opening::Levels(_) => Header::of(level, Rules { difficulty, seed: 0 }),
+        InitialState::Title(_) | InitialState::Levels(_) => Header::of(level, Rules { difficulty, seed: 0 }),
     }
 }
 
 /// Prints a line about the game, and a sentence about any problem with the stored data.
-fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
+fn say_farewell(ClosingLines { done, trouble }: &ClosingLines, damage: Option<String>) {
     // The terminal may be gone, and then nobody reads the output.
     if let Some(done) = done {
         _ = writeln!(io::stdout(), "{done}");
@@ -189,20 +189,20 @@ fn glyphs_of_locale() -> GlyphSet {
 
 /// The title, unless the options say what to play. A script covers one level, so recording a script
 /// starts with the first level.
-fn opening(options: &Play) -> Result<Opening, Error> {
+fn opening(options: &Play) -> Result<InitialState, Error> {
     if options.daily {
-        return Ok(Opening::Daily(offers()));
+        return Ok(InitialState::Daily(offers()));
     }
     if options.endless {
-        return Ok(Opening::Endless(offers()));
+        return Ok(InitialState::Endless(offers()));
     }
     let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
     let says_what =
         options.place.map.is_some() || options.place.generate.is_some() || options.watch;
     if says_what || records_script {
-        return Ok(Opening::Levels(Box::new(levels(options)?)));
+        return Ok(InitialState::Levels(Box::new(levels(options)?)));
     }
-    Ok(Opening::Title(offers()))
+    Ok(InitialState::Title(offers()))
 }
 
 /// The data for the title's entries.

@@ -24,7 +24,7 @@ use crate::terminal;
 
 /// The kind of content in a file, according to its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum RecordingKind {
     /// The terminal's output.
     Asciicast,
     /// The player's intents.
@@ -35,15 +35,15 @@ enum Kind {
 #[derive(Debug)]
 pub(crate) struct RecordingFile {
     path: PathBuf,
-    kind: Kind,
-    output: Output,
+    kind: RecordingKind,
+    output: RecordingOutput,
 }
 
 impl RecordingFile {
     /// Creates an empty file. Replaces an existing file only if `overwrites` is set, and only once
     /// the game starts.
     pub(crate) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
-        let kind = Kind::of(path)?;
+        let kind = RecordingKind::of(path)?;
         let mut options = OpenOptions::new();
         if overwrites {
             options.create(true).truncate(false);
@@ -59,22 +59,22 @@ impl RecordingFile {
             )),
             _ => unwritable(path, &error),
         })?;
-        Ok(Self { path: path.to_owned(), kind, output: Output::to(file) })
+        Ok(Self { path: path.to_owned(), kind, output: RecordingOutput::to(file) })
     }
 
     /// Returns true if a file with this name contains intents.
     pub(crate) fn is_script(path: &Path) -> bool {
-        Kind::of(path).is_ok_and(|kind| kind == Kind::Script)
+        RecordingKind::of(path).is_ok_and(|kind| kind == RecordingKind::Script)
     }
 
     /// The recorder that writes the file. A script begins with `header`.
     pub(crate) fn recording(&self, header: game::Header) -> app::Recording {
         let output = self.output.clone();
-        if self.kind == Kind::Asciicast {
+        if self.kind == RecordingKind::Asciicast {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
             app::Recording { terminal: Some(Box::new(terminal)), script: None }
         } else {
-            let script = game::Recorder::with_header(Box::new(output) as Box<dyn Write>, header);
+            let script = game::ScriptWriter::with_header(Box::new(output) as Box<dyn Write>, header);
             app::Recording { terminal: None, script: Some(script) }
         }
     }
@@ -95,7 +95,7 @@ impl RecordingFile {
     }
 }
 
-impl Kind {
+impl RecordingKind {
     fn of(path: &Path) -> Result<Self, Error> {
         let ending = path.extension().unwrap_or_default();
         if ending.eq_ignore_ascii_case("cast") {
@@ -115,27 +115,27 @@ impl Kind {
 /// A file that accepts all writes and stores the first error. A full disk is reported after the
 /// game.
 #[derive(Clone, Debug)]
-struct Output(Arc<Mutex<State>>);
+struct RecordingOutput(Arc<Mutex<RecordingState>>);
 
 #[derive(Debug)]
-struct State {
+struct RecordingState {
     file: File,
     /// `true` while nothing has been written and the file may still have its old content.
     is_untouched: bool,
     fault: Option<io::Error>,
 }
 
-impl Output {
+impl RecordingOutput {
     fn to(file: File) -> Self {
-        Self(Arc::new(Mutex::new(State { file, is_untouched: true, fault: None })))
+        Self(Arc::new(Mutex::new(RecordingState { file, is_untouched: true, fault: None })))
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, RecordingState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl State {
+impl RecordingState {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         // A pipe or a device has no length.
         if mem::take(&mut self.is_untouched) && self.file.metadata()?.is_file() {
@@ -145,7 +145,7 @@ impl State {
     }
 }
 
-impl Write for Output {
+impl Write for RecordingOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut state = self.lock();
         if state.fault.is_none() {
@@ -161,8 +161,8 @@ impl Write for Output {
 
 /// Records the terminal's output with the time of each write.
 struct TerminalRecorder {
-    output: Output,
-    asciicast: Option<Asciicast<Output>>,
+    output: RecordingOutput,
+    asciicast: Option<Asciicast<RecordingOutput>>,
     start: Instant,
 }
 

@@ -17,7 +17,7 @@ use ratatui::buffer::Buffer;
 
 use super::animation::{Animation, Frames};
 use super::external::External;
-use super::options::{Place, View, fidelity};
+use super::options::{LevelOptions, ViewOptions, fidelity};
 use super::output_file::{OutputFile, print};
 use super::recording::Asciicast;
 use super::{Error, level};
@@ -43,7 +43,7 @@ Examples:
   cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast
   cellcaster replay walk.script --size 100x30 --fps 15 --part 2-10 --png walk.png
   cellcaster replay walk.script --verify")]
-pub(crate) struct Replay {
+pub(crate) struct ReplayCommand {
     /// What is played
     #[arg(value_hint = ValueHint::FilePath)]
     script: PathBuf,
@@ -56,12 +56,12 @@ pub(crate) struct Replay {
     #[command(flatten)]
     animation: Animation,
     #[command(flatten)]
-    view: View,
+    view: ViewOptions,
     /// How exact colours are while something moves: exact, high, low, or how far they may be off, from 0 to 255
     #[arg(long, value_name = "LEVEL", default_value = "exact", value_parser = fidelity)]
     fidelity: Fidelity,
     #[command(flatten)]
-    place: Place,
+    place: LevelOptions,
 }
 
 /// A walk through the built-in level with the most features, for commands that run without a
@@ -87,7 +87,7 @@ impl Showcase {
 pub const ROOM_RECORDING: &str = "cellcaster-room ";
 
 /// Writes the recording or the report that `options` select.
-pub(crate) fn run(options: &Replay) -> Result<(), Error> {
+pub(crate) fn run(options: &ReplayCommand) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         if options.animation.png.is_some() {
             return Err(Error::mistake(
@@ -144,7 +144,7 @@ pub fn load(path: &Path) -> Result<Script, Error> {
 fn write(
     replay: &mut app::Replay,
     script: &Script,
-    options: &Replay,
+    options: &ReplayCommand,
     output: impl Write,
 ) -> io::Result<()> {
     let Animation { size, frames_per_second, .. } = options.animation;
@@ -182,7 +182,7 @@ fn is_room_recording(path: &Path) -> bool {
 ///
 /// # Errors
 /// With exit status 1 if the script does not reach an exit.
-fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
+fn verify(options: &ReplayCommand, script: &Script) -> Result<(), Error> {
     let (name, world) = verified_level(options, script.header())?;
     let rules = script.header().rules();
     let floor = script.header().level.as_ref().and_then(LevelName::floor);
@@ -195,7 +195,7 @@ fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
 }
 
 /// The name and the world of the level in the options or, if there is none, in the header.
-fn verified_level(options: &Replay, header: &Header) -> Result<(String, World), Error> {
+fn verified_level(options: &ReplayCommand, header: &Header) -> Result<(String, World), Error> {
     match (&options.place.map, &header.level) {
         (Some(map), _) => Ok((map.display().to_string(), level::load_grid(Some(map))?)),
         (None, Some(named)) => {

@@ -20,7 +20,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use self::format::Format;
-use super::options::{Look, Place, replace_art, size, within};
+use super::options::{PictureOptions, LevelOptions, replace_art, size, within};
 use super::parse::Takes;
 use super::{Error, level};
 use crate::fault::{Faults, printable, printable_lines};
@@ -57,7 +57,7 @@ pub(crate) struct Snapshot {
     #[arg(long, value_name = "DEG", value_parser = pitch)]
     pitch: Option<Pitch>,
     #[command(flatten)]
-    pub(crate) look: Look,
+    pub(crate) look: PictureOptions,
     /// How it is written: characters (text), with colours (ansi), a list of cells (json) or a picture of them (png)
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -68,7 +68,7 @@ pub(crate) struct Snapshot {
     #[arg(long)]
     watch: bool,
     #[command(flatten)]
-    place: Place,
+    place: LevelOptions,
 }
 
 impl Snapshot {
@@ -262,7 +262,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 /// Draws the frame, and draws it again after each change, until the program is stopped.
 fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let (mut level, mut watch) = level::watch(&options.place)?;
-    let output = Output::of(&options);
+    let output = PictureOutput::of(&options);
     output.show(&level, &mut options, caster)?;
     loop {
         thread::sleep(INTERVAL);
@@ -281,14 +281,14 @@ fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
 }
 
 /// The output for the pictures.
-struct Output {
+struct PictureOutput {
     /// `true` if the output is a terminal, where every picture is drawn in the same place.
     is_terminal: bool,
     /// `true` if pictures have the size of the window.
     fits_window: bool,
 }
 
-impl Output {
+impl PictureOutput {
     fn of(options: &Snapshot) -> Self {
         let is_text = matches!(options.format, Format::Text | Format::Ansi) || options.explain;
         let is_terminal = is_text && io::stdout().is_terminal();

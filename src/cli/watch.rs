@@ -14,14 +14,14 @@ use crate::fault::Faults;
 use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
 
 /// A map file, and the versions of the map and its textures at the last load.
-pub(crate) struct Watch {
+pub(crate) struct MapWatcher {
     map: PathBuf,
     watched: Vec<(PathBuf, FileVersion)>,
     /// The faults in a file that has just changed and may be incomplete.
     unconfirmed: Option<Faults>,
 }
 
-impl Watch {
+impl MapWatcher {
     /// Loads the level in the file at `map`, and starts to watch it.
     pub(crate) fn load(map: &Path) -> (Result<Level, Faults>, Self) {
         let (level, watched) = load(map);
@@ -103,7 +103,7 @@ mod tests {
         let (map, texture) = (folder.join("map.toml"), folder.join("floor.png"));
         fs::write(&map, MAP).unwrap();
         fs::write(&texture, PNG).unwrap();
-        let (level, mut watch) = Watch::load(&map);
+        let (level, mut watch) = MapWatcher::load(&map);
         let first = level.unwrap();
         assert!(watch.change().is_none());
 

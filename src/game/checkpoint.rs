@@ -114,14 +114,14 @@ impl Game {
         game.figure_revision = self.figure_revision;
         game.player.counts = self.player.counts;
         if self.rules.difficulty == Difficulty::Easy {
-            game.keep_finds(self);
+            game.merge_finds(self);
         }
         game.checkpoint = self.checkpoint.clone();
         *self = game;
     }
 
     /// Gives the player everything that they have found in `other`, a later state of this game.
-    fn keep_finds(&mut self, other: &Self) {
+    fn merge_finds(&mut self, other: &Self) {
         self.player.keys.extend(&other.player.keys);
         self.player.treasure = other.player.treasure;
         self.player.supplies = self.player.supplies.or_more(other.player.supplies);

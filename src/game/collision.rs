@@ -36,7 +36,7 @@ use std::iter::{self, Flatten};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::fall::Room;
+use super::fall::VerticalRange;
 use crate::world::{Cell, Gap, Line, Outline, Tile, TileKind, World};
 
 /// The maximum number of walls that a body may touch in one step. A corner has two. A body that
@@ -94,7 +94,7 @@ pub(crate) trait Obstacles {
 
 /// The position of a body, in cells, and its velocity, in cells per second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Body {
+pub(crate) struct MovingBody {
     pub(crate) position: DVec2,
     pub(crate) velocity: DVec2,
 }
@@ -103,20 +103,20 @@ pub(crate) struct Body {
 /// part of its velocity that points into an obstacle.
 pub(crate) fn slide<O: Obstacles>(
     obstacles: &mut O,
-    body: Body,
+    body: MovingBody,
     displacement: DVec2,
     radius: Radius,
-) -> Body {
-    let Body { mut position, mut velocity } = body;
+) -> MovingBody {
+    let MovingBody { mut position, mut velocity } = body;
     let mut remaining = displacement;
     let mut contacts = 0;
     while contacts < MAX_CONTACTS {
-        let Some(path) = Path::new(position, remaining) else {
-            return Body { position, velocity };
+        let Some(path) = StraightPath::new(position, remaining) else {
+            return MovingBody { position, velocity };
         };
         let Some(contact) = first_contact(obstacles, path, radius) else {
             let position = path.last_clear(obstacles, path.length(), radius);
-            return Body { position, velocity };
+            return MovingBody { position, velocity };
         };
         position = contact.position;
         let gives_way = |(column, row)| obstacles.gives_way(column, row, position, radius);
@@ -128,7 +128,7 @@ pub(crate) fn slide<O: Obstacles>(
         remaining = without_inward(contact.remaining, contact.normal);
         velocity = without_inward(velocity, contact.normal);
     }
-    Body { position, velocity: DVec2::ZERO }
+    MovingBody { position, velocity: DVec2::ZERO }
 }
 
 /// Moves a circle by `displacement`, or up to the first contact. Returns its position and whether
@@ -139,7 +139,7 @@ pub(crate) fn fly<O: Obstacles>(
     displacement: DVec2,
     radius: Radius,
 ) -> (DVec2, bool) {
-    let Some(path) = Path::new(position, displacement) else { return (position, false) };
+    let Some(path) = StraightPath::new(position, displacement) else { return (position, false) };
     match first_contact(obstacles, path, radius) {
         Some(contact) => (contact.position, true),
         None => (path.last_clear(obstacles, path.length(), radius), false),
@@ -222,7 +222,7 @@ impl Stature {
 
 /// The world as obstacles for a body of one stature.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct WorldObstacles<'a> {
     pub(crate) world: &'a World,
     pub(crate) stature: Stature,
     /// The highest step that the player can climb; 0 in the air.
@@ -233,7 +233,7 @@ pub(crate) struct Place<'a> {
     pub(crate) others: &'a [DVec2],
 }
 
-impl Obstacles for Place<'_> {
+impl Obstacles for WorldObstacles<'_> {
     fn blocks(&self, column: i64, row: i64) -> bool {
         self.gap(column, row).is_none()
     }
@@ -268,7 +268,7 @@ impl Obstacles for Place<'_> {
     }
 }
 
-impl Place<'_> {
+impl WorldObstacles<'_> {
     /// The gap of a cell that contains the body.
     fn gap(&self, column: i64, row: i64) -> Option<Gap> {
         let tile = self.tile(column, row)?;
@@ -327,11 +327,11 @@ impl Place<'_> {
 
     /// The lowest and the highest height of the feet of a player whose circle around `center` is
     /// clear.
-    pub(crate) fn room(&self, center: DVec2, radius: Radius) -> Room {
+    pub(crate) fn room(&self, center: DVec2, radius: Radius) -> VerticalRange {
         let gaps = overlapped(center, radius)
             .filter_map(|(column, row)| self.gap_above_shapes(column, row, center, radius));
-        let most = Room { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };
-        gaps.fold(most, |room, gap| Room {
+        let most = VerticalRange { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };
+        gaps.fold(most, |room, gap| VerticalRange {
             floor: room.floor.max(gap.bottom),
             ceiling: room.ceiling.min(gap.top - self.stature.height),
         })
@@ -392,14 +392,14 @@ fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
 
 /// A straight path.
 #[derive(Clone, Copy, Debug)]
-struct Path {
+struct StraightPath {
     from: DVec2,
     /// A unit vector.
     direction: DVec2,
     length: f64,
 }
 
-impl Path {
+impl StraightPath {
     /// The path from a position by a displacement; `None` if the displacement is zero.
     fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
         // Unlike the root of a sum of squares, this neither overflows nor underflows.
@@ -447,20 +447,20 @@ struct Contact {
 }
 
 /// The first contact of a circle on `path`, if any.
-fn first_contact<O: Obstacles>(obstacles: &O, path: Path, radius: Radius) -> Option<Contact> {
+fn first_contact<O: Obstacles>(obstacles: &O, path: StraightPath, radius: Radius) -> Option<Contact> {
     let (mut column, mut row) = cell_of(path.from);
     loop {
         let around = OpenCell { obstacles, column, row, radius };
-        let Event { distance, kind } = around.next_event(path)?;
+        let PathEvent { distance, kind } = around.next_event(path)?;
         if distance > path.length {
             return None;
         }
         match kind {
-            EventKind::Leave { columns, rows } => {
+            PathEventKind::Leave { columns, rows } => {
                 column += columns;
                 row += rows;
             }
-            EventKind::Touch(obstacle) => {
+            PathEventKind::Touch(obstacle) => {
                 let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
                 let remaining = path.direction * (path.length - distance);
                 let cell = obstacle.cell().map(|(columns, rows)| (column + columns, row + rows));
@@ -479,13 +479,13 @@ struct OpenCell<'a, O> {
 }
 
 /// The next event on a path.
-struct Event {
+struct PathEvent {
     /// The distance along the path.
     distance: f64,
-    kind: EventKind,
+    kind: PathEventKind,
 }
 
-enum EventKind {
+enum PathEventKind {
     /// The centre crosses into a neighbouring open cell.
     Leave { columns: i64, rows: i64 },
     /// The circle touches something solid.
@@ -504,7 +504,7 @@ enum Obstacle {
 }
 
 /// The side of an open cell that a path approaches along one axis.
-struct Side {
+struct CellSide {
     /// The cell behind the side, as an offset of columns and rows.
     neighbor: (i64, i64),
     /// Whether that cell is solid.
@@ -522,7 +522,7 @@ impl<O: Obstacles> OpenCell<'_, O> {
 
     /// The first event among both sides ahead and all corners, shapes and circles. `None` for a
     /// path without a direction.
-    fn next_event(&self, path: Path) -> Option<Event> {
+    fn next_event(&self, path: StraightPath) -> Option<PathEvent> {
         // Of two equal events, either will do: the other follows in the next cell, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
         let events = sides.into_iter().flatten();
@@ -531,13 +531,13 @@ impl<O: Obstacles> OpenCell<'_, O> {
         events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
     }
 
-    fn event_along_x(&self, path: Path) -> Option<Event> {
+    fn event_along_x(&self, path: StraightPath) -> Option<PathEvent> {
         let side = self.side(self.column, path.from.x, path.direction.x, (1, 0))?;
         let position = DVec2::new(side.line, path.at(side.distance).y);
         Some(side.event(position))
     }
 
-    fn event_along_y(&self, path: Path) -> Option<Event> {
+    fn event_along_y(&self, path: StraightPath) -> Option<PathEvent> {
         let side = self.side(self.row, path.from.y, path.direction.y, (0, 1))?;
         let position = DVec2::new(path.at(side.distance).x, side.line);
         Some(side.event(position))
@@ -545,7 +545,7 @@ impl<O: Obstacles> OpenCell<'_, O> {
 
     /// The side that a path approaches along `axis`, on which this cell has the index `index`.
     /// `None` if the path is perpendicular to the axis.
-    fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<Side> {
+    fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<CellSide> {
         if direction == 0.0 {
             return None;
         }
@@ -555,10 +555,10 @@ impl<O: Obstacles> OpenCell<'_, O> {
         let border = (index + i64::from(step > 0)) as f64;
         let inset = if is_wall { self.radius.0 } else { 0.0 };
         let line = border - step as f64 * inset;
-        Some(Side { neighbor, is_wall, line, distance: ((line - from) / direction).max(0.0) })
+        Some(CellSide { neighbor, is_wall, line, distance: ((line - from) / direction).max(0.0) })
     }
 
-    fn corner_events(&self, path: Path) -> impl Iterator<Item = Event> {
+    fn corner_events(&self, path: StraightPath) -> impl Iterator<Item = PathEvent> {
         let exposed = |(columns, rows): &(i64, i64)| {
             self.blocks(*columns, *rows) && !self.blocks(*columns, 0) && !self.blocks(0, *rows)
         };
@@ -568,46 +568,46 @@ impl<O: Obstacles> OpenCell<'_, O> {
             let vertex = DVec2::new(column as f64, row as f64);
             let distance = distance_to_disc(path, vertex, self.radius.0)?;
             let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
-            Some(Event { distance, kind: EventKind::Touch(corner) })
+            Some(PathEvent { distance, kind: PathEventKind::Touch(corner) })
         };
         [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
     }
 
-    fn circle_events(&self, path: Path) -> impl Iterator<Item = Event> {
+    fn circle_events(&self, path: StraightPath) -> impl Iterator<Item = PathEvent> {
         self.obstacles.circles().iter().filter_map(move |&center| {
             let distance = distance_to_disc(path, center, 2.0 * self.radius.0)?;
-            Some(Event { distance, kind: EventKind::Touch(Obstacle::Circle { center }) })
+            Some(PathEvent { distance, kind: PathEventKind::Touch(Obstacle::Circle { center }) })
         })
     }
 
-    fn shape_events(&self, path: Path) -> impl Iterator<Item = Event> {
+    fn shape_events(&self, path: StraightPath) -> impl Iterator<Item = PathEvent> {
         let around = (-1..=1).flat_map(|rows| (-1..=1).map(move |columns| (columns, rows)));
         around.filter_map(move |(columns, rows)| {
             let cell = cell_on_map(self.column + columns, self.row + rows)?;
             let outline = self.obstacles.outline(cell)?;
             let touch = first_touch(outline, cell, path, self.radius)?;
             let shape = Obstacle::Shape { touch: touch.kind, cell: (columns, rows) };
-            Some(Event { distance: touch.distance, kind: EventKind::Touch(shape) })
+            Some(PathEvent { distance: touch.distance, kind: PathEventKind::Touch(shape) })
         })
     }
 }
 
-impl Side {
+impl CellSide {
     /// The event at this side, when the centre is at `position`.
-    fn event(&self, position: DVec2) -> Event {
+    fn event(&self, position: DVec2) -> PathEvent {
         let (columns, rows) = self.neighbor;
         let kind = if self.is_wall {
             let normal = -DVec2::new(columns as f64, rows as f64);
-            EventKind::Touch(Obstacle::Wall { position, normal })
+            PathEventKind::Touch(Obstacle::Wall { position, normal })
         } else {
-            EventKind::Leave { columns, rows }
+            PathEventKind::Leave { columns, rows }
         };
-        Event { distance: self.distance, kind }
+        PathEvent { distance: self.distance, kind }
     }
 }
 
 /// The distance along a path at which it enters a disc.
-fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
+fn distance_to_disc(path: StraightPath, center: DVec2, radius: f64) -> Option<f64> {
     let offset = path.from - center;
     let closest = -path.direction.dot(offset);
     let miss = path.direction.perp_dot(offset).abs();
@@ -633,7 +633,7 @@ impl Obstacle {
     fn touched<O: Obstacles>(
         &self,
         obstacles: &O,
-        path: Path,
+        path: StraightPath,
         distance: f64,
         radius: Radius,
     ) -> (DVec2, DVec2) {
@@ -688,7 +688,7 @@ fn is_clear_of_outline(
 }
 
 /// The first contact of a circle on `path` with an outline in `cell`.
-fn first_touch(outline: Outline, cell: Cell, path: Path, Radius(radius): Radius) -> Option<Touch> {
+fn first_touch(outline: Outline, cell: Cell, path: StraightPath, Radius(radius): Radius) -> Option<Touch> {
     let round = |center: DVec2, radius: f64| {
         let distance = distance_to_disc(path, center, radius)?;
         Some(Touch { distance, kind: TouchKind::Round(center) })
@@ -710,7 +710,7 @@ fn first_touch(outline: Outline, cell: Cell, path: Path, Radius(radius): Radius)
     }
 }
 
-fn first_touch_of_side(line: Line, start: DVec2, path: Path, radius: f64) -> Option<Touch> {
+fn first_touch_of_side(line: Line, start: DVec2, path: StraightPath, radius: f64) -> Option<Touch> {
     let stretch = line.stretch();
     let length = stretch.length();
     let normal = stretch.perp() / length;

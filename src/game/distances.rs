@@ -305,7 +305,7 @@ const NONE: u32 = u32::MAX;
 /// had walked for a minute still allocated memory.
 #[derive(Clone, Debug)]
 struct Buckets<const COUNT: usize> {
-    entries: Vec<Entry>,
+    entries: Vec<BucketEntry>,
     /// The last entry of each bucket.
     tops: [u32; COUNT],
     /// The first of the entries that are in no bucket.
@@ -315,7 +315,7 @@ struct Buckets<const COUNT: usize> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct BucketEntry {
     cell: Cell,
     /// The entry below this one in its bucket.
     below: u32,
@@ -343,7 +343,7 @@ impl<const COUNT: usize> Buckets<COUNT> {
 
     /// Puts a cell into a bucket.
     fn push(&mut self, bucket: usize, cell: Cell) {
-        let entry = Entry { cell, below: self.tops[bucket] };
+        let entry = BucketEntry { cell, below: self.tops[bucket] };
         let place = if let Some(free) = self.entries.get_mut(self.free as usize) {
             let place = self.free;
             self.free = free.below;

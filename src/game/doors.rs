@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::cast::{Ray, Walk};
 use crate::game::stored::{Unrestorable, check};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
 /// The number of steps from closed to open: 0.6 seconds.
@@ -33,13 +33,13 @@ pub(crate) struct Doors {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct MovingDoor {
     cell: Cell,
-    phase: Phase,
+    phase: DoorPhase,
     /// Whether a switch keeps it open.
     is_held: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Phase {
+enum DoorPhase {
     /// The number of steps since the door was closed.
     Opening(u32),
     /// The number of remaining steps.
@@ -54,8 +54,8 @@ impl Doors {
         match self.moving.iter_mut().find(|door| door.cell == cell) {
             None => self.moving.push(MovingDoor::new(cell)),
             Some(MovingDoor { phase, .. }) => {
-                if let Phase::Closing(steps) = *phase {
-                    *phase = Phase::Opening(steps);
+                if let DoorPhase::Closing(steps) = *phase {
+                    *phase = DoorPhase::Opening(steps);
                 }
             }
         }
@@ -68,8 +68,8 @@ impl Doors {
         }
         for door in self.moving.iter_mut().filter(|door| door.cell == cell) {
             door.is_held = is_on;
-            if let (Phase::Open(_), false) = (door.phase, is_on) {
-                door.phase = Phase::Open(0);
+            if let (DoorPhase::Open(_), false) = (door.phase, is_on) {
+                door.phase = DoorPhase::Open(0);
             }
         }
     }
@@ -77,7 +77,7 @@ impl Doors {
     /// Whether [`Doors::open`] would change anything.
     pub(crate) fn would_open(&self, cell: Cell) -> bool {
         let door = self.moving.iter().find(|door| door.cell == cell);
-        door.is_none_or(|door| matches!(door.phase, Phase::Closing(_)))
+        door.is_none_or(|door| matches!(door.phase, DoorPhase::Closing(_)))
     }
 
     /// The number of doors that are not closed.
@@ -104,7 +104,7 @@ impl Doors {
 
     /// Restores the openings of the doors in `world` after the window has moved by `shift` and
     /// shows all doors closed. Doors outside the window are closed.
-    pub(crate) fn shift(&mut self, world: &mut World, shift: Shift) {
+    pub(crate) fn shift(&mut self, world: &mut World, shift: WindowShift) {
         self.moving.retain_mut(|door| match shift.cell(door.cell) {
             Some(cell) => {
                 door.cell = cell;
@@ -128,8 +128,8 @@ impl Doors {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
             let is_possible = match door.phase {
-                Phase::Opening(steps) | Phase::Closing(steps) => steps < TRAVEL,
-                Phase::Open(left) => left <= STAY,
+                DoorPhase::Opening(steps) | DoorPhase::Closing(steps) => steps < TRAVEL,
+                DoorPhase::Open(left) => left <= STAY,
             };
             check(is_new && is_possible && world.door(door.cell).is_some(), "a door")?;
             world.set_opening(door.cell, door.phase.opening());
@@ -140,12 +140,12 @@ impl Doors {
 
 impl MovingDoor {
     fn new(cell: Cell) -> Self {
-        Self { cell, phase: Phase::Opening(0), is_held: false }
+        Self { cell, phase: DoorPhase::Opening(0), is_held: false }
     }
 
     /// Returns true while a switch keeps the door open, so that its time does not run.
     fn is_kept_open(&self) -> bool {
-        self.is_held && matches!(self.phase, Phase::Open(_))
+        self.is_held && matches!(self.phase, DoorPhase::Open(_))
     }
 
     /// Advances the door by one step. Returns false once it is closed.
@@ -154,18 +154,18 @@ impl MovingDoor {
             return true;
         }
         self.phase = match self.phase {
-            Phase::Opening(steps) if steps + 1 < TRAVEL => Phase::Opening(steps + 1),
-            Phase::Opening(_) => Phase::Open(STAY),
-            Phase::Open(0) if is_occupied => Phase::Open(STAY),
-            Phase::Open(0) => Phase::Closing(TRAVEL - 1),
-            Phase::Open(left) => Phase::Open(left - 1),
-            Phase::Closing(steps) => Phase::Closing(steps.saturating_sub(1)),
+            DoorPhase::Opening(steps) if steps + 1 < TRAVEL => DoorPhase::Opening(steps + 1),
+            DoorPhase::Opening(_) => DoorPhase::Open(STAY),
+            DoorPhase::Open(0) if is_occupied => DoorPhase::Open(STAY),
+            DoorPhase::Open(0) => DoorPhase::Closing(TRAVEL - 1),
+            DoorPhase::Open(left) => DoorPhase::Open(left - 1),
+            DoorPhase::Closing(steps) => DoorPhase::Closing(steps.saturating_sub(1)),
         };
-        self.phase != Phase::Closing(0)
+        self.phase != DoorPhase::Closing(0)
     }
 }
 
-impl Phase {
+impl DoorPhase {
     fn opening(self) -> Opening {
         let steps = match self {
             Self::Opening(steps) | Self::Closing(steps) => steps,

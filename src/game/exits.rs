@@ -35,34 +35,34 @@ use crate::world::{
 /// assert!(cellcaster::game::is_exit_out_of_reach(&level("@#X").unwrap()));
 /// ```
 pub fn is_exit_out_of_reach(world: &World) -> bool {
-    world.has_exit() && !Reach::new(world).an_exit_that_opens()
+    world.has_exit() && !ExitSearch::new(world).an_exit_that_opens()
 }
 
 /// The search with a set of keys and switches.
-struct Reach<'a> {
+struct ExitSearch<'a> {
     world: &'a World,
     openers: Openers,
     /// The ways through each tile.
-    of_tiles: Vec<Ways>,
+    of_tiles: Vec<EnterableGaps>,
     /// For each cell, the floors that have been reached, as one bit each.
     stood: Vec<u8>,
     /// For each cell, the number of the last flight that has passed it.
     passed: Vec<u32>,
     flights: u32,
-    waiting: Vec<Place>,
+    waiting: Vec<ReachedPosition>,
     /// The cells from which the flight continues.
     ahead: Vec<Cell>,
 }
 
 /// A position that has been reached.
 #[derive(Clone, Copy)]
-struct Place {
+struct ReachedPosition {
     cell: Cell,
     /// The height of the feet, in cells.
     height: f64,
 }
 
-impl<'a> Reach<'a> {
+impl<'a> ExitSearch<'a> {
     fn new(world: &'a World) -> Self {
         let cells = world.grid().width() as usize * world.grid().height() as usize;
         Self {
@@ -121,12 +121,12 @@ impl<'a> Reach<'a> {
     }
 
     /// Visits the cells beside a position, and the cells that a flight from it reaches.
-    fn go_on(&mut self, from: Place) {
+    fn go_on(&mut self, from: ReachedPosition) {
         self.flights += 1;
         self.pass(from.cell);
         let is_on_a_ledge = from.cell.beside().any(|cell| {
             let highest = highest(from, cell);
-            let within = |way: &&Way| way.least <= highest;
+            let within = |way: &&EnterableGap| way.least <= highest;
             let gaps = self.gaps(cell);
             let mut within = gaps.iter().flatten().filter(within).peekable();
             within.peek().is_some() && within.all(|way| way.least < from.height)
@@ -158,7 +158,7 @@ impl<'a> Reach<'a> {
             is_open = true;
             stood |= 1 << number;
             if before >> number & 1 == 0 {
-                self.waiting.push(Place { cell, height: way.gap.bottom });
+                self.waiting.push(ReachedPosition { cell, height: way.gap.bottom });
             }
         }
         self.stood[index] = stood;
@@ -178,9 +178,9 @@ impl<'a> Reach<'a> {
     }
 
     /// The ways through a cell that are high enough to duck in.
-    fn gaps(&self, cell: Cell) -> Ways {
+    fn gaps(&self, cell: Cell) -> EnterableGaps {
         let Some(id) = self.world.grid().tile_in(cell) else {
-            return Ways::default();
+            return EnterableGaps::default();
         };
         let moves = || self.world.moving_tiles().iter().any(|moving| moving.states[0] == id);
         if !self.world.grid().is_occupied(cell.column.into(), cell.row.into()) || moves() {
@@ -200,7 +200,7 @@ impl<'a> Reach<'a> {
 }
 
 /// The greatest height of the feet when a player who leaves a position first touches `cell`.
-fn highest(from: Place, cell: Cell) -> f64 {
+fn highest(from: ReachedPosition, cell: Cell) -> f64 {
     let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
     let columns = apart(from.cell.column, cell.column);
     let rows = apart(from.cell.row, cell.row);
@@ -268,20 +268,20 @@ fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
 /// A gap of a cell, and the lowest height from which the player can enter it. That is the bottom of
 /// the gap, or the height at which a floor begins to carry the player up to it.
 #[derive(Clone, Copy)]
-struct Way {
+struct EnterableGap {
     gap: Gap,
     least: f64,
 }
 
 /// The ways through a cell. A tile has two gaps, and a moving tile has each of them at two ends. A
 /// shape may divide one gap and leave a way beside it, and a thing may divide one more.
-type Ways = [Option<Way>; 8];
+type EnterableGaps = [Option<EnterableGap>; 8];
 
 /// The ways through each tile. Moving tiles are at both ends or, if they carry the player, at all
 /// heights.
-fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
+fn of_tiles(world: &World, openers: &Openers) -> Vec<EnterableGaps> {
     let tiles = world.tiles().iter();
-    let mut of_tiles: Vec<Ways> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
+    let mut of_tiles: Vec<EnterableGaps> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
     for moving in world.moving_tiles().iter().filter(|it| openers.can_move(it.driver)) {
         let mut states = moving.states.iter().map(|&state| world.tile(state));
         of_tiles[usize::from(moving.states[0].0)] = match moving.driver {
@@ -299,7 +299,7 @@ fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
 
 /// The ways through a tile that moves through `states`. A player who gets onto its floor at any
 /// height is carried to both ends, but not through the ceiling.
-fn along(states: impl Iterator<Item = Tile>) -> Ways {
+fn along(states: impl Iterator<Item = Tile>) -> EnterableGaps {
     let (mut below, mut above) = (Vec::new(), Vec::new());
     for tile in states {
         let gaps: Vec<Gap> = tile.gaps().collect();
@@ -310,13 +310,13 @@ fn along(states: impl Iterator<Item = Tile>) -> Ways {
             side.push(gap);
         }
     }
-    let mut ways = Ways::default();
+    let mut ways = EnterableGaps::default();
     let ends = [below, above].into_iter().flat_map(|gaps| {
         let by_height = |one: &&Gap, other: &&Gap| one.bottom.total_cmp(&other.bottom);
         let lowest = gaps.iter().min_by(by_height).copied();
         let highest = gaps.iter().max_by(by_height).copied();
         let ends = [lowest, highest].into_iter().flatten();
-        let way = move |gap| Some(Way { gap, least: lowest?.bottom });
+        let way = move |gap| Some(EnterableGap { gap, least: lowest?.bottom });
         ends.filter_map(way).collect::<Vec<_>>()
     });
     ways.iter_mut().zip(ends).for_each(|(way, end)| *way = Some(end));
@@ -348,10 +348,10 @@ fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
 }
 
 /// The ways through the `gaps` that are high enough to duck in.
-fn high_enough(gaps: Vec<Gap>) -> Ways {
-    let mut left = Ways::default();
+fn high_enough(gaps: Vec<Gap>) -> EnterableGaps {
+    let mut left = EnterableGaps::default();
     let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
-    let way = |gap: Gap| Way { gap, least: gap.bottom };
+    let way = |gap: Gap| EnterableGap { gap, least: gap.bottom };
     left.iter_mut().zip(high).for_each(|(left, gap)| *left = Some(way(gap)));
     left
 }

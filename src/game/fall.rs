@@ -11,7 +11,7 @@ pub(crate) const GRAVITY: f64 = 12.0;
 
 /// The height and the vertical speed of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Flight {
+pub(crate) struct VerticalMotion {
     /// In cells.
     pub(crate) height: f64,
     /// Cells per second, upwards.
@@ -21,15 +21,15 @@ pub(crate) struct Flight {
 /// The lowest and the highest position, both inclusive. The ceiling is not below the floor. Each is
 /// infinite if it does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Room {
+pub(crate) struct VerticalRange {
     pub(crate) floor: f64,
     pub(crate) ceiling: f64,
 }
 
-impl Flight {
+impl VerticalMotion {
     /// The flight after `duration` seconds in `room`, which contains it now. The flight ends on the
     /// floor, and begins to fall at the ceiling.
-    pub(crate) fn after(self, duration: f64, room: Room) -> Self {
+    pub(crate) fn after(self, duration: f64, room: VerticalRange) -> Self {
         match self.time_to_ceiling(room.ceiling) {
             Some(time) if time < duration => {
                 let top = Self { height: room.ceiling, speed: 0.0 };
@@ -47,7 +47,7 @@ impl Flight {
     }
 
     /// The flight after `duration` seconds without a ceiling.
-    fn falling(self, duration: f64, room: Room) -> Self {
+    fn falling(self, duration: f64, room: VerticalRange) -> Self {
         if duration >= self.time_to_floor(room.floor) {
             return Self { height: room.floor, speed: 0.0 };
         }
@@ -77,7 +77,7 @@ mod tests {
 
     use super::*;
 
-    const SKY: Room = Room { floor: 0.0, ceiling: f64::INFINITY };
+    const SKY: VerticalRange = VerticalRange { floor: 0.0, ceiling: f64::INFINITY };
 
     fn power_of_ten(exponents: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
         exponents.prop_map(|exponent| libm::pow(10.0, exponent))
@@ -92,8 +92,8 @@ mod tests {
             first in power_of_ten(-9.0..1.0),
             second in power_of_ten(-9.0..1.0),
         ) {
-            let room = Room { ceiling, ..SKY };
-            let flight = Flight { height, speed };
+            let room = VerticalRange { ceiling, ..SKY };
+            let flight = VerticalMotion { height, speed };
             let twice = flight.after(first, room).after(second, room);
             let once = flight.after(first + second, room);
             // The speed at the ceiling says little about the time of the hit.
@@ -110,17 +110,17 @@ mod tests {
             headroom in prop_oneof![Just(0.0), 0.0..1e-9, 0.0..1e9],
             duration in power_of_ten(-9.0..9.0),
         ) {
-            let room = Room { floor, ceiling: height + headroom };
-            let after = Flight { height, speed }.after(duration, room);
+            let room = VerticalRange { floor, ceiling: height + headroom };
+            let after = VerticalMotion { height, speed }.after(duration, room);
             prop_assert!((room.floor..=room.ceiling).contains(&after.height), "{after:?}");
             prop_assert!(after.speed.is_finite());
         }
 
         #[test]
         fn energy_is_kept_in_the_air(speed in 0.1..10.0, part in 0.0..1.0) {
-            let start = Flight { height: 0.0, speed };
+            let start = VerticalMotion { height: 0.0, speed };
             let after = start.after(part * 2.0 * speed / GRAVITY, SKY);
-            let energy = |flight: Flight| {
+            let energy = |flight: VerticalMotion| {
                 flight.speed * flight.speed / 2.0 + GRAVITY * flight.height
             };
             prop_assert!((energy(after) - energy(start)).abs() < 1e-12 * energy(start) || after.height == 0.0);
@@ -129,10 +129,10 @@ mod tests {
 
     #[test]
     fn a_fall_of_a_thousand_cells_ends_on_the_floor() {
-        let start = Flight { height: 1000.0, speed: 0.0 };
+        let start = VerticalMotion { height: 1000.0, speed: 0.0 };
         let time = (2.0 * 1000.0 / GRAVITY).sqrt();
         assert!(start.after(time - 1e-6, SKY).height > 0.0);
-        let landed = Flight { height: 0.0, speed: 0.0 };
+        let landed = VerticalMotion { height: 0.0, speed: 0.0 };
         assert_eq!(start.after(time + 1e-6, SKY), landed);
         assert_eq!(start.after(1e9, SKY), landed);
         assert_eq!(landed.after(1e-9, SKY), landed);

@@ -26,12 +26,12 @@ const CUTS: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
     scene: Scene,
-    player: Player,
+    player: FlyingPlayer,
     steps: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Player {
+struct FlyingPlayer {
     position: DVec3,
     /// Cells per second.
     velocity: DVec3,
@@ -46,7 +46,7 @@ impl Flight {
     /// A flight at its start. The player is still, at the scene's start.
     pub fn new(scene: Scene) -> Self {
         let start = scene.start;
-        let player = Player {
+        let player = FlyingPlayer {
             position: start.position(),
             velocity: DVec3::ZERO,
             heading: start.heading,
@@ -61,13 +61,13 @@ impl Flight {
     /// with the same view. If there is no room, the player is at the scene's start.
     #[must_use]
     pub fn begun_again_in(&self, scene: Scene) -> Self {
-        let Player { position, heading, elevation, .. } = self.player;
+        let FlyingPlayer { position, heading, elevation, .. } = self.player;
         let has_room = is_free(&scene, position);
         let begun = Self::new(scene);
         if !has_room {
             return begun;
         }
-        let player = Player { position, heading, elevation, ..begun.player };
+        let player = FlyingPlayer { position, heading, elevation, ..begun.player };
         Self { player, ..begun }
     }
 
@@ -78,7 +78,7 @@ impl Flight {
 
     /// The player's camera.
     pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
-        let Player { position, heading, elevation, .. } = self.player;
+        let FlyingPlayer { position, heading, elevation, .. } = self.player;
         // Every position of the player is valid for a camera.
         Camera::new(position, heading, field_of_view)
             .unwrap_or_else(|| self.scene.start_camera(field_of_view))
@@ -108,7 +108,7 @@ impl Flight {
     }
 }
 
-impl Player {
+impl FlyingPlayer {
     fn stepped(self, scene: &Scene, intents: Intents) -> Self {
         self.turned(intents).raised(intents).moved(scene, intents)
     }
@@ -204,15 +204,15 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::game::Look;
-    use crate::space::{Block, Body, Plane, Shape, SolidTexture, Sphere, Start};
+    use crate::space::{Block, Body, Plane, BodyShape, SolidTexture, Sphere, SceneStart};
 
     /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {
         let shapes = [
-            Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap()),
-            Shape::Plane(Plane::new(-DVec3::X, DVec3::new(2.0, 1.0, -1.0)).unwrap()),
-            Shape::Sphere(Sphere::new(DVec3::new(2.0, 0.0, 0.5), 1.0).unwrap()),
-            Shape::Block(
+            BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap()),
+            BodyShape::Plane(Plane::new(-DVec3::X, DVec3::new(2.0, 1.0, -1.0)).unwrap()),
+            BodyShape::Sphere(Sphere::new(DVec3::new(2.0, 0.0, 0.5), 1.0).unwrap()),
+            BodyShape::Block(
                 Block::new(DVec3::new(-1.0, 1.0, 0.0), DVec3::new(3.0, 2.0, 1.0)).unwrap(),
             ),
         ];
@@ -220,7 +220,7 @@ mod tests {
         let texture = SolidTexture::Plain(Rgb::WHITE);
         Scene {
             bodies: shapes.map(|shape| Body { shape, texture }).to_vec(),
-            start: Start::new(DVec3::new(0.5, 0.0, 0.5), heading, Elevation::LEVEL).unwrap(),
+            start: SceneStart::new(DVec3::new(0.5, 0.0, 0.5), heading, Elevation::LEVEL).unwrap(),
             ..Scene::default()
         }
     }
@@ -259,7 +259,7 @@ mod tests {
     /// For each plane, the side on which a position is.
     fn flight_sides(scene: &Scene, at: DVec3) -> Vec<bool> {
         let planes = scene.bodies.iter().filter_map(|body| match body.shape {
-            Shape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),
+            BodyShape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),
             _ => None,
         });
         planes.collect()

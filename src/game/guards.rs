@@ -27,17 +27,17 @@ use super::scratch::Scratch;
 use super::sight::{Cloud, Point, is_in_sight};
 use super::sound::{Sound, SoundField, SoundKind, Source};
 use super::stored::{OfLevel, Unrestorable, at_most, check};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 use crate::rng::hash;
 use crate::world::sprite::builtin;
 use crate::world::{Cell, Figure, GuardKind, Lamp, Light, Reach, SpriteId, World};
-use context::{Context, Other};
-use guard::{Guard, State};
-use movement::{Ground, RADIUS};
+use context::{Context, PerceivedGuard};
+use guard::{Guard, GuardActivity};
+use movement::{GuardWorld, RADIUS};
 use trail::Trail;
-use ways::{Terrain, Ways};
+use ways::{GuardTerrain, GuardPaths};
 
-pub(crate) use context::{Act, Target};
+pub(crate) use context::{Act, PerceivedPlayer};
 pub use guard::{Alarm, GuardView, Mood};
 
 /// Guards on duty who are at least this far from all players, in cells, take several steps at once.
@@ -60,18 +60,18 @@ pub(crate) struct Guards {
     rules: Rules,
     list: Vec<Guard>,
     #[serde(skip)]
-    awake: Awake,
+    awake: AwakeGuards,
     /// Indexed by the order of [`GuardKind::ALL`].
     #[serde(skip)]
     sprites: [Option<SpriteId>; GuardKind::ALL.len()],
     #[serde(skip)]
-    terrain: Terrain,
-    ways: Ways,
+    terrain: GuardTerrain,
+    ways: GuardPaths,
     air: SoundField,
     #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     trails: Vec<Trail>,
     #[serde(skip)]
-    others: Scratch<Vec<Other>>,
+    others: Scratch<Vec<PerceivedGuard>>,
     /// The number of cells over which sounds have spread in this step.
     #[serde(skip)]
     air_cells: Scratch<usize>,
@@ -96,7 +96,7 @@ pub(crate) struct Guards {
 /// A guard who has woken never sleeps again. Therefore the list is rebuilt only when a guard wakes
 /// or the level changes, not in each step.
 #[derive(Clone, Debug, PartialEq, Default)]
-struct Awake {
+struct AwakeGuards {
     /// The indices of the guards who do not sleep, in ascending order.
     indices: Vec<usize>,
     /// Whether the level has hounds, awake or asleep.
@@ -120,10 +120,10 @@ impl Guards {
         let mut guards = Self {
             rules,
             list,
-            awake: Awake::default(),
+            awake: AwakeGuards::default(),
             sprites,
-            terrain: Terrain::new(world),
-            ways: Ways::default(),
+            terrain: GuardTerrain::new(world),
+            ways: GuardPaths::default(),
             air: SoundField::default(),
             trails: Vec::new(),
             others: Scratch::default(),
@@ -151,7 +151,7 @@ impl Guards {
     pub(crate) fn step(
         &mut self,
         world: &World,
-        targets: &[Target],
+        targets: &[PerceivedPlayer],
         sounds: &[Sound],
         clouds: &[Cloud],
     ) -> &[Act] {
@@ -190,7 +190,7 @@ impl Guards {
         &self.acts
     }
 
-    fn step_one(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], index: usize) {
+    fn step_one(&mut self, world: &World, targets: &[PerceivedPlayer], clouds: &[Cloud], index: usize) {
         let stride = self.stride(world, targets, index);
         if stride == 0 {
             return;
@@ -206,14 +206,14 @@ impl Guards {
     }
 
     /// The number of steps that a guard takes at once now: 0 while they wait for their turn.
-    fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
+    fn stride(&self, world: &World, targets: &[PerceivedPlayer], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
             // A floor may have moved under the guard.
-            State::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
-            State::OnDuty | State::Returning => {
+            GuardActivity::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
+            GuardActivity::OnDuty | GuardActivity::Returning => {
                 let position = guard.mover.position();
-                let is_near = |target: &Target| {
+                let is_near = |target: &PerceivedPlayer| {
                     target.position.distance_squared(position) < FAR * FAR && target.is_alive
                 };
                 let is_turn = (self.steps + index as u64).is_multiple_of(u64::from(FAR_STRIDE));
@@ -228,7 +228,7 @@ impl Guards {
     }
 
     /// Lets all guards within reach hear `sound`.
-    fn spread(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], sound: &Sound) {
+    fn spread(&mut self, world: &World, targets: &[PerceivedPlayer], clouds: &[Cloud], sound: &Sound) {
         let told = match sound.by {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
             Source::Player(_) | Source::Object => None,
@@ -262,7 +262,7 @@ impl Guards {
     fn with_context<'a>(
         &'a mut self,
         world: &'a World,
-        targets: &'a [Target],
+        targets: &'a [PerceivedPlayer],
         clouds: &'a [Cloud],
         index: usize,
         stride: u16,
@@ -286,7 +286,7 @@ impl Guards {
     }
 
     /// Records the trails of players if there are hounds to smell them.
-    fn record_trails(&mut self, world: &World, targets: &[Target]) {
+    fn record_trails(&mut self, world: &World, targets: &[PerceivedPlayer]) {
         if self.awake.has_hounds {
             self.trails.resize_with(targets.len(), Trail::default);
             let trails = self.trails.iter_mut().zip(targets);
@@ -406,7 +406,7 @@ impl Guards {
     /// The lamps that guards carry.
     pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
         let bearers = self.awake().filter(|guard| guard.kind == GuardKind::Lantern);
-        let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
+        let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != GuardActivity::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
         up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
     }
@@ -566,7 +566,7 @@ impl Guards {
     /// Returns true if a guard has no room after the floor of `cell` has moved.
     pub(crate) fn are_crushed(&self, world: &World, cell: Cell, carries: bool) -> bool {
         self.list.iter().any(|guard| {
-            let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+            let ground = GuardWorld { world, terrain: &self.terrain, gait: guard.gait() };
             overlaps(guard.mover.position(), cell, RADIUS)
                 && guard.mover.after_floor(&ground, carries).is_none()
         })
@@ -578,7 +578,7 @@ impl Guards {
         let mut has_unsettled = false;
         for guard in &mut self.list {
             if overlaps(guard.mover.position(), cell, RADIUS) {
-                let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+                let ground = GuardWorld { world, terrain: &self.terrain, gait: guard.gait() };
                 guard.mover = guard.mover.after_floor(&ground, carries).unwrap_or(guard.mover);
                 has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
                 guard.is_unsettled = true;
@@ -601,7 +601,7 @@ impl Guards {
 
     /// Moves all guards with the window of a generated level. Guards outside the window are
     /// removed, and guards of the parts that have come into it are added.
-    pub(crate) fn shift(&mut self, world: &World, shift: Shift) {
+    pub(crate) fn shift(&mut self, world: &World, shift: WindowShift) {
         self.list.retain_mut(|guard| guard.shift(shift));
         let is_new = |cell: Cell| shift.is_new(cell);
         let posts = world.guards().iter().zip(0..);

@@ -172,7 +172,7 @@ struct Spike {
     cell: Cell,
     rhythm: Rhythm,
     /// The phase that the spikes show.
-    phase: Phase,
+    phase: SpikePosition,
 }
 
 impl OfLevel for Spike {
@@ -183,7 +183,7 @@ impl OfLevel for Spike {
 
 /// The position of spikes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Phase {
+enum SpikePosition {
     In,
     Rising,
     Out,
@@ -197,7 +197,7 @@ impl Spikes {
             .iter()
             .filter_map(|thing| match thing.kind {
                 ThingKind::Spikes(rhythm) => {
-                    Some(Spike { cell: thing.cell, rhythm, phase: Phase::In })
+                    Some(Spike { cell: thing.cell, rhythm, phase: SpikePosition::In })
                 }
                 _ => None,
             })
@@ -222,7 +222,7 @@ impl Spikes {
             if phase != spike.phase {
                 spike.phase = phase;
                 spike.show(world);
-                sounds.extend((phase == Phase::Rising).then(|| spike.warning()));
+                sounds.extend((phase == SpikePosition::Rising).then(|| spike.warning()));
                 has_changed = true;
             }
         }
@@ -233,7 +233,7 @@ impl Spikes {
     /// out in the step `now`.
     fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
-        (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
+        (spike.rhythm.phase(now) == SpikePosition::Out).then(|| now - spike.rhythm.age(now))
     }
 }
 
@@ -247,9 +247,9 @@ impl Spike {
     fn show(&self, world: &mut World) {
         let is_it = |kind| matches!(kind, ThingKind::Spikes(_));
         let frame = match self.phase {
-            Phase::In => SpikesFrame::In,
-            Phase::Rising => SpikesFrame::Rising,
-            Phase::Out => SpikesFrame::Out,
+            SpikePosition::In => SpikesFrame::In,
+            SpikePosition::Rising => SpikesFrame::Rising,
+            SpikePosition::Out => SpikesFrame::Out,
         };
         world.set_frame(self.cell, is_it, frame.index());
     }
@@ -262,13 +262,13 @@ impl Rhythm {
         (now + period - delay % period) % period
     }
 
-    fn phase(self, now: u64) -> Phase {
+    fn phase(self, now: u64) -> SpikePosition {
         let period = u64::from(self.period);
         let is_before = now < u64::from(self.delay);
         match self.age(now) {
-            age if age < OUT && !is_before => Phase::Out,
-            age if age + WARNING >= period => Phase::Rising,
-            _ => Phase::In,
+            age if age < OUT && !is_before => SpikePosition::Out,
+            age if age + WARNING >= period => SpikePosition::Rising,
+            _ => SpikePosition::In,
         }
     }
 }
@@ -288,16 +288,16 @@ mod tests {
         ) {
             let rhythm = Rhythm { period, delay: delay % period };
             let thrust = now + u64::from(period) - rhythm.age(now);
-            prop_assert!((1..=WARNING).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
-            prop_assert!(rhythm.phase(thrust - WARNING - 1) != Phase::Rising);
-            prop_assert!((0..OUT).all(|step| rhythm.phase(thrust + step) == Phase::Out));
-            prop_assert!(rhythm.phase(thrust + OUT) != Phase::Out);
+            prop_assert!((1..=WARNING).all(|step| rhythm.phase(thrust - step) == SpikePosition::Rising));
+            prop_assert!(rhythm.phase(thrust - WARNING - 1) != SpikePosition::Rising);
+            prop_assert!((0..OUT).all(|step| rhythm.phase(thrust + step) == SpikePosition::Out));
+            prop_assert!(rhythm.phase(thrust + OUT) != SpikePosition::Out);
         }
 
         #[test]
         fn they_first_come_out_after_their_delay(period in 60..=3600_u16, delay in 0..3600_u16) {
             let rhythm = Rhythm { period, delay: delay % period };
-            let first = (0..7200).find(|&step| rhythm.phase(step) == Phase::Out);
+            let first = (0..7200).find(|&step| rhythm.phase(step) == SpikePosition::Out);
             prop_assert_eq!(first, Some(u64::from(rhythm.delay)));
         }
     }

@@ -377,7 +377,7 @@ impl Game {
     }
 
     /// The next step of a moving cell; `None` if the cell is at rest.
-    fn next_step(&self, cell: MovingCell) -> Option<Step> {
+    fn next_step(&self, cell: MovingCell) -> Option<MovingCellStep> {
         let is_stepped_on =
             || cell.driver(&self.world) == Driver::Weight && self.weighs_on(cell.cell);
         let is_driven = self.mechanisms.is_driven(cell, &self.world) || is_stepped_on();
@@ -392,7 +392,7 @@ impl Game {
 
     /// The cell after `step`, which also moves everybody who stands on it. If somebody is in the
     /// way, the cell before `step`, marked as blocked.
-    fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
+    fn moved(&mut self, cell: MovingCell, step: MovingCellStep) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
         let mut stood = [false; MAX_PLAYERS];
@@ -432,7 +432,7 @@ impl Game {
     }
 
     /// Makes the sounds of a floor that cracks and then breaks.
-    fn hear_crumbling(&mut self, cell: MovingCell, step: Step) {
+    fn hear_crumbling(&mut self, cell: MovingCell, step: MovingCellStep) {
         if cell.driver(&self.world) == Driver::Weight {
             if !cell.is_driven {
                 self.sound_in(cell.cell, SoundKind::Mechanism, reach::CLICK);
@@ -497,7 +497,7 @@ struct MovingCell {
 
 /// The effect of a step on a moving cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Step {
+struct MovingCellStep {
     after: MovingCell,
     /// The new tile, if the cell changes its tile.
     state: Option<TileId>,
@@ -553,7 +553,7 @@ impl MovingCell {
 
     /// The next step, towards the end if `is_driven` is true and back otherwise. `None` if the cell
     /// is at rest.
-    fn step(self, world: &World, is_driven: bool) -> Option<Step> {
+    fn step(self, world: &World, is_driven: bool) -> Option<MovingCellStep> {
         let moving = self.moving_tile(world);
         let mut after = Self { is_blocked: false, ..self };
         if moving.driver == Driver::Weight && is_driven && self.cracks < CRACKS {
@@ -565,7 +565,7 @@ impl MovingCell {
             after.progress = self.progress.saturating_sub(1);
         }
         let state = Some(after.shown(world)).filter(|&state| state != self.shown(world));
-        (after != self).then_some(Step { after, state })
+        (after != self).then_some(MovingCellStep { after, state })
     }
 
     /// Whether the progress is within the states.

@@ -25,7 +25,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::checkpoint::Checkpoint;
-use super::guards::Target;
+use super::guards::PerceivedPlayer;
 use super::player::{Motion, Player, Supplies};
 use super::rules::{Input, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules};
 use super::scratch::Scratch;
@@ -39,7 +39,7 @@ use strike::Track;
 const STRIDE: f64 = 0.45;
 
 /// The target for a slot without a player.
-const NOBODY: Target = Target {
+const NOBODY: PerceivedPlayer = PerceivedPlayer {
     position: DVec2::ZERO,
     feet: 0.0,
     head: 0.0,
@@ -72,7 +72,7 @@ pub(crate) struct Members {
     blows: Vec<(usize, usize)>,
     /// Reused memory for targets, for the positions of players in the way, and for figures.
     #[serde(skip)]
-    pub(crate) targets: Scratch<Vec<Target>>,
+    pub(crate) targets: Scratch<Vec<PerceivedPlayer>>,
     #[serde(skip)]
     in_the_way: Scratch<Vec<DVec2>>,
     #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]

@@ -77,7 +77,7 @@ impl Script {
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
         let mut reader =
-            Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
+            ScriptReader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let end = line.find('#').unwrap_or(line.len());
@@ -182,7 +182,7 @@ impl Intents {
     /// The set that the words of a script name; `None` if they do not name a set.
     pub fn from_words(text: &str) -> Option<Self> {
         let header = Header::default();
-        let reader = Reader { text, header, sections: Vec::new(), faults: Vec::new() };
+        let reader = ScriptReader { text, header, sections: Vec::new(), faults: Vec::new() };
         let words = words(text, 0..text.len());
         if words.is_empty() { None } else { reader.intents(&words).ok() }
     }
@@ -355,14 +355,14 @@ fn example(word: &str) -> String {
 /// script at any time. It writes the last stretch when it is [finished](Recorder::finish) or
 /// dropped.
 #[derive(Debug)]
-pub struct Recorder<W: Write> {
+pub struct ScriptWriter<W: Write> {
     output: W,
     /// Written before the first stretch, so that a game that did not start leaves no output.
     header: Option<Header>,
     current: Option<Stretch>,
 }
 
-impl<W: Write> Recorder<W> {
+impl<W: Write> ScriptWriter<W> {
     /// A recorder that writes to `output`.
     pub fn new(output: W) -> Self {
         Self { output, header: None, current: None }
@@ -415,7 +415,7 @@ impl<W: Write> Recorder<W> {
     }
 }
 
-impl<W: Write> Drop for Recorder<W> {
+impl<W: Write> Drop for ScriptWriter<W> {
     fn drop(&mut self) {
         // Callers that need the error have called `finish`.
         _ = self.finish();
@@ -423,20 +423,20 @@ impl<W: Write> Drop for Recorder<W> {
 }
 
 /// The parts of a script that have been read.
-struct Reader<'t> {
+struct ScriptReader<'t> {
     text: &'t str,
     header: Header,
-    sections: Vec<Named>,
+    sections: Vec<PlacedSection>,
     faults: Vec<Fault>,
 }
 
 /// A section, and the place of its name.
-struct Named {
+struct PlacedSection {
     section: Section,
     place: Range<usize>,
 }
 
-impl Reader<'_> {
+impl ScriptReader<'_> {
     fn read_line(&mut self, line: Range<usize>) {
         if line.is_empty() {
             return;
@@ -480,7 +480,7 @@ impl Reader<'_> {
     }
 
     fn begin_section(&mut self, name: String, place: Range<usize>) {
-        self.sections.push(Named { section: Section { name, stretches: Vec::new() }, place });
+        self.sections.push(PlacedSection { section: Section { name, stretches: Vec::new() }, place });
     }
 
     fn read_name(&mut self, line: Range<usize>) {
@@ -748,7 +748,7 @@ mod tests {
             let wants = [Intents::new(), [Intent::Run].into_iter().collect(), Intent::ALL.into_iter().collect()];
             prop_assume!(happened.iter().any(|&(_, steps)| steps > 0));
             let mut text = Vec::new();
-            let mut recorder = Recorder::new(&mut text);
+            let mut recorder = ScriptWriter::new(&mut text);
             for &(want, steps) in &happened {
                 recorder.record(wants[want], steps)?;
             }
@@ -763,16 +763,16 @@ mod tests {
     fn the_header_comes_with_the_first_stretch() {
         let header = Header { seed: Some(7), ..Header::default() };
         let mut text = Vec::new();
-        drop(Recorder::with_header(&mut text, header.clone()));
+        drop(ScriptWriter::with_header(&mut text, header.clone()));
         assert!(text.is_empty());
-        Recorder::with_header(&mut text, header).record(Intents::new(), 60).unwrap();
+        ScriptWriter::with_header(&mut text, header).record(Intents::new(), 60).unwrap();
         assert_eq!(String::from_utf8(text).unwrap(), "seed       7\n\n1 s       stand\n");
     }
 
     #[test]
     fn a_stretch_longer_than_a_line_may_be_takes_several() {
         let mut text = Vec::new();
-        Recorder::new(&mut text)
+        ScriptWriter::new(&mut text)
             .record(Intents::new(), 2 * u64::from(Stretch::MAX_STEPS) + 1)
             .unwrap();
         assert_eq!(

@@ -2,7 +2,7 @@
 //! move.
 
 use super::Game;
-use super::guards::Target;
+use super::guards::PerceivedPlayer;
 use super::multiplayer::playing;
 use super::player::Player;
 use super::tools::{Missile, MissileKind, Puff};
@@ -113,16 +113,16 @@ impl Game {
     }
 
     /// The state of the player that guards can perceive.
-    pub(crate) fn target(&self) -> Target {
+    pub(crate) fn target(&self) -> PerceivedPlayer {
         self.target_at(&self.player)
     }
 
-    pub(crate) fn target_at(&self, player: &Player) -> Target {
+    pub(crate) fn target_at(&self, player: &Player) -> PerceivedPlayer {
         let motion = &player.motion;
         let light = self.world.light_in(motion.cell()).in_256ths();
         let posed = if motion.is_ducking() { light / 2 } else { light };
         let visibility = if motion.is_still() { posed * 4 / 5 } else { posed };
-        Target {
+        PerceivedPlayer {
             position: motion.position(),
             feet: motion.feet(),
             head: motion.head(),

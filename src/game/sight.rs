@@ -33,7 +33,7 @@ pub(crate) struct Cloud {
 /// Whether nothing hides one of two points from the other.
 pub(crate) fn is_in_sight(world: &World, clouds: &[Cloud], from: Point, to: Point) -> bool {
     !clouds.iter().any(|cloud| cloud.hides(from.position, to.position))
-        && Line { world, from, to }.is_free()
+        && SightLine { world, from, to }.is_free()
 }
 
 impl Cloud {
@@ -47,13 +47,13 @@ impl Cloud {
     }
 }
 
-struct Line<'a> {
+struct SightLine<'a> {
     world: &'a World,
     from: Point,
     to: Point,
 }
 
-impl Line<'_> {
+impl SightLine<'_> {
     fn is_free(&self) -> bool {
         let grid = self.world.grid();
         let way = self.to.position - self.from.position;

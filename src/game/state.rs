@@ -36,7 +36,7 @@ impl Game {
     /// # Ok::<(), cellcaster::fault::Faults>(())
     /// ```
     pub fn stored(&self) -> Option<Vec<u8>> {
-        self.window.is_none().then(|| written(KIND, &State(self)))
+        self.window.is_none().then(|| written(KIND, &GameState(self)))
     }
 
     /// The game that `bytes` were stored from. `self` must be at its start, in the same level with
@@ -176,9 +176,9 @@ impl Game {
 }
 
 /// The part of a game that the level does not provide.
-struct State<'a>(&'a Game);
+struct GameState<'a>(&'a Game);
 
-impl Serialize for State<'_> {
+impl Serialize for GameState<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let Self(game) = self;
         let level = game.level_hash().to_le_bytes();
@@ -186,7 +186,7 @@ impl Serialize for State<'_> {
         let shown = (game.revision, game.figure_revision, game.sprites.has_player(), is_lamplit);
         let cell = game.checkpoint.cell();
         // Without a cell, the checkpoint is the start, which is known.
-        let saved = game.checkpoint.game().filter(|_| cell.is_some()).map(State);
+        let saved = game.checkpoint.game().filter(|_| cell.is_some()).map(GameState);
         (level, shown, figures, game.rules_state(), cell, saved).serialize(to)
     }
 }

@@ -203,9 +203,9 @@ where
     T: Deserialize<'de>,
     D: Deserializer<'de>,
 {
-    struct List<T, const MAX: usize>(std::marker::PhantomData<T>);
+    struct ListVisitor<T, const MAX: usize>(std::marker::PhantomData<T>);
 
-    impl<'de, T: Deserialize<'de>, const MAX: usize> Visitor<'de> for List<T, MAX> {
+    impl<'de, T: Deserialize<'de>, const MAX: usize> Visitor<'de> for ListVisitor<T, MAX> {
         type Value = Vec<T>;
 
         fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -224,7 +224,7 @@ where
         }
     }
 
-    from.deserialize_seq(List::<T, MAX>(std::marker::PhantomData))
+    from.deserialize_seq(ListVisitor::<T, MAX>(std::marker::PhantomData))
 }
 
 /// The remaining bytes to read, and the size of the map that they refer to.

@@ -49,7 +49,7 @@ const HUB_RADIUS: usize = 2;
 /// The number of steps for which a tunnel may wind before it goes straight.
 const WINDING: usize = 160;
 
-type Place = (usize, usize);
+type ChunkPosition = (usize, usize);
 
 impl Terrain for Cave {
     fn seed(&self) -> u64 {
@@ -81,7 +81,7 @@ impl Terrain for Cave {
         chunk
     }
 
-    fn hub(&self, area: &ChunkArea) -> Option<Place> {
+    fn hub(&self, area: &ChunkArea) -> Option<ChunkPosition> {
         if !area.holds(MIN) {
             return None;
         }
@@ -125,7 +125,7 @@ impl Cave {
 
     /// The gates in the north, west, south and east; `None` on a side without a connected
     /// neighbour.
-    fn gates(&self, area: &ChunkArea) -> [Option<Place>; 4] {
+    fn gates(&self, area: &ChunkArea) -> [Option<ChunkPosition>; 4] {
         let last = CHUNK_SIDE - 1;
         let (column, row) = (area.chunk.column, area.chunk.row);
         let has_hub = |columns, rows| self.hub(&area.neighbor(columns, rows)).is_some();
@@ -144,7 +144,7 @@ impl Cave {
     }
 
     /// Places stalagmites and things where the player can walk around them, except on the hub.
-    fn furnish(&self, chunk: &mut Chunk, area: &ChunkArea, hub: Place) {
+    fn furnish(&self, chunk: &mut Chunk, area: &ChunkArea, hub: ChunkPosition) {
         let (column, row) = (area.chunk.column, area.chunk.row);
         let mut random = generator(self.seed, Purpose::Furniture, column, row);
         let inner = 1..CHUNK_SIDE - 1;
@@ -172,12 +172,12 @@ fn is_floor_of(chunk: &Chunk, area: &ChunkArea, column: usize, row: usize) -> bo
 }
 
 /// Clears the rock within `radius` of a cell, inside the area and apart from the corners.
-fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): Place, radius: usize) {
-    let near = |(x, y): Place| {
+fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): ChunkPosition, radius: usize) {
+    let near = |(x, y): ChunkPosition| {
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
         across * across + down * down <= radius * radius + 1
     };
-    let is_rock = |(x, y): Place| area.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
+    let is_rock = |(x, y): ChunkPosition| area.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
     let carved: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
     for (x, y) in carved {
         chunk.set(x, y, TUNNEL);
@@ -188,8 +188,8 @@ fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): Place, radiu
 fn carve_tunnel(
     chunk: &mut Chunk,
     area: &ChunkArea,
-    from: Place,
-    to: Place,
+    from: ChunkPosition,
+    to: ChunkPosition,
     random: &mut SplitMix64,
 ) {
     let (mut column, mut row) = from;

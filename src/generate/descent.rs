@@ -27,7 +27,7 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::chunk::{Chunk, ChunkArea, Extent, Terrain};
-use super::level::{Generator, Level};
+use super::level::{Generator, GeneratedLevel};
 use super::purpose::{Purpose, generator, hash};
 use super::tileset::Tileset;
 use super::window::best_heading;
@@ -97,7 +97,7 @@ pub fn daily_seed(year: u32, month: u32, day: u32) -> u32 {
 struct Draft {
     floor: u32,
     generator: Generator,
-    level: Level,
+    level: GeneratedLevel,
     ground: Ground,
     random: SplitMix64,
 }
@@ -110,7 +110,7 @@ impl Draft {
         let terrain = FloorTerrain::new(kind.terrain(own_seed), floor);
         let (columns, rows) = size(floor);
         let extent = Extent::Cells { columns: columns.get(), rows: rows.get() };
-        let level = Level::new(terrain, extent)?;
+        let level = GeneratedLevel::new(terrain, extent)?;
         let mut random = generator(own_seed, Purpose::Population, 0, 0);
         let Some(start) = level.start() else { return Ok(None) };
         let start = (start.column as u32, start.row as u32);

@@ -24,14 +24,14 @@ use crate::fault::Faults;
 /// # Ok::<(), cellcaster::fault::Faults>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Level {
+pub struct GeneratedLevel {
     terrain: Arc<dyn Terrain>,
     tileset: Arc<Tileset>,
     extent: Extent,
     exit: Option<Site>,
 }
 
-impl Level {
+impl GeneratedLevel {
     /// The level that `terrain` fills within `extent`. A level that is not endless has an exit.
     ///
     /// # Errors
@@ -161,7 +161,7 @@ impl Level {
 }
 
 /// Two levels are equal if they come from the same call of [`Level::new`].
-impl PartialEq for Level {
+impl PartialEq for GeneratedLevel {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.tileset, &other.tileset)
     }
@@ -209,8 +209,8 @@ impl Generator {
     ///
     /// # Errors
     /// None in practice: the tests read the legend of every generator.
-    pub fn level(self, seed: u64, extent: Extent) -> Result<Level, Faults> {
-        Level::new(self.terrain(seed), extent)
+    pub fn level(self, seed: u64, extent: Extent) -> Result<GeneratedLevel, Faults> {
+        GeneratedLevel::new(self.terrain(seed), extent)
     }
 }
 

@@ -123,7 +123,7 @@ struct Carving {
 }
 
 /// The column and the row of a node among the nodes of its chunk.
-type Node = (usize, usize);
+type MazeNode = (usize, usize);
 
 impl Carving {
     /// Connects all nodes with the first one, by depth-first search.
@@ -131,7 +131,7 @@ impl Carving {
         let mut way = vec![(0, 0)];
         self.carve((1, 1));
         while let Some(&node) = way.last() {
-            let uncarved: Vec<Node> =
+            let uncarved: Vec<MazeNode> =
                 self.beside(node).into_iter().filter(|&next| !self.is_dug(cell(next))).collect();
             if uncarved.is_empty() {
                 way.pop();
@@ -148,8 +148,8 @@ impl Carving {
     fn open_dead_ends(&mut self) {
         for node in self.all() {
             let beside = self.beside(node);
-            let is_way = |&next: &Node| self.is_dug(between(node, next));
-            let (ways, walls): (Vec<Node>, Vec<Node>) = beside.into_iter().partition(is_way);
+            let is_way = |&next: &MazeNode| self.is_dug(between(node, next));
+            let (ways, walls): (Vec<MazeNode>, Vec<MazeNode>) = beside.into_iter().partition(is_way);
             if ways.len() > 1 {
                 continue;
             }
@@ -195,12 +195,12 @@ impl Carving {
         self.chunk.get(column, row) != self.district.wall
     }
 
-    fn all(&self) -> Vec<Node> {
+    fn all(&self) -> Vec<MazeNode> {
         let (columns, rows) = self.nodes;
         (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).collect()
     }
 
-    fn beside(&self, (column, row): Node) -> Vec<Node> {
+    fn beside(&self, (column, row): MazeNode) -> Vec<MazeNode> {
         let places = [
             (column.wrapping_sub(1), row),
             (column + 1, row),
@@ -213,12 +213,12 @@ impl Carving {
 }
 
 /// The cell of a node in its chunk.
-fn cell((column, row): Node) -> (usize, usize) {
+fn cell((column, row): MazeNode) -> (usize, usize) {
     (2 * column + 1, 2 * row + 1)
 }
 
 /// The cell between two neighbouring nodes.
-fn between(one: Node, other: Node) -> (usize, usize) {
+fn between(one: MazeNode, other: MazeNode) -> (usize, usize) {
     (one.0 + other.0 + 1, one.1 + other.1 + 1)
 }
 

@@ -53,7 +53,7 @@ impl Terrain for Office {
         carve_corridors(&mut chunk, area);
         self.set_fire_doors(&mut chunk, area);
         let random = generator(self.seed, Purpose::Plan, area.chunk.column, area.chunk.row);
-        if let Some(block) = Block::of(area, CORRIDORS.end) {
+        if let Some(block) = RoomArea::of(area, CORRIDORS.end) {
             block.build(&mut chunk, random);
         }
         chunk
@@ -132,7 +132,7 @@ fn carve_corridors(chunk: &mut Chunk, area: &ChunkArea) {
 
 /// The area between the corridors of a chunk.
 #[derive(Clone, Debug)]
-struct Block {
+struct RoomArea {
     /// The inside from west to east, between walls in odd columns. The last wall may be in any
     /// column.
     columns: Range<usize>,
@@ -176,7 +176,7 @@ const HALL: Furniture =
 const GARDEN: Furniture =
     Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
 
-impl Block {
+impl RoomArea {
     /// The block of an area whose corridors end before `first`; `None` if there is no room for it.
     fn of(area: &ChunkArea, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
@@ -218,7 +218,7 @@ struct Building<'c> {
 
 impl Building<'_> {
     /// Builds one room of any size, with pillars.
-    fn hall(&mut self, block: &Block, furniture: Furniture) {
+    fn hall(&mut self, block: &RoomArea, furniture: Furniture) {
         self.furnish(block, furniture);
         let is_pillars = |place: usize| place % PILLAR_SPACING == 1;
         for row in block.rows.clone().filter(|&row| is_pillars(row)) {
@@ -229,7 +229,7 @@ impl Building<'_> {
     }
 
     /// Divides large areas in two with a door between them, and furnishes the small ones.
-    fn divide(&mut self, block: Block) {
+    fn divide(&mut self, block: RoomArea) {
         let (across, down) = (block.cuts_across(), block.cuts_down());
         let longest = block.columns.len().max(block.rows.len());
         let is_done = longest <= MAX_ROOM_SIDE && self.random.one_in(3);
@@ -246,21 +246,21 @@ impl Building<'_> {
             return self.furnish(&block, furniture);
         }
         let cut = cuts[self.random.below(cuts.len())];
-        let Block { columns, rows } = block;
+        let RoomArea { columns, rows } = block;
         if is_across {
-            self.divide(Block { columns: columns.start..cut, rows: rows.clone() });
-            self.divide(Block { columns: cut + 1..columns.end, rows: rows.clone() });
+            self.divide(RoomArea { columns: columns.start..cut, rows: rows.clone() });
+            self.divide(RoomArea { columns: cut + 1..columns.end, rows: rows.clone() });
             let wall: Vec<_> = rows.map(|row| (cut, row)).collect();
             self.open_wall(&wall, 1);
         } else {
-            self.divide(Block { columns: columns.clone(), rows: rows.start..cut });
-            self.divide(Block { columns: columns.clone(), rows: cut + 1..rows.end });
+            self.divide(RoomArea { columns: columns.clone(), rows: rows.start..cut });
+            self.divide(RoomArea { columns: columns.clone(), rows: cut + 1..rows.end });
             let wall: Vec<_> = columns.map(|column| (column, cut)).collect();
             self.open_wall(&wall, 1);
         }
     }
 
-    fn open_to_corridors(&mut self, block: &Block) {
+    fn open_to_corridors(&mut self, block: &RoomArea) {
         let in_west: Vec<_> =
             block.rows.clone().map(|row| (block.columns.start - 1, row)).collect();
         let in_north: Vec<_> =
@@ -287,7 +287,7 @@ impl Building<'_> {
         }
     }
 
-    fn furnish(&mut self, room: &Block, furniture: Furniture) {
+    fn furnish(&mut self, room: &RoomArea, furniture: Furniture) {
         let lamps_in =
             |range: &Range<usize>| ((range.start + range.len() / 2) % ROOM_LAMP_SPACING) & !1;
         let lamps = (lamps_in(&room.columns), lamps_in(&room.rows));

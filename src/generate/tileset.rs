@@ -18,12 +18,12 @@ pub(crate) struct Tileset {
     /// The world of the legend's map.
     world: World,
     /// The meanings, indexed by character. Characters without a meaning are rock.
-    meanings: Vec<Meaning>,
+    meanings: Vec<TilesetEntry>,
     exits: Vec<u8>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Meaning {
+struct TilesetEntry {
     tile: TileId,
     thing: Option<(ThingKind, SpriteId)>,
     /// `true` if the player can walk there. For a door, this means the open door.
@@ -39,7 +39,7 @@ impl Tileset {
         const NAME: &str = "the legend";
         let world = map::parse(legend, NAME, &NoFiles)?;
         let drawn = drawn(&world, legend);
-        let is_rock = |&(byte, meaning): &(u8, Meaning)| byte == ROCK && !meaning.is_walkable;
+        let is_rock = |&(byte, meaning): &(u8, TilesetEntry)| byte == ROCK && !meaning.is_walkable;
         let Some((_, rock)) = drawn.iter().copied().find(is_rock) else {
             let message = format!("{NAME} shows no wall '#'");
             return Err(Faults::of_whole_file(NAME, &message, "draw one in its grid"));
@@ -110,7 +110,7 @@ impl Tileset {
         let mut things = Vec::new();
         for (characters, row) in rows.zip(0..) {
             for (character, column) in characters.into_iter().zip(0..) {
-                let Meaning { tile, thing, .. } = self.meaning(character);
+                let TilesetEntry { tile, thing, .. } = self.meaning(character);
                 cells.push(tile);
                 let cell = Cell { column, row };
                 things.extend(thing.map(|(kind, sprite)| Thing {
@@ -130,13 +130,13 @@ impl Tileset {
         world.redraw(grid, start, things);
     }
 
-    fn meaning(&self, character: u8) -> Meaning {
+    fn meaning(&self, character: u8) -> TilesetEntry {
         self.meanings[usize::from(character)]
     }
 }
 
 /// The characters in the grid of `legend` with their meanings. `world` is the world of `legend`.
-fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
+fn drawn(world: &World, legend: &str) -> Vec<(u8, TilesetEntry)> {
     let rows = map::rows_of_grid(legend);
     let cells = rows.iter().zip(0..).flat_map(|(line, row)| {
         line.bytes().zip(0..).map(move |(byte, column)| (byte, Cell { column, row }))
@@ -147,7 +147,7 @@ fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
         let is_free = !world.grid().is_occupied(cell.column.into(), cell.row.into());
         let Tile { kind, .. } = world.tile(tile);
         let is_open = matches!(kind, TileKind::Open | TileKind::Door(_));
-        Some(Meaning { tile, thing, is_walkable: is_open && is_free })
+        Some(TilesetEntry { tile, thing, is_walkable: is_open && is_free })
     };
     cells.filter_map(|(byte, cell)| Some((byte, meaning(cell)?))).collect()
 }

@@ -16,7 +16,7 @@ use std::num::NonZeroU32;
 use glam::DVec2;
 
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Site};
-use super::level::Level;
+use super::level::GeneratedLevel;
 use super::tileset::ROCK;
 use crate::world::{Cell, Grid, Heading, Start, World};
 
@@ -33,7 +33,7 @@ const PLAYERS_CHUNK: usize = 2;
 /// The part of a level that is around the player now.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
-    level: Level,
+    level: GeneratedLevel,
     /// The index of the north-west chunk.
     first: ChunkIndex,
     /// The chunks, row by row from the north.
@@ -43,12 +43,12 @@ pub struct Window {
 /// The shift caused by a move of the window: the number of cells to the east and to the south by
 /// which everything in it is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shift {
+pub(crate) struct WindowShift {
     columns: i64,
     rows: i64,
 }
 
-impl Shift {
+impl WindowShift {
     /// The new coordinates of a cell that was at `cell` before the shift; `None` if it is outside
     /// the window now.
     pub(crate) fn cell(self, cell: Cell) -> Option<Cell> {
@@ -74,7 +74,7 @@ impl Window {
     /// A window around `site`, and its world. The player starts at `site`, or near it if there is
     /// no way out of `site`, and faces the direction with the farthest view. `None` if there is no
     /// place to start, which is the case outside the level.
-    pub fn open(level: Level, site: Site) -> Option<(Self, World)> {
+    pub fn open(level: GeneratedLevel, site: Site) -> Option<(Self, World)> {
         let site = level.start_near(site)?;
         let (index, (column, row)) = site.chunk();
         // A player in the western half of their chunk is one chunk further along in the window,
@@ -93,7 +93,7 @@ impl Window {
     }
 
     /// The level that the window shows.
-    pub fn level(&self) -> &Level {
+    pub fn level(&self) -> &GeneratedLevel {
         &self.level
     }
 
@@ -114,7 +114,7 @@ impl Window {
 
     /// Moves the window so that `cell`, the player's cell, is in the middle, and draws that part of
     /// the level in `world` with all doors closed. Returns `None` if no move is needed.
-    pub(crate) fn follow(&mut self, world: &mut World, cell: Cell) -> Option<Shift> {
+    pub(crate) fn follow(&mut self, world: &mut World, cell: Cell) -> Option<WindowShift> {
         let (columns, rows) = (chunks_off(cell.column), chunks_off(cell.row));
         if (columns, rows) == (0, 0) {
             return None;
@@ -132,7 +132,7 @@ impl Window {
         self.chunks = chunks.collect();
         self.first = first;
         let shift =
-            Shift { columns: -columns * CHUNK_SIDE as i64, rows: -rows * CHUNK_SIDE as i64 };
+            WindowShift { columns: -columns * CHUNK_SIDE as i64, rows: -rows * CHUNK_SIDE as i64 };
         let heading = world.start().heading;
         let cell = shift.cell(cell).unwrap_or(CENTER);
         self.draw(world, |_| Start { cell, heading });

@@ -6,14 +6,14 @@ use crate::world::World;
 
 /// A built-in level.
 #[derive(Clone, Copy, Debug)]
-pub struct Level {
+pub struct BuiltinLevel {
     /// The name on the command line.
     pub name: &'static str,
     /// The text of its map file, which uses built-in textures only.
     pub text: &'static str,
 }
 
-impl Level {
+impl BuiltinLevel {
     /// The world that the map describes.
     ///
     /// # Errors
@@ -24,17 +24,17 @@ impl Level {
 }
 
 /// The built-in levels, in playing order: a campaign of twelve.
-pub const LEVELS: &[Level] = &[
-    Level { name: "cellar", text: include_str!("../../maps/cellar.toml") },
-    Level { name: "museum", text: include_str!("../../maps/museum.toml") },
-    Level { name: "kennels", text: include_str!("../../maps/kennels.toml") },
-    Level { name: "chapel", text: include_str!("../../maps/chapel.toml") },
-    Level { name: "archive", text: include_str!("../../maps/archive.toml") },
-    Level { name: "cistern", text: include_str!("../../maps/cistern.toml") },
-    Level { name: "barracks", text: include_str!("../../maps/barracks.toml") },
-    Level { name: "prison", text: include_str!("../../maps/prison.toml") },
-    Level { name: "citadel", text: include_str!("../../maps/citadel.toml") },
-    Level { name: "clock", text: include_str!("../../maps/clock.toml") },
-    Level { name: "treasury", text: include_str!("../../maps/treasury.toml") },
-    Level { name: "observatory", text: include_str!("../../maps/observatory.toml") },
+pub const LEVELS: &[BuiltinLevel] = &[
+    BuiltinLevel { name: "cellar", text: include_str!("../../maps/cellar.toml") },
+    BuiltinLevel { name: "museum", text: include_str!("../../maps/museum.toml") },
+    BuiltinLevel { name: "kennels", text: include_str!("../../maps/kennels.toml") },
+    BuiltinLevel { name: "chapel", text: include_str!("../../maps/chapel.toml") },
+    BuiltinLevel { name: "archive", text: include_str!("../../maps/archive.toml") },
+    BuiltinLevel { name: "cistern", text: include_str!("../../maps/cistern.toml") },
+    BuiltinLevel { name: "barracks", text: include_str!("../../maps/barracks.toml") },
+    BuiltinLevel { name: "prison", text: include_str!("../../maps/prison.toml") },
+    BuiltinLevel { name: "citadel", text: include_str!("../../maps/citadel.toml") },
+    BuiltinLevel { name: "clock", text: include_str!("../../maps/clock.toml") },
+    BuiltinLevel { name: "treasury", text: include_str!("../../maps/treasury.toml") },
+    BuiltinLevel { name: "observatory", text: include_str!("../../maps/observatory.toml") },
 ];

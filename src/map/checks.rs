@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::drawing::Drawing;
 use super::legend::{Meaning, Symbol};
 use super::plan::{Names, Plan};
-use super::reach::Reach;
+use super::reach::KeySearch;
 use super::values::Name;
 use crate::fault::{Fault, nearest, quoted};
 use crate::sort;
@@ -410,7 +410,7 @@ fn keys_out_of_reach(plan: Plan<'_>, cells: Cells<'_>, start: Start) -> Vec<Faul
     if plan.locks().next().is_none() {
         return Vec::new();
     }
-    let found = Reach::of(plan, cells.grid, low_things(cells)).keys_from(start.cell);
+    let found = KeySearch::of(plan, cells.grid, low_things(cells)).keys_from(start.cell);
     let drawn = Names::of(plan.keys());
     let missing = plan.locks().filter(|lock| !found.contains(lock.text)).map(|lock| {
         let name = quoted(lock.text);

@@ -5,10 +5,10 @@ use std::ops::Range;
 use toml::de::DeTable;
 
 use super::checks::MIN_HEADROOM;
-use super::keys::{self, Section};
+use super::keys::{self, CharacterTable};
 use super::legend::Legend;
 use super::surfaces::{self, CeilingText, CoveringText, SkyText};
-use super::textures::Surface;
+use super::textures::SurfaceText;
 use super::values::{HEIGHT, LIGHT, whole};
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::world::{Fog, Light};
@@ -32,9 +32,9 @@ pub(crate) struct Definitions<'a, 't> {
     pub(crate) ceiling_height: Option<f64>,
     pub(crate) floor: Option<CoveringText<'a>>,
     /// The sides of raised floors, for tiles without their own.
-    pub(crate) riser: Option<Surface<'a>>,
+    pub(crate) riser: Option<SurfaceText<'a>>,
     /// The sides of lowered ceilings, for tiles without their own.
-    pub(crate) lintel: Option<Surface<'a>>,
+    pub(crate) lintel: Option<SurfaceText<'a>>,
     pub(crate) sky: Option<SkyText<'a>>,
     pub(crate) fog: Option<Fog>,
     /// The light of tiles without their own.
@@ -65,14 +65,14 @@ impl<'a, 't> Definitions<'a, 't> {
             "ceiling" => self.ceiling = CeilingText::read(&entry, r##"ceiling = "#202028""##),
             "ceiling_height" => self.ceiling_height = ceiling_height(&entry),
             "floor" => self.floor = CoveringText::read(&entry, r#"floor = "stone""#),
-            "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#),
-            "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#),
+            "riser" => self.riser = SurfaceText::read(&entry, r#"riser = "stone""#),
+            "lintel" => self.lintel = SurfaceText::read(&entry, r#"lintel = "brick""#),
             "sky" => self.sky = SkyText::read(&entry),
             "light" => self.light = LIGHT.read(&entry),
             "fog" => self.fog = surfaces::fog(&entry),
             "grid" => self.grid = Some(entry),
-            "tiles" => self.legend.read_section(Section::Tiles, &entry),
-            "things" => self.legend.read_section(Section::Things, &entry),
+            "tiles" => self.legend.read_section(CharacterTable::Tiles, &entry),
+            "things" => self.legend.read_section(CharacterTable::Things, &entry),
             _ => entry.faults.push(entry.unknown_key("a map", keys::MAP)),
         }
     }

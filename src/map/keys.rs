@@ -114,12 +114,12 @@ const NOT_YET: &[(&str, &str)] = &[("pushwall", "moving walls"), ("window", "win
 
 /// One of the two tables that define characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Section {
+pub(crate) enum CharacterTable {
     Tiles,
     Things,
 }
 
-impl Section {
+impl CharacterTable {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Tiles => "[tiles]",

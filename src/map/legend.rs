@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{self, Section};
-use super::textures::Surface;
+use super::keys::{self, CharacterTable};
+use super::textures::SurfaceText;
 use super::values::{HEADING, Name, is_true};
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
@@ -43,7 +43,7 @@ pub(crate) enum Meaning<'a> {
     Floor,
     Wall(WallText<'a>),
     Door(DoorText<'a>),
-    Mask(Surface<'a>),
+    Mask(SurfaceText<'a>),
     Glass(Glass),
     /// With its own height, if it has one.
     Mirror(Glass, Option<f64>),
@@ -101,7 +101,7 @@ impl<'a> Legend<'a> {
     }
 
     /// Reads the definitions in the table of `entry`; reports its faults.
-    pub(crate) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
+    pub(crate) fn read_section(&mut self, section: CharacterTable, entry: &Entry<'a, '_>) {
         let Some(table) = entry.table(section.name()) else {
             self.is_complete = false;
             return;
@@ -122,7 +122,7 @@ impl<'a> Legend<'a> {
                 meaning = Meaning::Unclear;
             }
             let support = match (section, entry.value) {
-                (Section::Things, DeValue::Table(thing)) => support(&entry, thing),
+                (CharacterTable::Things, DeValue::Table(thing)) => support(&entry, thing),
                 _ => None,
             };
             let place = entry.key_place;
@@ -144,7 +144,7 @@ fn support(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<(char, Range<us
 }
 
 /// Reads the character that `entry` defines.
-fn character(section: Section, entry: &Entry<'_, '_>) -> Option<char> {
+fn character(section: CharacterTable, entry: &Entry<'_, '_>) -> Option<char> {
     let mut characters = entry.key.chars();
     let (message, help) = match (characters.next(), characters.next()) {
         (Some(open @ ('.' | ' ')), None) => {
@@ -169,7 +169,7 @@ fn character(section: Section, entry: &Entry<'_, '_>) -> Option<char> {
 }
 
 /// Reads the meaning and the surroundings in `entry`.
-fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroundings<'a>) {
+fn meaning<'a>(section: CharacterTable, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroundings<'a>) {
     let mut surroundings = Surroundings::default();
     let Some(table) = entry.table(section.example()) else {
         return (Meaning::Unclear, surroundings);
@@ -177,7 +177,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     let faults_before = entry.faults.len();
     let mut meanings = Vec::new();
     for entry in entry.entries(table) {
-        if section == Section::Things || !surroundings.take(&entry, table) {
+        if section == CharacterTable::Things || !surroundings.take(&entry, table) {
             meanings.extend(property(section, &entry, table));
         }
     }
@@ -238,7 +238,7 @@ fn several_at_once(entry: &Entry<'_, '_>) -> Fault {
 
 /// Reads one property of a tile or a thing, which may be its meaning.
 fn property<'a>(
-    section: Section,
+    section: CharacterTable,
     entry: &Entry<'a, '_>,
     table: &'a DeTable<'_>,
 ) -> Option<Meaning<'a>> {
@@ -246,31 +246,31 @@ fn property<'a>(
         return None;
     }
     match (section, entry.key) {
-        (Section::Tiles, "wall" | "secret") => WallText::read(entry, table).map(Meaning::Wall),
-        (Section::Tiles, "door") => DoorText::read(entry, table).map(Meaning::Door),
-        (Section::Tiles, "mask") => {
-            Surface::read(entry, r#"{ mask = "grate" }"#).map(Meaning::Mask)
+        (CharacterTable::Tiles, "wall" | "secret") => WallText::read(entry, table).map(Meaning::Wall),
+        (CharacterTable::Tiles, "door") => DoorText::read(entry, table).map(Meaning::Door),
+        (CharacterTable::Tiles, "mask") => {
+            SurfaceText::read(entry, r#"{ mask = "grate" }"#).map(Meaning::Mask)
         }
-        (Section::Tiles, "glass") => tiles::glass(entry, table).map(Meaning::Glass),
-        (Section::Tiles, "mirror") => {
+        (CharacterTable::Tiles, "glass") => tiles::glass(entry, table).map(Meaning::Glass),
+        (CharacterTable::Tiles, "mirror") => {
             let (tint, height) = (tiles::mirror(entry, table), tiles::wall_height(entry, table));
             tint.map(|tint| Meaning::Mirror(tint, height))
         }
-        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
+        (CharacterTable::Tiles, "pillar" | "diagonal" | "thin") => {
             ShapeText::read(entry, table).map(Meaning::Shape)
         }
-        (Section::Things, "start") => HEADING.read(entry).map(Meaning::Start),
-        (Section::Things, "key") => {
+        (CharacterTable::Things, "start") => HEADING.read(entry).map(Meaning::Start),
+        (CharacterTable::Things, "key") => {
             Name::read(entry, "key", r#"{ key = "brass" }"#).map(Meaning::Key)
         }
-        (Section::Things, "lever") => {
+        (CharacterTable::Things, "lever") => {
             Name::read(entry, "switch", r#"{ lever = "gate" }"#).map(Meaning::Lever)
         }
-        (Section::Things, "note") => things::note(entry).map(Meaning::Note),
-        (Section::Things, "sprite") => SpriteText::read(entry, table).map(Meaning::Sprite),
-        (Section::Things, "guard") => GuardText::read(entry, table).map(Meaning::Guard),
-        (Section::Things, "waypoint") => is_true(entry).then_some(Meaning::Waypoint),
-        (Section::Things, key) if things::ITEMS.contains(&key) => {
+        (CharacterTable::Things, "note") => things::note(entry).map(Meaning::Note),
+        (CharacterTable::Things, "sprite") => SpriteText::read(entry, table).map(Meaning::Sprite),
+        (CharacterTable::Things, "guard") => GuardText::read(entry, table).map(Meaning::Guard),
+        (CharacterTable::Things, "waypoint") => is_true(entry).then_some(Meaning::Waypoint),
+        (CharacterTable::Things, key) if things::ITEMS.contains(&key) => {
             things::item(entry, table).map(Meaning::Item)
         }
         _ => {

@@ -49,7 +49,7 @@ impl<T: Copy + Default> PerCell<T> {
 }
 
 /// A level for the search.
-pub(crate) struct Reach<'l> {
+pub(crate) struct KeySearch<'l> {
     grid: &'l Grid,
     openers: BTreeMap<Opener<'l>, OpenerId>,
     /// Solid cells that can be passed: doors; walls that sink; shapes, which may leave room beside
@@ -65,7 +65,7 @@ pub(crate) struct Reach<'l> {
     given: BTreeSet<OpenerId>,
 }
 
-impl<'l> Reach<'l> {
+impl<'l> KeySearch<'l> {
     /// The level of `plan` with the cells of `grid`. The player may jump over things in `low_cells`.
     pub(crate) fn of(
         plan: Plan<'l>,

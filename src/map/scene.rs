@@ -18,8 +18,8 @@ use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::fault::{Fault, quoted};
 use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, Plane, Scene, Shape, SolidTexture,
-    Sphere, Start, Sun,
+    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, Plane, Scene, BodyShape, SolidTexture,
+    Sphere, SceneStart, Sun,
 };
 use crate::world::{Heading, Scale, SkyGradient};
 
@@ -58,44 +58,44 @@ const SCALE: Quantity<Scale> = Quantity {
 };
 
 /// A kind of body.
-struct Kind {
+struct BodyKind {
     key: &'static str,
     name: &'static str,
     /// The keys that define the shape.
     keys: &'static [&'static str],
     needs: &'static str,
     example: &'static str,
-    shape: fn(&Properties<'_>) -> Option<Shape>,
+    shape: fn(&Properties<'_>) -> Option<BodyShape>,
 }
 
-const KINDS: [Kind; 3] = [
-    Kind {
+const KINDS: [BodyKind; 3] = [
+    BodyKind {
         key: "sphere",
         name: "a sphere",
         keys: &["radius", "center"],
         needs: "a center, and a radius from 1e-9 to 1e9",
         example: r##"[[sphere]], center = [4, 0, 1], radius = 1 and color = "#c04030""##,
-        shape: |of| Sphere::new(of.vector("center")?, of.number?).map(Shape::Sphere),
+        shape: |of| Sphere::new(of.vector("center")?, of.number?).map(BodyShape::Sphere),
     },
-    Kind {
+    BodyKind {
         key: "plane",
         name: "a plane",
         keys: &["height", "point", "normal"],
         needs: "a point and a normal, or a height from -1e9 to 1e9",
         example: r##"[[plane]], height = 0 and color = "#608040""##,
         shape: |of| match (of.number, of.vector("point"), of.vector("normal")) {
-            (Some(height), None, None) => Plane::new(DVec3::Z * height, DVec3::Z).map(Shape::Plane),
-            (None, Some(point), Some(normal)) => Plane::new(point, normal).map(Shape::Plane),
+            (Some(height), None, None) => Plane::new(DVec3::Z * height, DVec3::Z).map(BodyShape::Plane),
+            (None, Some(point), Some(normal)) => Plane::new(point, normal).map(BodyShape::Plane),
             _ => None,
         },
     },
-    Kind {
+    BodyKind {
         key: "box",
         name: "a box",
         keys: &["from", "to"],
         needs: "two corners, at least 1e-9 apart along every axis",
         example: r##"[[box]], from = [4, 0, 0], to = [5, 1, 1] and color = "#c0a040""##,
-        shape: |of| Block::new(of.vector("from")?, of.vector("to")?).map(Shape::Block),
+        shape: |of| Block::new(of.vector("from")?, of.vector("to")?).map(BodyShape::Block),
     },
 ];
 
@@ -180,7 +180,7 @@ fn light(entry: &Entry<'_, '_>) -> Option<Sun> {
     Some(sun)
 }
 
-fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {
+fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<SceneStart> {
     let table = entry.table(START_EXAMPLE)?;
     let faults_before = entry.faults.len();
     let mut at = None;
@@ -206,10 +206,10 @@ fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {
             format!("the start is less than {EYE_CLEARANCE} cells from a body, or inside it");
         return at_entry.reject(message, "", "move one of the two");
     }
-    Start::new(at, heading, elevation)
+    SceneStart::new(at, heading, elevation)
 }
 
-impl Kind {
+impl BodyKind {
     /// Reads the bodies of `entry`, which the map writes as `[[key]]`, into `bodies`. Adds to
     /// `pairs` the number of pairs that overlap. Stops at a body that is one too many.
     fn read_all(&self, entry: &Entry<'_, '_>, bodies: &mut Vec<Body>, pairs: &mut usize) {

@@ -3,7 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use super::files::{is_png, stays_inside};
-use super::textures::{Source, Surface, Textures};
+use super::textures::{PaintText, SurfaceText, Textures};
 use super::values::{SCALE, color};
 use crate::color::Rgb;
 use crate::fault::document::Entry;
@@ -14,15 +14,15 @@ use crate::world::{Ceiling, Covering, Fog, Paint, Pattern, Scale, Sky, SkyGradie
 const SKY_EXAMPLE: &str = r##"sky = { gradient = ["#5080c0", "#c0d8f0"] }"##;
 const FOG_EXAMPLE: &str = r##"fog = { color = "#101018", distance = 12.0 }"##;
 
-impl<'a> Surface<'a> {
+impl<'a> SurfaceText<'a> {
     /// A surface of one colour, for maps that name no surface.
     pub(crate) fn plain(color: Rgb) -> Self {
-        Self { source: Source::Color(color), place: 0..0 }
+        Self { source: PaintText::Color(color), place: 0..0 }
     }
 
     /// The built-in texture with this name.
     pub(crate) fn built_in(name: &'static str) -> Self {
-        Self { source: Source::Texture(name), place: 0..0 }
+        Self { source: PaintText::Texture(name), place: 0..0 }
     }
 
     /// Reads the surface in `entry`: a colour, a built-in texture or a PNG file. Does not check whether
@@ -30,10 +30,10 @@ impl<'a> Surface<'a> {
     pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         let text = entry.string(example)?;
         let source = match text.parse() {
-            Ok(color) => Source::Color(color),
-            Err(_) if text.starts_with('#') => Source::Color(color(entry, "", example)?),
-            Err(_) if builtin::NAMES.contains(&text) => Source::Texture(text),
-            Err(_) if is_png(text) => Source::Texture(file_name(entry, text)?),
+            Ok(color) => PaintText::Color(color),
+            Err(_) if text.starts_with('#') => PaintText::Color(color(entry, "", example)?),
+            Err(_) if builtin::NAMES.contains(&text) => PaintText::Texture(text),
+            Err(_) if is_png(text) => PaintText::Texture(file_name(entry, text)?),
             Err(_) => {
                 let otherwise = "write a colour such as \"#a04030\", the name of a PNG beside the map, or one of";
                 let meant = "the nearest built-in texture is";
@@ -56,7 +56,7 @@ impl<'a> Surface<'a> {
             let help = format!("write the name of a PNG beside the map, or one of {known}");
             return entry.reject(format!("there is no panorama {}", quoted(text)), "", help);
         }
-        Some(Self { source: Source::Texture(text), place: entry.value_place.clone() })
+        Some(Self { source: PaintText::Texture(text), place: entry.value_place.clone() })
     }
 }
 
@@ -77,21 +77,21 @@ pub(crate) struct CoveringText<'a> {
 }
 
 enum PatternText<'a> {
-    Plain(Surface<'a>),
-    Checker([Surface<'a>; 2]),
-    Stripes([Surface<'a>; 2]),
+    Plain(SurfaceText<'a>),
+    Checker([SurfaceText<'a>; 2]),
+    Stripes([SurfaceText<'a>; 2]),
 }
 
 impl<'a> CoveringText<'a> {
     /// One surface, unscaled.
-    pub(crate) fn plain(surface: Surface<'a>) -> Self {
+    pub(crate) fn plain(surface: SurfaceText<'a>) -> Self {
         Self { pattern: PatternText::Plain(surface), scale: Scale::ONE }
     }
 
     /// Reads the covering in `entry`. `example` is a whole entry.
     pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
-            DeValue::String(_) => Surface::read(entry, example).map(Self::plain),
+            DeValue::String(_) => SurfaceText::read(entry, example).map(Self::plain),
             DeValue::Table(table) => Self::read_table(entry, table),
             _ => {
                 entry.faults.push(entry.wrong_type("a string or a table", example));
@@ -133,7 +133,7 @@ impl<'a> CoveringText<'a> {
 
     /// The covering itself. Reports a fault if a texture is missing.
     pub(crate) fn covering(&self, textures: &mut Textures<'_>) -> Option<Covering> {
-        let mut both = |surfaces: &[Surface<'_>; 2]| {
+        let mut both = |surfaces: &[SurfaceText<'_>; 2]| {
             let [first, second] = surfaces.each_ref().map(|surface| textures.paint(surface));
             Some([first?, second?])
         };
@@ -150,10 +150,10 @@ impl<'a> PatternText<'a> {
     /// Reads the pattern in `entry`, which is an entry of a covering's table.
     fn read(entry: &Entry<'a, '_>) -> Option<Self> {
         if entry.key == "texture" {
-            return Surface::read(entry, r#"texture = "tile""#).map(Self::Plain);
+            return SurfaceText::read(entry, r#"texture = "tile""#).map(Self::Plain);
         }
         let example = format!(r#"{} = ["tile", "marble"]"#, entry.key);
-        let [first, second] = entry.pair(&example)?.map(|entry| Surface::read(&entry, &example));
+        let [first, second] = entry.pair(&example)?.map(|entry| SurfaceText::read(&entry, &example));
         let surfaces = [first?, second?];
         Some(if entry.key == "checker" { Self::Checker(surfaces) } else { Self::Stripes(surfaces) })
     }
@@ -186,7 +186,7 @@ impl<'a> CeilingText<'a> {
 /// The sky as the map writes it.
 pub(crate) enum SkyText<'a> {
     Gradient(SkyGradient),
-    Panorama(Surface<'a>),
+    Panorama(SurfaceText<'a>),
 }
 
 impl<'a> SkyText<'a> {
@@ -201,7 +201,7 @@ impl<'a> SkyText<'a> {
                     colors(&entry, ["#5080c0", "#c0d8f0"])
                         .map(|[zenith, horizon]| Self::Gradient(SkyGradient { zenith, horizon })),
                 ),
-                "panorama" => skies.extend(Surface::read_panorama(&entry).map(Self::Panorama)),
+                "panorama" => skies.extend(SurfaceText::read_panorama(&entry).map(Self::Panorama)),
                 _ => entry.faults.push(entry.unknown_key("a sky", &["gradient", "panorama"])),
             }
         }

@@ -30,14 +30,14 @@ pub(crate) struct Textures<'m> {
 }
 
 /// A surface as the map writes it.
-pub(crate) struct Surface<'a> {
-    pub(crate) source: Source<'a>,
+pub(crate) struct SurfaceText<'a> {
+    pub(crate) source: PaintText<'a>,
     /// Its place in the map.
     pub(crate) place: Range<usize>,
 }
 
 /// The source of a surface.
-pub(crate) enum Source<'a> {
+pub(crate) enum PaintText<'a> {
     Color(Rgb),
     /// The name of a built-in texture or of a file.
     Texture(&'a str),
@@ -51,10 +51,10 @@ impl<'m> Textures<'m> {
     }
 
     /// The paint for `surface`. Reports a fault if its texture is missing, once for each texture.
-    pub(crate) fn paint(&mut self, surface: &Surface<'_>) -> Option<Paint> {
+    pub(crate) fn paint(&mut self, surface: &SurfaceText<'_>) -> Option<Paint> {
         let name = match surface.source {
-            Source::Color(color) => return Some(Paint::Color(color)),
-            Source::Texture(name) => name,
+            PaintText::Color(color) => return Some(Paint::Color(color)),
+            PaintText::Texture(name) => name,
         };
         if let Some(known) = self.known.get(name) {
             return known.map(Paint::Texture);

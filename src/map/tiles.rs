@@ -9,7 +9,7 @@ use super::drawing::PerCharacter;
 use super::legend::tiles::{Height, Surroundings, WallText};
 use super::legend::{Meaning, Symbol};
 use super::plan::{Names, Plan};
-use super::textures::{Surface, Textures};
+use super::textures::{SurfaceText, Textures};
 use super::values::Name;
 use crate::fault::Fault;
 use crate::sort;
@@ -92,26 +92,26 @@ impl TileList {
 }
 
 /// The index of a tile in a [`Builder`].
-type Slot = usize;
+type TileIndex = usize;
 
 /// Collects tiles in the order of their characters.
 struct Builder<'l, 'm> {
     common: &'l Common<'l>,
     textures: &'l mut Textures<'m>,
     tiles: Vec<Tile>,
-    drawn: Vec<(char, Slot)>,
-    moving: Vec<(Vec<Slot>, Driver)>,
+    drawn: Vec<(char, TileIndex)>,
+    moving: Vec<(Vec<TileIndex>, Driver)>,
 }
 
 impl Builder<'_, '_> {
     /// Adds the tiles of `character`; nothing if it has a fault or is no tile.
-    fn add(&mut self, character: char, symbol: &Symbol<'_>) -> Option<Slot> {
+    fn add(&mut self, character: char, symbol: &Symbol<'_>) -> Option<TileIndex> {
         let kind = match &symbol.meaning {
             Meaning::Floor => TileKind::Open,
             Meaning::Wall(wall) => TileKind::Wall(self.textures.paint(&wall.surface)?),
             Meaning::Door(door) => TileKind::Door(Door {
                 leaf: self.textures.paint(&door.leaf)?,
-                jamb: self.textures.paint(&Surface::built_in("jamb"))?,
+                jamb: self.textures.paint(&SurfaceText::built_in("jamb"))?,
                 key: door.key.as_ref().and_then(|key| self.common.keys.id(key.text)).map(KeyId),
                 switch: self.switch(door.switch.as_ref()),
             }),
@@ -139,7 +139,7 @@ impl Builder<'_, '_> {
 
     /// A wall with holes. A texture without holes is a fault, because otherwise the author would
     /// not know why the wall hides everything behind it.
-    fn mask(&mut self, surface: &Surface<'_>) -> Option<TileKind> {
+    fn mask(&mut self, surface: &SurfaceText<'_>) -> Option<TileKind> {
         if let Paint::Texture(id) = self.textures.paint(surface)?
             && self.textures.get(id).has_alpha()
         {
@@ -163,7 +163,7 @@ impl Builder<'_, '_> {
         let floor = floor.and_then(|floor| floor.covering(textures)).unwrap_or(ground.floor);
         let ceiling = own.ceiling.as_ref().and_then(|ceiling| ceiling.ceiling(textures));
         let ceiling = ceiling.unwrap_or(ground.ceiling);
-        let mut face = |surface: &Option<Surface<'_>>, otherwise: Paint| {
+        let mut face = |surface: &Option<SurfaceText<'_>>, otherwise: Paint| {
             surface.as_ref().and_then(|it| textures.paint(it)).unwrap_or(otherwise)
         };
         let riser = match kind {
@@ -191,7 +191,7 @@ impl Builder<'_, '_> {
         Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel, effect: None })
     }
 
-    fn add_floor(&mut self, floor: Tile, own: &Surroundings<'_>) -> Option<Slot> {
+    fn add_floor(&mut self, floor: Tile, own: &Surroundings<'_>) -> Option<TileIndex> {
         let effect = match self.switch(own.plate.as_ref()) {
             Some(switch) => Some(TileEffect::Plate(switch)),
             None => own.water.as_ref().map(|_| TileEffect::Water),
@@ -209,7 +209,7 @@ impl Builder<'_, '_> {
         Some(self.add_moving([floor].into_iter().chain(floor_states(floor, end.cells)), driver))
     }
 
-    fn add_moving_wall(&mut self, wall: Tile, text: &WallText<'_>) -> Option<Slot> {
+    fn add_moving_wall(&mut self, wall: Tile, text: &WallText<'_>) -> Option<TileIndex> {
         let driver = match &text.switch {
             None => Driver::Hand,
             switch => Driver::Switch(self.switch(switch.as_ref())?),
@@ -221,14 +221,14 @@ impl Builder<'_, '_> {
     }
 
     /// Adds a tile that moves through `states`; returns the first.
-    fn add_moving(&mut self, states: impl Iterator<Item = Tile>, driver: Driver) -> Slot {
-        let states: Vec<Slot> = states.map(|state| self.push(state)).collect();
+    fn add_moving(&mut self, states: impl Iterator<Item = Tile>, driver: Driver) -> TileIndex {
+        let states: Vec<TileIndex> = states.map(|state| self.push(state)).collect();
         let first = states[0];
         self.moving.push((states, driver));
         first
     }
 
-    fn push(&mut self, tile: Tile) -> Slot {
+    fn push(&mut self, tile: Tile) -> TileIndex {
         self.tiles.push(tile);
         self.tiles.len() - 1
     }
@@ -254,7 +254,7 @@ impl Builder<'_, '_> {
     fn into_list(self) -> TileList {
         let Self { tiles, drawn, moving, .. } = self;
         let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
-        let (open, solid): (Vec<Slot>, Vec<Slot>) =
+        let (open, solid): (Vec<TileIndex>, Vec<TileIndex>) =
             (0..tiles.len()).partition(|&slot| is_open(&tiles[slot]));
         let first_solid = TileId(open.len() as u8);
         let order = [open, solid].concat();

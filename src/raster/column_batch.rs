@@ -25,7 +25,7 @@ const ROWS_AT_ONCE: u32 = 8;
 pub(crate) struct BatchMemory {
     shaded: ShadedTexels,
     columns: Vec<QueuedColumn>,
-    lanes: Vec<Lanes>,
+    lanes: Vec<ColumnLanes>,
 }
 
 /// Queued columns with a lighting `L`.
@@ -203,7 +203,7 @@ impl BatchMemory {
         let Self { shaded, columns, lanes } = self;
         let mut rest = columns.as_slice();
         while let [column, more @ ..] = rest {
-            let Some(together) = rest.first_chunk().and_then(Lanes::new) else {
+            let Some(together) = rest.first_chunk().and_then(ColumnLanes::new) else {
                 column.draw(shaded, column.rows.clone(), band);
                 rest = more;
                 continue;
@@ -265,7 +265,7 @@ impl QueuedColumn {
 
 /// Neighbouring columns, in the rows that all of them share.
 #[derive(Clone, Debug)]
-struct Lanes {
+struct ColumnLanes {
     x: u32,
     rows: Range<u32>,
     /// The address of each column's texel in the next row to be drawn.
@@ -274,7 +274,7 @@ struct Lanes {
     steps: [u64; LANES],
 }
 
-impl Lanes {
+impl ColumnLanes {
     /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
     #[inline]
     fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {

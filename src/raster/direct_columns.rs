@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use super::band::Band;
 use crate::color::Rgb;
-use crate::visibility::{FaceColumn, FaceTexels, Lighting, Scene};
+use crate::visibility::{FaceColumn, FaceTexels, Lighting, FrameContext};
 use crate::world::texture::MipLevel;
 
 /// The most rows and the most pixels of a band for which direct columns are faster.
@@ -22,7 +22,7 @@ const CACHE: usize = 1 << 15;
 const WAY: usize = 1 << 12;
 
 /// Whether direct columns are faster than a batch for `band`.
-pub(crate) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
+pub(crate) fn are_for(scene: FrameContext<'_>, band: &Band<'_>) -> bool {
     let (rows, width) = (band.rows().len(), band.width());
     let is_small = rows <= MAX_ROWS && rows * width <= MAX_PIXELS;
     is_small && is_column_cached(rows, width) && scene.projection.is_horizon_near()

@@ -19,7 +19,7 @@ use super::target::Target;
 use crate::cast::Side;
 use crate::color::Rgb;
 use crate::visibility::{
-    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, Lighting, Material, Pass, Scene,
+    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, Lighting, Material, Pass, FrameContext,
     SideLit, Surface,
 };
 use crate::world::texture::MipLevel;
@@ -27,7 +27,7 @@ use crate::world::{Glass, Paint, TextureId};
 
 /// Draws the faces of `list` that hide what is behind them.
 pub(crate) fn draw<M: Sampling>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     (memory, wholes): (&mut BatchMemory, &mut WholeColumns),
     target: &mut Target<'_>,
@@ -67,7 +67,7 @@ pub(crate) fn draw<M: Sampling>(
 
 /// Draws the parts of walls that share a column.
 fn draw_shared_column<M: Sampling>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     faces: &[Face],
     target: &mut Target<'_>,
@@ -102,14 +102,14 @@ fn draw_shared_column<M: Sampling>(
 
 /// A face, with the state that its columns share.
 pub(crate) struct ShownFace<'a> {
-    scene: Scene<'a>,
+    scene: FrameContext<'a>,
     list: &'a DrawList,
     face: &'a Face,
     columns: &'a [FaceColumn],
 }
 
 impl<'a> ShownFace<'a> {
-    pub(crate) fn new(scene: Scene<'a>, list: &'a DrawList, face: &'a Face) -> Self {
+    pub(crate) fn new(scene: FrameContext<'a>, list: &'a DrawList, face: &'a Face) -> Self {
         let columns = &list.face_columns[face.first..][..face.columns.len()];
         Self { scene, list, face, columns }
     }
@@ -330,7 +330,7 @@ impl<'a> ShownFace<'a> {
 }
 
 /// Draws a mask or a tint over the pixels behind it.
-pub(crate) fn draw_over(scene: Scene<'_>, list: &DrawList, face: &Face, target: &mut Target<'_>) {
+pub(crate) fn draw_over(scene: FrameContext<'_>, list: &DrawList, face: &Face, target: &mut Target<'_>) {
     let shown = ShownFace::new(scene, list, face);
     match face.material {
         Material::Opaque(_) => {}

@@ -3,11 +3,11 @@
 use super::faces;
 use super::target::Target;
 use crate::visibility::{
-    Billboard, BillboardPart, DrawList, FullyLit, Layer, Lighting, Pass, Scene, Surface,
+    Billboard, BillboardPart, DrawList, FullyLit, Layer, Lighting, Pass, FrameContext, Surface,
 };
 
 /// Draws the layers of `list` in order.
-pub(crate) fn draw(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_>) {
+pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target<'_>) {
     for layer in &list.layers {
         match layer {
             Layer::Billboard(part) => draw_billboard(scene, list, part, target),
@@ -19,7 +19,7 @@ pub(crate) fn draw(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_>) {
 
 /// Draws a part of a billboard over the pixels behind it.
 fn draw_billboard(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     part: &BillboardPart,
     target: &mut Target<'_>,
@@ -42,7 +42,7 @@ fn share_of(alpha: u8, opacity: u8) -> u8 {
 }
 
 fn draw_lit<L: Lighting>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     part: &BillboardPart,
     lighting: L,

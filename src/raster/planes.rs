@@ -24,8 +24,8 @@ use super::span_pair::SpanPairs;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
-    Backdrop, DrawList, Faded, Lighting, Pass, Plane, PlaneKind, PlaneSide, PlaneSurface, Rows,
-    Scene, SpanMapping,
+    Backdrop, DrawList, Faded, Lighting, Pass, VisiblePlane, PlaneKind, PlaneSide, PlaneSurface, Rows,
+    FrameContext, SpanMapping,
 };
 use crate::world::{Covering, Light, Paint, Pattern, Tile, TileId, TileKind};
 
@@ -69,7 +69,7 @@ struct JoinedRows {
 
 /// Draws the backdrops and the planes of `list`.
 pub(crate) fn draw<M: Sampling>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
     memory: &mut PlaneMemory,
@@ -124,7 +124,7 @@ type PlaneKey = (u64, usize, u8, usize);
 
 /// Fills `order` with the planes of `list`. If planes may be joined, they are sorted: planes that
 /// may be joined are next to each other, and the planes that may be their mirror images follow.
-fn sort<M: Sampling>(scene: Scene<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
+fn sort<M: Sampling>(scene: FrameContext<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
     order.clear();
     order.reserve(list.planes.capacity());
     let eye = scene.projection.eye();
@@ -139,7 +139,7 @@ fn sort<M: Sampling>(scene: Scene<'_>, list: &DrawList, order: &mut Vec<PlaneKey
 
 /// Draws the backdrops: the rows above or below the horizon that show one colour or the sky in all
 /// columns.
-fn draw_backdrops(scene: Scene<'_>, list: &DrawList, sky: &SkyView<'_>, target: &mut Target<'_>) {
+fn draw_backdrops(scene: FrameContext<'_>, list: &DrawList, sky: &SkyView<'_>, target: &mut Target<'_>) {
     let projection = scene.projection;
     let (ground, width) = (projection.first_row_of_ground(), projection.columns());
     let halves = [(Pass::Floor, ground..projection.rows()), (Pass::Ceiling, 0..ground)];
@@ -243,7 +243,7 @@ impl RowMappings {
 
     /// The mapping of `row`, which is one of `rows`.
     #[inline]
-    fn of(&mut self, scene: Scene<'_>, row: u32, rows: &Range<u32>) -> &SpanMapping {
+    fn of(&mut self, scene: FrameContext<'_>, row: u32, rows: &Range<u32>) -> &SpanMapping {
         let (number, mapping) = &mut self.rows[(row - rows.start) as usize];
         if *number != self.current {
             *number = self.current;
@@ -319,9 +319,9 @@ impl DrawnPlane {
 /// A plane, with the state that its spans share.
 #[derive(Clone, Copy)]
 struct PlaneDrawing<'a> {
-    scene: Scene<'a>,
+    scene: FrameContext<'a>,
     list: &'a DrawList,
-    plane: &'a Plane,
+    plane: &'a VisiblePlane,
     /// Whether its rows are joined with the rows of other planes.
     is_joined: bool,
     side: PlaneSide,
@@ -330,7 +330,7 @@ struct PlaneDrawing<'a> {
 }
 
 impl<'a> PlaneDrawing<'a> {
-    fn new(scene: Scene<'a>, list: &'a DrawList, plane: &'a Plane) -> Self {
+    fn new(scene: FrameContext<'a>, list: &'a DrawList, plane: &'a VisiblePlane) -> Self {
         let side = plane.kind.side();
         let surface = match plane.kind {
             PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
@@ -346,8 +346,8 @@ impl<'a> PlaneDrawing<'a> {
     }
 
     /// Whether `plane` has the same height, side and image, and looks the same in each cell.
-    fn is_alike(&self, plane: &'a Plane) -> bool {
-        let Plane { height, kind, image, .. } = *plane;
+    fn is_alike(&self, plane: &'a VisiblePlane) -> bool {
+        let VisiblePlane { height, kind, image, .. } = *plane;
         (height, kind.side(), image) == (self.plane.height, self.side, self.plane.image)
             && (kind == self.plane.kind
                 || self.even.is_some() && self.even == Self::new(self.scene, self.list, plane).even)

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use crate::visibility::{Scene, SpanMapping};
+use crate::visibility::{FrameContext, SpanMapping};
 use crate::world::Texture;
 use crate::world::texture::{AreaLod, MipLevel, Repeat};
 
@@ -20,11 +20,11 @@ pub(crate) trait Sampling: Copy {
 
     /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
     /// `t`.
-    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> Self::Lod;
+    fn lod_on_face(scene: FrameContext<'_>, texture: &Texture, t: f64, slope: f64) -> Self::Lod;
 
     /// The level of detail of a plane with `per_cell` repeats in a cell.
     fn lod_on_plane(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         texture: &Texture,
         mapping: &SpanMapping,
         per_cell: f64,
@@ -51,14 +51,14 @@ impl Sampling for MipLevels {
     const JOINS_PLANES: bool = true;
 
     #[inline]
-    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> usize {
+    fn lod_on_face(scene: FrameContext<'_>, texture: &Texture, t: f64, slope: f64) -> usize {
         let area = scene.projection.pixel_area_on_wall(t, slope);
         scene.plan.filter.lod(area * texture.area())
     }
 
     #[inline]
     fn lod_on_plane(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         texture: &Texture,
         mapping: &SpanMapping,
         per_cell: f64,
@@ -84,7 +84,7 @@ impl Sampling for Means {
     const JOINS_PLANES: bool = false;
 
     #[inline]
-    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> AreaLod {
+    fn lod_on_face(scene: FrameContext<'_>, texture: &Texture, t: f64, slope: f64) -> AreaLod {
         let extent = scene.projection.pixel_extent_on_wall(t, slope);
         let across = extent.x * f64::from(texture.width());
         let down = extent.y * f64::from(texture.height());
@@ -92,7 +92,7 @@ impl Sampling for Means {
     }
 
     fn lod_on_plane(
-        _: Scene<'_>,
+        _: FrameContext<'_>,
         texture: &Texture,
         mapping: &SpanMapping,
         per_cell: f64,

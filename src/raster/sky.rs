@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::visibility::{Pass, Projection, Scene};
+use crate::visibility::{Pass, Projection, FrameContext};
 use crate::world::{Sky, SkyGradient, Texture};
 
 /// The sky as seen by a camera.
@@ -50,8 +50,8 @@ const WHOLE_IN_32_BITS: f64 = 4_294_967_296.0;
 
 impl<'a> SkyView<'a> {
     /// The sky of `scene`. The colours of a gradient are computed only if the sky `is_shown`.
-    pub(crate) fn new(scene: Scene<'a>, is_shown: bool, memory: &'a mut SkyMemory) -> Self {
-        let Scene { world, projection, plan, .. } = scene;
+    pub(crate) fn new(scene: FrameContext<'a>, is_shown: bool, memory: &'a mut SkyMemory) -> Self {
+        let FrameContext { world, projection, plan, .. } = scene;
         let SkyMemory { rows, columns } = memory;
         match world.sky() {
             Sky::Gradient(SkyGradient { zenith, horizon }) => {

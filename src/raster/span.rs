@@ -8,7 +8,7 @@ use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::color::srgb::mean_of_two;
-use crate::visibility::{Pass, Scene, SpanMapping, TexelPlaces};
+use crate::visibility::{Pass, FrameContext, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevel, MipLevelByShifts};
 use crate::world::{Covering, Paint, Pattern, Texture};
 
@@ -24,7 +24,7 @@ pub(crate) struct PlaneSpan<'m> {
 
 /// Draws `span` in full light and without fog. Returns its pixels.
 pub(crate) fn draw<'p, M: Sampling>(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     span: &PlaneSpan<'_>,
     target: &'p mut Target<'_>,
 ) -> &'p mut [Rgb] {
@@ -144,7 +144,7 @@ pub(crate) const UNROLLED: usize = 8;
 /// The inputs for sampling the paints of a span.
 #[derive(Clone, Copy)]
 pub(crate) struct Sampler<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) scene: FrameContext<'a>,
     pub(crate) mapping: &'a SpanMapping,
     /// The number of repeats of the paints in a cell.
     pub(crate) per_cell: f64,

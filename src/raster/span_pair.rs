@@ -13,13 +13,13 @@ use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
-use crate::visibility::{Faded, Lighting, Scene, SpanMapping, TexelPlaces};
+use crate::visibility::{Faded, Lighting, FrameContext, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
 /// Draws a ceiling together with a floor that is its mirror image.
 pub(crate) struct SpanPairs<'a, M: Sampling> {
-    scene: Scene<'a>,
+    scene: FrameContext<'a>,
     /// The ceiling and the floor.
     planes: [DrawnPlane; 2],
     /// The textures of the planes, if both have textures of the same size and the same light.
@@ -73,7 +73,7 @@ struct LevelPair<'a, M: Sampling> {
 
 impl<'a, M: Sampling> SpanPairs<'a, M> {
     /// Prepares to draw these `planes`: a ceiling and a floor.
-    pub(crate) fn new(scene: Scene<'a>, planes: [DrawnPlane; 2]) -> Self {
+    pub(crate) fn new(scene: FrameContext<'a>, planes: [DrawnPlane; 2]) -> Self {
         Self { scene, planes, textures: TexturePair::new(scene, &planes) }
     }
 
@@ -102,7 +102,7 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
 }
 
 impl<'a, M: Sampling> TexturePair<'a, M> {
-    fn new(scene: Scene<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
+    fn new(scene: FrameContext<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
         let [upper, lower] = planes;
         let (covering, light) = (upper.covering?, upper.light);
         let scale = covering.scale;
@@ -119,7 +119,7 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
     /// Draws `pair`. Draws nothing and returns `None` if its spans have to be drawn separately.
     fn draw(
         &mut self,
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         pair: &SpanPair<'_>,
         target: &mut Target<'_>,
     ) -> Option<()> {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::band::Band;
 use crate::color::Rgb;
-use crate::visibility::{Pass, Stats, Surface};
+use crate::visibility::{Pass, StatsCounter, Surface};
 use crate::world::Paint;
 
 /// A band of a frame with its part of the surface buffer, and the cost of drawing it.
@@ -17,17 +17,17 @@ use crate::world::Paint;
 pub(crate) struct Target<'a> {
     band: Band<'a>,
     surfaces: SurfaceRows<'a>,
-    stats: Stats,
+    stats: StatsCounter,
 }
 
 impl<'a> Target<'a> {
     /// A target that counts in `stats`.
-    pub(crate) fn new(band: Band<'a>, surfaces: SurfaceRows<'a>, stats: Stats) -> Self {
+    pub(crate) fn new(band: Band<'a>, surfaces: SurfaceRows<'a>, stats: StatsCounter) -> Self {
         Self { band, surfaces, stats }
     }
 
     /// The cost of the drawing.
-    pub(crate) fn into_stats(self) -> Stats {
+    pub(crate) fn into_stats(self) -> StatsCounter {
         self.stats
     }
 

@@ -10,7 +10,7 @@ use std::{fmt, thread};
 
 use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
-use crate::visibility::Stats;
+use crate::visibility::StatsCounter;
 
 /// The least number of pixels for each thread. For fewer pixels, starting the thread takes longer
 /// than it saves. The number is small under fuzzing, because a fuzz target compares numbers of
@@ -97,7 +97,7 @@ pub(crate) fn draw_bands<M: Default + Send>(
     threads: Threads,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
     memories: &mut Vec<M>,
-    stats: &mut Stats,
+    stats: &mut StatsCounter,
     draw: impl Fn(&mut M, &mut Target<'_>) + Sync,
 ) {
     let count = threads.count();

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use super::camera::Projection;
+use super::camera::SceneProjection;
 use super::relative_shape::{RelativeBlock, RelativeShape, RelativeSphere};
 
 /// A rectangle of pixels.
@@ -15,16 +15,16 @@ pub(crate) struct Bounds {
 }
 
 /// The least and the greatest slope relative to the middle of the picture, to the right or upwards.
-type Extent = (f64, f64);
+type SlopeInterval = (f64, f64);
 
-const EVERYWHERE: Extent = (f64::NEG_INFINITY, f64::INFINITY);
+const EVERYWHERE: SlopeInterval = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// A point whose depth is less than this fraction of its distance has an unbounded slope.
 const NEAR: f64 = 1e-9;
 
 impl Bounds {
     /// The pixels whose rays may meet `shape`; `None` if there are none.
-    pub(crate) fn new(shape: &RelativeShape, projection: &Projection) -> Option<Self> {
+    pub(crate) fn new(shape: &RelativeShape, projection: &SceneProjection) -> Option<Self> {
         let (across, upwards) = match shape {
             RelativeShape::Plane(_) => (EVERYWHERE, EVERYWHERE),
             RelativeShape::Sphere(sphere) => of_sphere(sphere, projection)?,
@@ -46,7 +46,7 @@ impl Bounds {
 
 /// The range of pixels with slopes in this extent, along a side of the picture that is `count`
 /// pixels long. It contains one more pixel on either side because of rounding.
-fn pixels((low, high): Extent, per_slope: f64, count: u32) -> Range<u32> {
+fn pixels((low, high): SlopeInterval, per_slope: f64, count: u32) -> Range<u32> {
     let first = low * per_slope + f64::from(count) / 2.0 - 1.5;
     let last = high * per_slope + f64::from(count) / 2.0 + 1.5;
     if first.is_nan() || last.is_nan() {
@@ -55,7 +55,7 @@ fn pixels((low, high): Extent, per_slope: f64, count: u32) -> Range<u32> {
     (first as u32).min(count)..(last as u32).min(count)
 }
 
-fn of_sphere(sphere: &RelativeSphere, projection: &Projection) -> Option<(Extent, Extent)> {
+fn of_sphere(sphere: &RelativeSphere, projection: &SceneProjection) -> Option<(SlopeInterval, SlopeInterval)> {
     let axes = &projection.axes;
     let depth = sphere.center.dot(axes.forward);
     let side = DVec2::new(sphere.center.dot(axes.right), depth);
@@ -66,7 +66,7 @@ fn of_sphere(sphere: &RelativeSphere, projection: &Projection) -> Option<(Extent
 
 /// The slopes of the two lines through the origin that touch a circle. The components of `center`
 /// are its offset to the side and its depth.
-fn tangents(center: DVec2, radius: f64) -> Option<Extent> {
+fn tangents(center: DVec2, radius: f64) -> Option<SlopeInterval> {
     if center.y <= -radius {
         return None;
     }
@@ -83,7 +83,7 @@ fn tangents(center: DVec2, radius: f64) -> Option<Extent> {
     Some((slope(left, f64::NEG_INFINITY), slope(right, f64::INFINITY)))
 }
 
-fn of_block(block: &RelativeBlock, projection: &Projection) -> Option<(Extent, Extent)> {
+fn of_block(block: &RelativeBlock, projection: &SceneProjection) -> Option<(SlopeInterval, SlopeInterval)> {
     let axes = &projection.axes;
     let sides = [block.low, block.high];
     let corners = (0..8).map(|corner| {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::ray::Ray;
 use crate::render::{FrameSize, PixelAspect};
-use crate::world::scene::{Elevation, Scene, Start, is_near};
+use crate::world::scene::{Elevation, Scene, SceneStart, is_near};
 use crate::world::{FieldOfView, Heading};
 
 /// A position with a viewing direction and a field of view.
@@ -40,7 +40,7 @@ impl Camera {
     /// The ray through the middle of a pixel, with columns counted from the left and rows from the
     /// top. Its `t` is the distance to the camera plane.
     pub fn ray(&self, size: FrameSize, pixel_aspect: PixelAspect, column: u32, row: u32) -> Ray {
-        let projection = Projection::new(self, size, pixel_aspect);
+        let projection = SceneProjection::new(self, size, pixel_aspect);
         Ray::new(self.position, projection.across(column) + projection.upwards(row))
     }
 
@@ -61,7 +61,7 @@ impl Scene {
     /// A camera at the player's start.
     #[expect(clippy::missing_panics_doc, reason = "a start is where a camera can be")]
     pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
-        let Start { heading, elevation, .. } = self.start;
+        let SceneStart { heading, elevation, .. } = self.start;
         Camera::new(self.start.position(), heading, field_of_view)
             .expect("a start is where a camera can be")
             .with_elevation(elevation)
@@ -82,7 +82,7 @@ pub struct Axes {
 /// The mapping from the world to the pixels of one frame. A cube looks like a cube with pixels of
 /// any shape, as in the grid's renderer.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Projection {
+pub(crate) struct SceneProjection {
     pub(crate) origin: DVec3,
     pub(crate) axes: Axes,
     pub(crate) width: u32,
@@ -94,7 +94,7 @@ pub(crate) struct Projection {
     pub(crate) rows_a_cell: f64,
 }
 
-impl Projection {
+impl SceneProjection {
     pub(crate) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();

@@ -122,8 +122,8 @@ fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
     if period != floor_of_small(greatest / 2.0) {
         return None;
     }
-    let low = Place::new(least - 2.0 * period - width / 2.0);
-    let high = Place::new(greatest - 2.0 * period + width / 2.0);
+    let low = WavePosition::new(least - 2.0 * period - width / 2.0);
+    let high = WavePosition::new(greatest - 2.0 * period + width / 2.0);
     low.is_in_cube_of(&high).then(|| low.sign())
 }
 
@@ -144,20 +144,20 @@ fn mean_of_small(place: f64, width: f64) -> f64 {
 /// [`mean_along`] for a place in the first period.
 #[inline(always)]
 fn mean_within(place: f64, width: f64) -> f64 {
-    let (low, high) = (Place::new(place - width / 2.0), Place::new(place + width / 2.0));
+    let (low, high) = (WavePosition::new(place - width / 2.0), WavePosition::new(place + width / 2.0));
     let mean = ((high.integral() - low.integral()) / width).clamp(-1.0, 1.0);
     if low.is_in_cube_of(&high) { low.sign() } else { mean }
 }
 
 /// A place of at most [`MAX`] on the axis of the square wave.
-struct Place {
+struct WavePosition {
     /// The index of its period.
     period: f64,
     /// The place in the period, from 0 to 2.
     within: f64,
 }
 
-impl Place {
+impl WavePosition {
     #[inline(always)]
     fn new(place: f64) -> Self {
         let period = floor_of_small(place / 2.0);

@@ -12,7 +12,7 @@ use glam::{BVec3, DVec3};
 
 use super::lanes::{Lanes, Vectors};
 use crate::numeric::{two_product, two_sum};
-use crate::world::scene::{Block, Plane, Shape, Sphere};
+use crate::world::scene::{Block, Plane, BodyShape, Sphere};
 
 /// A shape relative to an eye.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +47,11 @@ pub(crate) struct RelativeBlock {
 
 impl RelativeShape {
     /// `shape` relative to `origin`.
-    pub(crate) fn new(shape: &Shape, origin: DVec3) -> Self {
+    pub(crate) fn new(shape: &BodyShape, origin: DVec3) -> Self {
         match shape {
-            Shape::Sphere(sphere) => Self::Sphere(RelativeSphere::new(sphere, origin)),
-            Shape::Plane(plane) => Self::Plane(RelativePlane::new(plane, origin)),
-            Shape::Block(block) => Self::Block(RelativeBlock::new(block, origin)),
+            BodyShape::Sphere(sphere) => Self::Sphere(RelativeSphere::new(sphere, origin)),
+            BodyShape::Plane(plane) => Self::Plane(RelativePlane::new(plane, origin)),
+            BodyShape::Block(block) => Self::Block(RelativeBlock::new(block, origin)),
         }
     }
 

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::bounds::Bounds;
-use super::camera::{Camera, Projection};
+use super::camera::{Camera, SceneProjection};
 use super::relative_shape::RelativeShape;
 use super::row::Row;
 use super::shading::{Shader, Shading};
@@ -103,7 +103,7 @@ impl Renderer {
         frame: &mut Frame,
         go_on: &mut dyn FnMut() -> bool,
     ) -> (Explanation, bool) {
-        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let projection = SceneProjection::new(camera, frame.size(), frame.pixel_aspect());
         self.find_bodies(scene, &projection);
         self.shadows.begin(&scene.bodies, &scene.sun);
         self.row.begin(&projection);
@@ -135,7 +135,7 @@ impl Renderer {
         (explanation, true)
     }
 
-    fn find_bodies(&mut self, scene: &Scene, projection: &Projection) {
+    fn find_bodies(&mut self, scene: &Scene, projection: &SceneProjection) {
         self.in_view.clear();
         self.in_view.reserve(scene.bodies.len());
         self.in_view.extend(scene.bodies.iter().enumerate().filter_map(|(body, found)| {

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::camera::Projection;
+use super::camera::SceneProjection;
 use super::lanes::{LANES, Lanes, Vectors};
 use super::relative_shape::RelativeShape;
 use super::tree::{Nearest, Tree};
@@ -40,14 +40,14 @@ pub(crate) struct Row {
 
 /// Neighbouring rays of a row that hit the same body, or none.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Stretch {
+pub(crate) struct RayGroup {
     pub(crate) directions: Vectors,
     pub(crate) t: Lanes,
 }
 
 impl Row {
     /// Begins a picture.
-    pub(crate) fn begin(&mut self, projection: &Projection) {
+    pub(crate) fn begin(&mut self, projection: &SceneProjection) {
         let Self { x, y, z, .. } = self;
         for components in [&mut *x, y, z] {
             components.clear();
@@ -143,8 +143,8 @@ impl Row {
 
     /// Sets `stretch` to the rays of these columns, at most one for each lane. In the remaining
     /// lanes, the directions continue, and the last distance is repeated.
-    pub(crate) fn take(&self, columns: Range<usize>, stretch: &mut Stretch) {
-        let Stretch { directions, t } = stretch;
+    pub(crate) fn take(&self, columns: Range<usize>, stretch: &mut RayGroup) {
+        let RayGroup { directions, t } = stretch;
         let count = columns.len();
         let distances = &self.t[columns.clone()];
         if let Ok(distances) = distances.try_into() {

@@ -4,11 +4,11 @@
 
 use glam::DVec3;
 
-use super::camera::Projection;
+use super::camera::SceneProjection;
 use super::checker;
 use super::lanes::{LANES, Lanes, Vectors};
 use super::relative_shape::RelativeShape;
-use super::row::Stretch;
+use super::row::RayGroup;
 use super::shadows::Shadows;
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
@@ -30,7 +30,7 @@ pub(crate) struct Shader<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shading {
     /// The rays of the pixels.
-    pub(crate) stretch: Stretch,
+    pub(crate) stretch: RayGroup,
     points: Vectors,
     normals: Vectors,
     brightness: Lanes,
@@ -39,12 +39,12 @@ pub(crate) struct Shading {
     below: Vectors,
     /// The shares of the second colour of a checker.
     shares: Lanes,
-    light: Light,
+    light: PixelLight,
 }
 
 /// The light of each pixel.
 #[derive(Clone, Debug, Default)]
-struct Light {
+struct PixelLight {
     /// The share of the surface's own colour, in 256ths.
     own: [u32; LANES],
     /// The share of the fog's colour, in 256ths.
@@ -59,7 +59,7 @@ impl Scene {
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
+    pub(crate) fn new(scene: &'a Scene, projection: &SceneProjection, is_level: bool) -> Self {
         Self { scene, origin: projection.origin, steps: projection.steps(), is_level }
     }
 
@@ -90,7 +90,7 @@ impl<'a> Shader<'a> {
         shading: &mut Shading,
         pixels: &mut [Rgb],
     ) -> (u64, u64) {
-        let Shading { stretch: Stretch { directions, t }, points, normals, .. } = shading;
+        let Shading { stretch: RayGroup { directions, t }, points, normals, .. } = shading;
         let normal = shape.common_normal();
         match normal {
             Some(normal) => normals.fill(|_| normal),
@@ -123,7 +123,7 @@ impl<'a> Shader<'a> {
             }
         }
         let fog = self.scene.fog.map_or(Rgb::BLACK, |fog| fog.color);
-        let Light { own, fog: shares } = &shading.light;
+        let PixelLight { own, fog: shares } = &shading.light;
         for ((pixel, &own), &share) in pixels.iter_mut().zip(own).zip(shares) {
             *pixel = pixel.blended(own, fog, share);
         }
@@ -151,7 +151,7 @@ impl<'a> Shader<'a> {
     #[inline(never)]
     fn find_light(&self, is_level: bool, shading: &mut Shading) {
         const WHOLE: f64 = 256.0;
-        let Shading { stretch: Stretch { t, .. }, brightness, light, .. } = shading;
+        let Shading { stretch: RayGroup { t, .. }, brightness, light, .. } = shading;
         let clearness = |t: f64| self.scene.fog.map_or(1.0, |fog| fog.clearness(t));
         if is_level || self.scene.fog.is_none() {
             let clearness = clearness(t[0]);
@@ -176,7 +176,7 @@ impl<'a> Shader<'a> {
         /// A part of a cube that is larger than any rounding and too small to be visible.
         const DEPTH: f64 = 1.0 / 1024.0;
         let Shading { stretch, points, normals, widths, below, shares, .. } = shading;
-        let Stretch { directions, t } = stretch;
+        let RayGroup { directions, t } = stretch;
         checker::find_footprints(directions, t, normals, self.steps, is_level, widths);
         below.fill(|lane| points.get(lane) / scale - normals.get(lane) * DEPTH);
         if scale != 1.0 {

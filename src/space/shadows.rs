@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use super::lanes::{Lanes, Vectors, greatest};
 use super::relative_shape::RelativeBlock;
-use crate::world::scene::{Body, Shape, Sun};
+use crate::world::scene::{Body, BodyShape, Sun};
 
 /// A bound on the rounding of a position, as a fraction of it.
 const MARGIN: f64 = 1e-9;
@@ -54,7 +54,7 @@ struct LightAxes {
 struct Occluder {
     /// The index in the scene.
     body: usize,
-    shape: Shape,
+    shape: BodyShape,
     /// The interval that the body covers on the axis of the tree.
     across: Interval,
     /// The greatest end of `across` in the range with this root.
@@ -155,14 +155,14 @@ impl LightAxes {
 }
 
 impl Occluder {
-    fn new(body: usize, shape: Shape, light: &LightAxes) -> Option<Self> {
+    fn new(body: usize, shape: BodyShape, light: &LightAxes) -> Option<Self> {
         let [low, high] = shape.bounds()?;
         let half = (high - low) / 2.0;
         let center = low + half;
         let margin = MARGIN * (half.length() + center.length());
         let interval = |axis: DVec3| {
             let reach = match shape {
-                Shape::Sphere(sphere) => sphere.radius(),
+                BodyShape::Sphere(sphere) => sphere.radius(),
                 _ => half.dot(axis.abs()),
             };
             let (place, reach) = (center.dot(axis), reach + margin);
@@ -221,15 +221,15 @@ fn any_at(
 /// Sets the `brightness` of each of `points` to `ambient` if a ray from this point along the unit
 /// vector `direction` enters `shape` from outside.
 fn darken_behind(
-    shape: &Shape,
+    shape: &BodyShape,
     points: &Vectors,
     direction: DVec3,
     ambient: f64,
     brightness: &mut Lanes,
 ) {
     match shape {
-        Shape::Plane(_) => {}
-        Shape::Sphere(sphere) => {
+        BodyShape::Plane(_) => {}
+        BodyShape::Sphere(sphere) => {
             let (center, square) = (sphere.center(), sphere.radius() * sphere.radius());
             darken_if(brightness, ambient, |lane| {
                 let center = center - points.get(lane);
@@ -238,7 +238,7 @@ fn darken_behind(
                 (center.dot(center) > square) & (along > 0.0) & (beside.dot(beside) < square)
             });
         }
-        Shape::Block(block) => darken_if(brightness, ambient, |lane| {
+        BodyShape::Block(block) => darken_if(brightness, ambient, |lane| {
             let (enters, leaves) = RelativeBlock::new(block, points.get(lane)).crossings(direction);
             let enter = enters.max_element();
             (enter > 0.0) & (enter < leaves.min_element())

@@ -25,7 +25,7 @@ pub(crate) struct Tree {
     /// A node comes before its first child, which comes before the second one.
     nodes: Vec<Node>,
     /// The bounded shapes. The shapes of a node are next to each other.
-    leaves: Vec<Leaf>,
+    leaves: Vec<TreeLeaf>,
     /// The indices of planes.
     unbounded: Vec<usize>,
 }
@@ -39,7 +39,7 @@ struct Node {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Leaf {
+struct TreeLeaf {
     index: usize,
     bounds: RelativeBlock,
 }
@@ -69,7 +69,7 @@ impl Tree {
         self.clear();
         for (index, shape) in shapes.enumerate() {
             match bounds(shape) {
-                Some(bounds) => self.leaves.push(Leaf { index, bounds }),
+                Some(bounds) => self.leaves.push(TreeLeaf { index, bounds }),
                 None => self.unbounded.push(index),
             }
         }
@@ -104,7 +104,7 @@ impl Tree {
         }
         let middle = leaves.len() / 2;
         let axis = widest_axis(leaves);
-        let place = |leaf: &Leaf| (leaf.bounds.low + leaf.bounds.high).dot(axis);
+        let place = |leaf: &TreeLeaf| (leaf.bounds.low + leaf.bounds.high).dot(axis);
         leaves.select_nth_unstable_by(middle, |one, other| place(one).total_cmp(&place(other)));
         self.add_node(range.start..range.start + middle);
         self.nodes[index].second_child = Some(self.nodes.len());
@@ -174,14 +174,14 @@ fn bounds(shape: &RelativeShape) -> Option<RelativeBlock> {
     Some(RelativeBlock { low: low - margin, high: high + margin })
 }
 
-fn union(leaves: &[Leaf]) -> RelativeBlock {
+fn union(leaves: &[TreeLeaf]) -> RelativeBlock {
     let low = leaves.iter().fold(DVec3::INFINITY, |low, leaf| low.min(leaf.bounds.low));
     let high = leaves.iter().fold(DVec3::NEG_INFINITY, |high, leaf| high.max(leaf.bounds.high));
     RelativeBlock { low, high }
 }
 
 /// The axis along which the centers differ most.
-fn widest_axis(leaves: &[Leaf]) -> DVec3 {
+fn widest_axis(leaves: &[TreeLeaf]) -> DVec3 {
     let centers = leaves.iter().map(|leaf| leaf.bounds.low + leaf.bounds.high);
     let low = centers.clone().fold(DVec3::INFINITY, DVec3::min);
     let extent = centers.fold(DVec3::NEG_INFINITY, DVec3::max) - low;
@@ -194,7 +194,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::space::{Block, Plane, Shape, Sphere};
+    use crate::space::{Block, Plane, BodyShape, Sphere};
 
     /// Points on a coarse grid, so that bodies share surfaces.
     fn point(reach: i32) -> impl Strategy<Value = DVec3> {
@@ -202,16 +202,16 @@ mod tests {
             .prop_map(|place| DVec3::from_array(place.map(|it| f64::from(it) / 2.0)))
     }
 
-    fn shape() -> impl Strategy<Value = Shape> {
+    fn shape() -> impl Strategy<Value = BodyShape> {
         prop_oneof![
             8 => (point(12), 1..6).prop_filter_map("a sphere", |(center, radius)| {
-                Sphere::new(center, f64::from(radius) / 2.0).map(Shape::Sphere)
+                Sphere::new(center, f64::from(radius) / 2.0).map(BodyShape::Sphere)
             }),
             8 => (point(12), point(12)).prop_filter_map("a box", |(corner, opposite)| {
-                Block::new(corner, opposite).map(Shape::Block)
+                Block::new(corner, opposite).map(BodyShape::Block)
             }),
             1 => (point(12), point(2)).prop_filter_map("a plane", |(point, normal)| {
-                Plane::new(point, normal).map(Shape::Plane)
+                Plane::new(point, normal).map(BodyShape::Plane)
             }),
         ]
     }

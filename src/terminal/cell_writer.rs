@@ -43,7 +43,7 @@ use self::shift::Shifts;
 pub(crate) use self::style::Style;
 #[cfg(not(feature = "cli"))]
 use self::style::Style;
-use self::style::{Notation, Shade};
+use self::style::{Notation, PackedColor};
 use super::fidelity::Fidelity;
 use crate::tui::canvas::Mosaic;
 
@@ -160,7 +160,7 @@ impl<W: Write> CellWriter<W> {
     /// block and in the rest, or in its text and its background. `None` if they are unknown or the cell is off the
     /// screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
-        Some(self.screen.shown_colors(column, row)?.map(Shade::color))
+        Some(self.screen.shown_colors(column, row)?.map(PackedColor::color))
     }
 
     /// The mosaic that a cell shows in its colours. `None` if the cell shows no mosaic or is unknown.

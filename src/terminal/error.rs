@@ -7,11 +7,11 @@ use std::io;
 /// Its message is a whole sentence for the user.
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
-pub struct Error(#[from] Kind);
+pub struct Error(#[from] TerminalErrorKind);
 
 /// The kinds of errors.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum Kind {
+pub(crate) enum TerminalErrorKind {
     #[cfg(unix)]
     #[error(
         "{stream} is not a terminal, which playing needs; `cellcaster snapshot` draws a frame without one"
@@ -45,11 +45,11 @@ pub(crate) enum Kind {
 impl Error {
     /// Returns true if the user can avoid the error, with another terminal or platform.
     pub fn is_mistake(&self) -> bool {
-        !matches!(self.0, Kind::AlreadyTaken | Kind::GivenBack | Kind::Io { .. })
+        !matches!(self.0, TerminalErrorKind::AlreadyTaken | TerminalErrorKind::GivenBack | TerminalErrorKind::Io { .. })
     }
 
     /// Wraps an error that occurred while `doing` something (such as "reading keys").
     pub(crate) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self(Kind::Io { doing, source })
+        move |source| Self(TerminalErrorKind::Io { doing, source })
     }
 }

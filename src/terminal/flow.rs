@@ -524,7 +524,7 @@ struct Fit {
 
 /// The line, in seconds and seconds per byte.
 #[derive(Clone, Copy, Debug)]
-struct Line {
+struct FittedLine {
     /// The time of a frame of 0 bytes.
     constant: f64,
     per_byte: f64,
@@ -556,7 +556,7 @@ impl Fit {
     }
 
     /// The line, with neither coefficient below zero; `None` if there was no frame.
-    fn line(&self) -> Option<Line> {
+    fn line(&self) -> Option<FittedLine> {
         let (mean_bytes, mean_seconds) = self.mean()?;
         let weight = self.weight + ORIGIN_WEIGHT;
         let (center_bytes, center_seconds) = (self.bytes / weight, self.seconds / weight);
@@ -573,7 +573,7 @@ impl Fit {
             .max(0.0)
             / weight;
         let deviation = residual.sqrt();
-        Some(Line { constant: constant.max(0.0), per_byte, through_origin, deviation })
+        Some(FittedLine { constant: constant.max(0.0), per_byte, through_origin, deviation })
     }
 }
 

@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::layout::Size;
 
-use super::error::Kind;
-use super::input::{Answer, Decoder, Input};
-use super::sequence::Changes;
+use super::error::TerminalErrorKind;
+use super::input::{Answer, Decoder, TerminalInput};
+use super::sequence::TerminalChanges;
 use super::unix::Device;
 use super::{Error, sequence};
 use crate::fault::printable;
@@ -29,10 +29,10 @@ const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
 /// The changes to the terminal's state, and the way to undo them.
 #[derive(Debug)]
-pub(crate) struct Guard {
+pub(crate) struct TerminalGuard {
     device: Device,
     begun_at: Instant,
-    state: Mutex<State>,
+    state: Mutex<TerminalState>,
     given_back: Condvar,
     shutting_down: AtomicBool,
     output_queue: Mutex<OutputQueue>,
@@ -40,12 +40,12 @@ pub(crate) struct Guard {
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct TerminalState {
     taken: bool,
-    changes: Changes,
+    changes: TerminalChanges,
 }
 
-impl Guard {
+impl TerminalGuard {
     /// A guard for `device`, which the panic hook uses from now on.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl Guard {
         });
         let mut current = current();
         if current.is_some() {
-            return Err(Kind::AlreadyTaken.into());
+            return Err(TerminalErrorKind::AlreadyTaken.into());
         }
         *current = Some(Arc::clone(&guard));
         HOOK.call_once(install_hook);
@@ -114,7 +114,7 @@ impl Guard {
     }
 
     /// Sets the changes that must be undone.
-    pub(crate) fn set_changes(&self, changes: Changes) {
+    pub(crate) fn set_changes(&self, changes: TerminalChanges) {
         self.lock().changes = changes;
     }
 
@@ -125,7 +125,7 @@ impl Guard {
 
     /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The rest is [written
     /// later](Self::write_queued). From now on, `changes` must be undone.
-    pub(crate) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
+    pub(crate) fn write(&self, bytes: &[u8], changes: TerminalChanges) -> io::Result<()> {
         let mut state = self.lock_taken()?;
         state.changes = changes;
         self.record(|recorder| recorder.sent(bytes));
@@ -186,9 +186,9 @@ impl Guard {
     /// Locks the state, or returns an error if the terminal is not taken. Until the lock is released, no thread
     /// gives the terminal back. A thread that only checked before it wrote could write to a terminal that belongs
     /// to the shell again.
-    fn lock_taken(&self) -> io::Result<MutexGuard<'_, State>> {
+    fn lock_taken(&self) -> io::Result<MutexGuard<'_, TerminalState>> {
         let state = self.lock();
-        if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(Kind::GivenBack))) }
+        if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(TerminalErrorKind::GivenBack))) }
     }
 
     fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {
@@ -196,13 +196,13 @@ impl Guard {
     }
 
     /// Ignores poisoning: a panic during the lock leaves the state consistent.
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, TerminalState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Undoes all changes, in reverse order. After an error in one step, the others are still tried, because
     /// nothing better can be done.
-    fn leave(&self, state: &mut State) {
+    fn leave(&self, state: &mut TerminalState) {
         if self.output_queue().withholds(sequence::PUSH_KEY_FLAGS) {
             state.changes.forget_key_flags();
         }
@@ -211,7 +211,7 @@ impl Guard {
         if !accepted.as_ref().is_ok_and(|&length| length == text.len()) {
             // Discard the frame that the terminal has not accepted, and try again.
             if accepted.is_ok_and(|length| length > 0) {
-                state.changes.doubt_key_flags();
+                state.changes.mark_key_flags_uncertain();
             }
             _ = self.device.discard_output();
             _ = self.write_within_timeout(&state.changes.end_after_loss());
@@ -230,7 +230,7 @@ impl Guard {
 
     /// Reads until every query is answered, so that the shell receives no answer and no key
     /// release.
-    fn discard_answers(&self, changes: &mut Changes) {
+    fn discard_answers(&self, changes: &mut TerminalChanges) {
         let mut decoder = Decoder::default();
         let mut buffer = [0; 256];
         while let Some(timeout) = changes.fences.time_left(self.now()) {
@@ -242,7 +242,7 @@ impl Guard {
                 Ok(None) => {}
                 Ok(Some(0)) | Err(_) => return,
                 Ok(Some(count)) => decoder.feed(&buffer[..count], |input| {
-                    if input == Input::Answer(Answer::Fence) {
+                    if input == TerminalInput::Answer(Answer::Fence) {
                         changes.fences.answered();
                     }
                 }),
@@ -317,7 +317,7 @@ impl OutputQueue {
 
 /// The guard of the current session. It belongs to the process and not to the session, because the hook runs in all
 /// threads.
-static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
+static CURRENT: Mutex<Option<Arc<TerminalGuard>>> = Mutex::new(None);
 static HOOK: Once = Once::new();
 
 /// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
@@ -355,7 +355,7 @@ fn message(payload: &dyn Any) -> &str {
         .unwrap_or("it does not say which")
 }
 
-fn current() -> MutexGuard<'static, Option<Arc<Guard>>> {
+fn current() -> MutexGuard<'static, Option<Arc<TerminalGuard>>> {
     CURRENT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -14,12 +14,12 @@ use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Report
 
 use super::event::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::event::{MouseButton, MouseEventKind, MouseReport};
-use super::known::{Known, known};
+use super::known::{TerminalProperties, known};
 use super::sequence;
 
 /// An input from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Input {
+pub(crate) enum TerminalInput {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse was moved, or one of its buttons was pressed or released.
@@ -40,7 +40,7 @@ pub(crate) enum Answer {
     /// The terminal can report mouse positions in pixels.
     PixelMouse,
     /// The terminal's name and version.
-    Version(Known),
+    Version(TerminalProperties),
     /// The answer to a fence. It follows the answers to all earlier queries.
     Fence,
     /// The answer to a status request.
@@ -54,7 +54,7 @@ pub(crate) enum Answer {
 /// A decoder of a stream of bytes.
 #[derive(Debug, Default)]
 pub(crate) struct Decoder {
-    state: State,
+    state: DecoderState,
     /// The bytes of the incomplete unit.
     unit: Vec<u8>,
     is_too_long: bool,
@@ -62,7 +62,7 @@ pub(crate) struct Decoder {
 
 /// The kinds of unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum UnitKind {
     /// A character, possibly after an escape; an escape alone; or a function key in `ESC O`.
     Key,
     /// `ESC [` up to its final byte.
@@ -76,7 +76,7 @@ enum Kind {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum DecoderState {
     /// Between units.
     #[default]
     Ground,
@@ -95,17 +95,17 @@ enum State {
     /// After `ESC [ M`, before this number of bytes.
     MouseBytes { missing: u8 },
     /// Inside a string.
-    String(Kind),
+    String(UnitKind),
     /// Inside a string, after an escape that may start its terminator.
-    StringEscape(Kind),
+    StringEscape(UnitKind),
 }
 
 /// The effect of a byte on the unit before it.
-enum Step {
+enum ByteEffect {
     /// The byte belongs to the unit, which continues in this state.
-    Continue(State),
+    Continue(DecoderState),
     /// The byte completes the unit.
-    Complete(Kind),
+    Complete(UnitKind),
     /// The byte and the unit are dropped.
     Abandon,
     /// The unit is incomplete and dropped; the byte starts the next unit.
@@ -129,7 +129,7 @@ const BELL: u8 = 0x07;
 
 impl Decoder {
     /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
-    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
+    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(TerminalInput)) {
         for byte in bytes {
             self.push(*byte, &mut take);
         }
@@ -142,7 +142,7 @@ impl Decoder {
         /// The unit is certainly a sequence, but the link may be slow.
         const SEQUENCE: Duration = Duration::from_secs(1);
         match self.state {
-            State::Ground => None,
+            DecoderState::Ground => None,
             _ if self.may_be_key() => Some(KEY),
             _ => Some(SEQUENCE),
         }
@@ -150,9 +150,9 @@ impl Decoder {
 
     /// Ends the wait: an escape without more bytes is the Escape key, and any other incomplete unit is
     /// dropped.
-    pub(crate) fn give_up(&mut self, mut take: impl FnMut(Input)) {
+    pub(crate) fn give_up(&mut self, mut take: impl FnMut(TerminalInput)) {
         if self.may_be_key() {
-            meaning(Kind::Key, &self.unit).into_iter().for_each(&mut take);
+            meaning(UnitKind::Key, &self.unit).into_iter().for_each(&mut take);
         }
         self.reset();
     }
@@ -161,38 +161,38 @@ impl Decoder {
     /// sequence or a key by itself.
     fn may_be_key(&self) -> bool {
         match self.state {
-            State::Escape | State::SingleShift | State::ControlSequenceStart => true,
-            State::String(_) => self.unit.len() == INTRODUCER_LENGTH,
+            DecoderState::Escape | DecoderState::SingleShift | DecoderState::ControlSequenceStart => true,
+            DecoderState::String(_) => self.unit.len() == INTRODUCER_LENGTH,
             _ => false,
         }
     }
 
     /// Adds one byte, and calls `take` with the input that it completes, if any.
-    fn push(&mut self, byte: u8, take: &mut impl FnMut(Input)) {
+    fn push(&mut self, byte: u8, take: &mut impl FnMut(TerminalInput)) {
         match step(self.state, byte) {
-            Step::Continue(next) => {
+            ByteEffect::Continue(next) => {
                 self.state = next;
                 self.store(byte);
             }
-            Step::Complete(kind) => {
+            ByteEffect::Complete(kind) => {
                 self.store(byte);
                 if !self.is_too_long {
                     meaning(kind, &self.unit).into_iter().for_each(take);
                 }
                 self.reset();
             }
-            Step::Abandon => self.reset(),
-            Step::Restart => {
+            ByteEffect::Abandon => self.reset(),
+            ByteEffect::Restart => {
                 self.reset();
                 self.push(byte, take);
             }
-            Step::RestartEscaped => {
+            ByteEffect::RestartEscaped => {
                 self.reset();
                 self.push(ESCAPE, take);
                 self.push(byte, take);
             }
-            Step::Split => {
-                meaning(Kind::Key, &[ESCAPE]).into_iter().for_each(&mut *take);
+            ByteEffect::Split => {
+                meaning(UnitKind::Key, &[ESCAPE]).into_iter().for_each(&mut *take);
                 self.reset();
                 self.push(byte, take);
             }
@@ -208,72 +208,72 @@ impl Decoder {
     }
 
     fn reset(&mut self) {
-        self.state = State::Ground;
+        self.state = DecoderState::Ground;
         self.unit.clear();
         self.is_too_long = false;
     }
 }
 
 /// The effect of `byte` on a unit in this state.
-fn step(state: State, byte: u8) -> Step {
+fn step(state: DecoderState, byte: u8) -> ByteEffect {
     match (state, byte) {
-        (State::Ground, ESCAPE) => Step::Continue(State::Escape),
-        (State::Ground | State::Escape, 0xc2..=0xdf) => {
-            Step::Continue(State::Character { missing: 1 })
+        (DecoderState::Ground, ESCAPE) => ByteEffect::Continue(DecoderState::Escape),
+        (DecoderState::Ground | DecoderState::Escape, 0xc2..=0xdf) => {
+            ByteEffect::Continue(DecoderState::Character { missing: 1 })
         }
-        (State::Ground | State::Escape, 0xe0..=0xef) => {
-            Step::Continue(State::Character { missing: 2 })
+        (DecoderState::Ground | DecoderState::Escape, 0xe0..=0xef) => {
+            ByteEffect::Continue(DecoderState::Character { missing: 2 })
         }
-        (State::Ground | State::Escape, 0xf0..=0xf4) => {
-            Step::Continue(State::Character { missing: 3 })
+        (DecoderState::Ground | DecoderState::Escape, 0xf0..=0xf4) => {
+            ByteEffect::Continue(DecoderState::Character { missing: 3 })
         }
-        (State::Ground | State::Escape, 0x80..) => Step::Abandon,
-        (State::Character { missing: 1 }, 0x80..=0xbf)
-        | (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
-        (State::Character { missing }, 0x80..=0xbf) => {
-            Step::Continue(State::Character { missing: missing - 1 })
+        (DecoderState::Ground | DecoderState::Escape, 0x80..) => ByteEffect::Abandon,
+        (DecoderState::Character { missing: 1 }, 0x80..=0xbf)
+        | (DecoderState::SingleShift | DecoderState::ConsoleKey, b' '..=b'~') => ByteEffect::Complete(UnitKind::Key),
+        (DecoderState::Character { missing }, 0x80..=0xbf) => {
+            ByteEffect::Continue(DecoderState::Character { missing: missing - 1 })
         }
-        (State::Escape, ESCAPE) => Step::Split,
-        (State::Escape, b'O') => Step::Continue(State::SingleShift),
-        (State::Escape, b'[') => Step::Continue(State::ControlSequenceStart),
-        (State::Escape, b'P') => Step::Continue(State::String(Kind::DeviceControl)),
-        (State::Escape, b']' | b'_' | b'^' | b'X') => {
-            Step::Continue(State::String(Kind::OtherString))
+        (DecoderState::Escape, ESCAPE) => ByteEffect::Split,
+        (DecoderState::Escape, b'O') => ByteEffect::Continue(DecoderState::SingleShift),
+        (DecoderState::Escape, b'[') => ByteEffect::Continue(DecoderState::ControlSequenceStart),
+        (DecoderState::Escape, b'P') => ByteEffect::Continue(DecoderState::String(UnitKind::DeviceControl)),
+        (DecoderState::Escape, b']' | b'_' | b'^' | b'X') => {
+            ByteEffect::Continue(DecoderState::String(UnitKind::OtherString))
         }
-        (State::Ground | State::Escape, _) => Step::Complete(Kind::Key),
-        (State::ControlSequenceStart, b'[') => Step::Continue(State::ConsoleKey),
-        (State::ControlSequenceStart, b'M') => Step::Continue(State::MouseBytes { missing: 3 }),
-        (State::ControlSequenceStart | State::ControlSequence, b' '..=b'?') => {
-            Step::Continue(State::ControlSequence)
+        (DecoderState::Ground | DecoderState::Escape, _) => ByteEffect::Complete(UnitKind::Key),
+        (DecoderState::ControlSequenceStart, b'[') => ByteEffect::Continue(DecoderState::ConsoleKey),
+        (DecoderState::ControlSequenceStart, b'M') => ByteEffect::Continue(DecoderState::MouseBytes { missing: 3 }),
+        (DecoderState::ControlSequenceStart | DecoderState::ControlSequence, b' '..=b'?') => {
+            ByteEffect::Continue(DecoderState::ControlSequence)
         }
-        (State::ControlSequenceStart | State::ControlSequence, b'@'..=b'~') => {
-            Step::Complete(Kind::ControlSequence)
+        (DecoderState::ControlSequenceStart | DecoderState::ControlSequence, b'@'..=b'~') => {
+            ByteEffect::Complete(UnitKind::ControlSequence)
         }
-        (State::MouseBytes { missing: 1 }, b' '..) => Step::Complete(Kind::MouseBytes),
-        (State::MouseBytes { missing }, b' '..) => {
-            Step::Continue(State::MouseBytes { missing: missing - 1 })
+        (DecoderState::MouseBytes { missing: 1 }, b' '..) => ByteEffect::Complete(UnitKind::MouseBytes),
+        (DecoderState::MouseBytes { missing }, b' '..) => {
+            ByteEffect::Continue(DecoderState::MouseBytes { missing: missing - 1 })
         }
-        (State::String(kind), ESCAPE) => Step::Continue(State::StringEscape(kind)),
-        (State::String(kind), BELL) | (State::StringEscape(kind), b'\\') => Step::Complete(kind),
-        (State::String(kind), b' '..=b'~' | 0x80..) => Step::Continue(State::String(kind)),
-        (State::StringEscape(_), _) => Step::RestartEscaped,
-        _ => Step::Restart,
+        (DecoderState::String(kind), ESCAPE) => ByteEffect::Continue(DecoderState::StringEscape(kind)),
+        (DecoderState::String(kind), BELL) | (DecoderState::StringEscape(kind), b'\\') => ByteEffect::Complete(kind),
+        (DecoderState::String(kind), b' '..=b'~' | 0x80..) => ByteEffect::Continue(DecoderState::String(kind)),
+        (DecoderState::StringEscape(_), _) => ByteEffect::RestartEscaped,
+        _ => ByteEffect::Restart,
     }
 }
 
-fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
+fn meaning(kind: UnitKind, unit: &[u8]) -> Option<TerminalInput> {
     match kind {
-        Kind::ControlSequence if unit.starts_with(b"\x1b[<") => {
-            mouse_report(unit).map(Input::Mouse)
+        UnitKind::ControlSequence if unit.starts_with(b"\x1b[<") => {
+            mouse_report(unit).map(TerminalInput::Mouse)
         }
-        Kind::MouseBytes => mouse_bytes(unit).map(Input::Mouse),
-        Kind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
-            Some(Input::Focus(unit.ends_with(b"I")))
+        UnitKind::MouseBytes => mouse_bytes(unit).map(TerminalInput::Mouse),
+        UnitKind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
+            Some(TerminalInput::Focus(unit.ends_with(b"I")))
         }
-        Kind::ControlSequence if is_report(unit) => report(unit).map(Input::Answer),
-        Kind::Key | Kind::ControlSequence => key_event(unit).map(Input::Key),
-        Kind::DeviceControl => device_control(unit).map(Input::Answer),
-        Kind::OtherString => string_answer(unit).map(Input::Answer),
+        UnitKind::ControlSequence if is_report(unit) => report(unit).map(TerminalInput::Answer),
+        UnitKind::Key | UnitKind::ControlSequence => key_event(unit).map(TerminalInput::Key),
+        UnitKind::DeviceControl => device_control(unit).map(TerminalInput::Answer),
+        UnitKind::OtherString => string_answer(unit).map(TerminalInput::Answer),
     }
 }
 

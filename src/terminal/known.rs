@@ -26,7 +26,7 @@ use crate::tui::GlyphSet;
 /// The properties of a terminal that are known at the start, and the ways to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
-pub struct Options {
+pub struct SessionOptions {
     /// The terminal's number of colours. If it is a guess, the terminal is queried.
     pub color_depth: Detected,
     /// The source of the colour depth.
@@ -54,7 +54,7 @@ pub struct Options {
     pub fidelity: Option<Fidelity>,
 }
 
-impl Options {
+impl SessionOptions {
     /// Options from `environment`, which looks up variables by name.
     ///
     /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in
@@ -249,8 +249,8 @@ pub fn locale_without_utf8(environment: impl Fn(&str) -> Option<String>) -> Opti
 
 /// The properties of a terminal, derived from its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Known {
-    pub(crate) colors: Colors,
+pub(crate) struct TerminalProperties {
+    pub(crate) colors: TrueColorSupport,
     /// The finest blocks that the terminal is known to draw well.
     pub(crate) blocks: GlyphSet,
     pub(crate) shades: ShadeInk,
@@ -259,7 +259,7 @@ pub(crate) struct Known {
 
 /// The support for 24-bit colours that a terminal's name and version imply.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Colors {
+pub(crate) enum TrueColorSupport {
     #[default]
     Unknown,
     /// The terminal shows 24-bit colours.
@@ -316,15 +316,15 @@ const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: Shad
 
 /// The properties of the terminal that reports this name and version, such as `kitty(0.42.1)` or
 /// `WezTerm 20240203-110809`.
-pub(crate) fn known(report: &str) -> Known {
+pub(crate) fn known(report: &str) -> TerminalProperties {
     let end = report.find(|letter: char| letter == '(' || letter.is_ascii_digit());
     let (name, version) = report.split_at(end.unwrap_or(report.len()));
     let name = name.trim().to_ascii_lowercase();
     match &*name {
-        "tmux" => return Known { is_tmux: true, ..Known::default() },
+        "tmux" => return TerminalProperties { is_tmux: true, ..TerminalProperties::default() },
         // Dots: measured with DejaVu. Its quadrants have gaps (notcurses#1517).
         "xterm" => {
-            return Known { colors: Colors::Ask, shades: ShadeInk::Dots, ..Known::default() };
+            return TerminalProperties { colors: TrueColorSupport::Ask, shades: ShadeInk::Dots, ..TerminalProperties::default() };
         }
         _ => {}
     }
@@ -334,14 +334,14 @@ pub(crate) fn known(report: &str) -> Known {
         _ => (&*name, version),
     };
     let Some(terminal) = TERMINALS.iter().find(|terminal| terminal.name == name) else {
-        return Known::default();
+        return TerminalProperties::default();
     };
     let version = numbers(version);
     let kinds = [GlyphSet::Quadrant, GlyphSet::Sextant, GlyphSet::Octant];
     let mut drawn = kinds.into_iter().zip(terminal.blocks);
     let blocks = drawn.rfind(|(_, since)| since.is_some_and(|since| version >= since));
-    Known {
-        colors: Colors::True,
+    TerminalProperties {
+        colors: TrueColorSupport::True,
         blocks: blocks.map_or(GlyphSet::Half, |(kind, _)| kind),
         shades: terminal.shades,
         is_tmux: false,
@@ -367,7 +367,7 @@ mod tests {
     fn an_unknown_terminal_is_not_asked_for_its_version() {
         let asks = |term: &'static str| {
             let environment = move |name: &str| (name == "TERM").then(|| term.to_owned());
-            Options::from_environment(environment).ask_for_version
+            SessionOptions::from_environment(environment).ask_for_version
         };
         assert!(["xterm", "xterm-256color", "tmux-256color", "konsole"].into_iter().all(asks));
         assert!(!["", "ansi", "eterm-color", "unheard-of"].into_iter().any(asks));
@@ -377,7 +377,7 @@ mod tests {
     fn a_terminal_that_prints_the_query_is_not_asked_for_pixels() {
         let asks = |name: &'static str, value: &'static str| {
             let environment = move |asked: &str| (asked == name).then(|| value.to_owned());
-            Options::from_environment(environment).ask_for_mouse_pixels
+            SessionOptions::from_environment(environment).ask_for_mouse_pixels
         };
         assert!(!asks("TERM_PROGRAM", "Apple_Terminal"));
         assert!(asks("TERM_PROGRAM", "iTerm.app") && asks("TERM", "xterm-256color"));
@@ -388,7 +388,7 @@ mod tests {
         let is_remote = |value: &'static str| {
             let environment =
                 move |name: &str| (name == "SSH_CONNECTION").then(|| value.to_owned());
-            Options::from_environment(environment).is_remote
+            SessionOptions::from_environment(environment).is_remote
         };
         assert!(is_remote("192.0.2.1 50000 192.0.2.2 22"));
         assert!(!is_remote(""));
@@ -396,7 +396,7 @@ mod tests {
 
     fn asks_for_releases(name: &str, value: &str) -> bool {
         let environment = |asked: &str| (asked == name).then(|| value.to_owned());
-        Options::from_environment(environment).ask_for_key_releases
+        SessionOptions::from_environment(environment).ask_for_key_releases
     }
 
     #[test]
@@ -406,7 +406,7 @@ mod tests {
                 "TERM" => Some(term.to_owned()),
                 _ => (asked == name).then(|| value.to_owned()),
             };
-            Options::from_environment(environment).probe_extensions
+            SessionOptions::from_environment(environment).probe_extensions
         };
         assert!(probes("xterm-256color", "", "") && probes("xterm-kitty", "TMUX", ""));
         for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
@@ -546,12 +546,12 @@ mod tests {
     #[test]
     fn only_listed_names_are_trusted_with_colours() {
         for report in ["kitty(0.26.5)", "foot(1.13.1)", "iTerm2 3.4", "VTE(6003)", "WezTerm 2022"] {
-            assert_eq!(known(report).colors, Colors::True, "{report}");
+            assert_eq!(known(report).colors, TrueColorSupport::True, "{report}");
         }
         for report in ["tmux 3.3a", "footer 1", "xterm 1.js", "(1.0)", "\u{9b}kitty(1)"] {
-            assert_ne!(known(report).colors, Colors::True, "{report}");
+            assert_ne!(known(report).colors, TrueColorSupport::True, "{report}");
         }
-        assert_eq!(known("XTerm(379)").colors, Colors::Ask);
+        assert_eq!(known("XTerm(379)").colors, TrueColorSupport::Ask);
         assert!(known("tmux 3.5").is_tmux);
     }
 }

@@ -23,11 +23,11 @@ use ratatui::backend::Backend;
 
 use super::event::MouseUnits;
 use super::flow::{Flow, Request};
-use super::input::{Answer, Decoder, Input};
-use super::known::{Colors, Known};
-use super::sequence::{Changes, KeyFlags};
+use super::input::{Answer, Decoder, TerminalInput};
+use super::known::{TrueColorSupport, TerminalProperties};
+use super::sequence::{TerminalChanges, KeyFlags};
 use super::{
-    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Options, Phase, QuitReason,
+    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, SessionOptions, Phase, QuitReason,
     Screen, TmuxClient, WindowSize, sequence,
 };
 use crate::color::palette::{ColorDepth, ShadeInk};
@@ -62,7 +62,7 @@ use crate::tui::GlyphSet;
 #[derive(Debug)]
 pub struct Protocol {
     /// The properties of the terminal as far as they are known, and the ways to use it.
-    options: Options,
+    options: SessionOptions,
     /// Bytes that the caller has not taken yet.
     output: Vec<u8>,
     /// Encodes frames; its bytes are moved to `output`.
@@ -72,7 +72,7 @@ pub struct Protocol {
     events: VecDeque<Event>,
     size: WindowSize,
     /// The terminal's properties, derived from its name.
-    known: Known,
+    known: TerminalProperties,
     /// The client of the tmux in which the program runs.
     tmux: Option<TmuxClient>,
     /// `true` while an answer about reports of key releases is expected.
@@ -80,9 +80,9 @@ pub struct Protocol {
     mouse: Mouse,
     flow: Flow,
     /// The kind of the frame that is encoded but not yet in `output`.
-    drawn: Option<Drawn>,
+    drawn: Option<FrameKind>,
     palette: PaletteProbe,
-    changes: Changes,
+    changes: TerminalChanges,
     /// `true` once the terminal is being given back. From then on, no report is switched on.
     is_ending: bool,
     /// The number of frames that were sent before the keyboard flags were pushed.
@@ -91,7 +91,7 @@ pub struct Protocol {
 
 /// The kind of a frame.
 #[derive(Clone, Copy, Debug)]
-enum Drawn {
+enum FrameKind {
     /// A new picture, at this fidelity.
     Motion(Fidelity),
     /// The last picture again, more exact.
@@ -109,7 +109,7 @@ struct Mouse {
 
 impl Protocol {
     /// A protocol for a terminal with these `options`. Nothing is sent yet.
-    pub fn new(options: Options, size: WindowSize) -> Self {
+    pub fn new(options: SessionOptions, size: WindowSize) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size.cells());
         writer.set_ascii(options.is_ascii);
         Self {
@@ -120,14 +120,14 @@ impl Protocol {
             received_at: Duration::ZERO,
             events: VecDeque::new(),
             size,
-            known: Known::default(),
+            known: TerminalProperties::default(),
             tmux: None,
             awaits_key_releases: false,
             mouse: Mouse::default(),
             flow: Flow::new(options.is_remote),
             drawn: None,
             palette: PaletteProbe::default(),
-            changes: Changes::default(),
+            changes: TerminalChanges::default(),
             is_ending: false,
             frames_before_key_flags: 0,
         }
@@ -215,7 +215,7 @@ impl Protocol {
     }
 
     /// The changes to undo at the end, and the answers that may still arrive.
-    pub(crate) fn changes(&self) -> Changes {
+    pub(crate) fn changes(&self) -> TerminalChanges {
         self.changes
     }
 
@@ -322,27 +322,27 @@ impl Protocol {
         let events = &mut self.events;
         self.decoder.give_up(|input| {
             // An answer is always a whole unit, never the start of one.
-            if let Input::Key(event) = input {
+            if let TerminalInput::Key(event) = input {
                 events.push_back(meaning(event));
             }
         });
     }
 
-    fn take_input(&mut self, input: Input, now: Duration) {
+    fn take_input(&mut self, input: TerminalInput, now: Duration) {
         match input {
-            Input::Key(event) => {
+            TerminalInput::Key(event) => {
                 self.flow.received_input();
                 self.events.push_back(meaning(event));
             }
-            Input::Focus(true) => self.events.push_back(Event::FocusGained),
-            Input::Focus(false) => self.events.push_back(Event::FocusLost),
-            Input::Mouse(report) => {
+            TerminalInput::Focus(true) => self.events.push_back(Event::FocusGained),
+            TerminalInput::Focus(false) => self.events.push_back(Event::FocusLost),
+            TerminalInput::Mouse(report) => {
                 self.flow.received_input();
                 let units = self.changes.mouse.filter(|_| !self.mouse.is_changing);
                 let event = units.and_then(|units| report.event(units, self.size));
                 self.events.extend(event.map(Event::Mouse));
             }
-            Input::Answer(answer) => self.take_answer(answer, now),
+            TerminalInput::Answer(answer) => self.take_answer(answer, now),
         }
     }
 
@@ -431,13 +431,13 @@ impl Protocol {
         }
     }
 
-    fn identify(&mut self, known: Known, now: Duration) {
+    fn identify(&mut self, known: TerminalProperties, now: Duration) {
         match known.colors {
-            Colors::True => self.raise_color_depth(),
-            Colors::Ask if matches!(self.options.color_depth, Detected::Guess(_)) => {
+            TrueColorSupport::True => self.raise_color_depth(),
+            TrueColorSupport::Ask if matches!(self.options.color_depth, Detected::Guess(_)) => {
                 self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
             }
-            Colors::Ask | Colors::Unknown => {}
+            TrueColorSupport::Ask | TrueColorSupport::Unknown => {}
         }
         // In tmux, tmux itself describes the terminal around it in more detail.
         if self.tmux.is_none() && self.known != known {
@@ -491,13 +491,13 @@ impl Protocol {
         let fidelity = self.fidelity();
         self.writer.set_fidelity(fidelity);
         self.writer.draw_frame(render);
-        self.drawn = Some(Drawn::Motion(fidelity));
+        self.drawn = Some(FrameKind::Motion(fidelity));
     }
 
     /// Shows the last frame more exactly, unless it is exact.
     pub fn refine(&mut self) {
         self.writer.refine();
-        self.drawn = Some(Drawn::Refinement);
+        self.drawn = Some(FrameKind::Refinement);
     }
 
     /// Rings the terminal's bell with the next frame.
@@ -599,7 +599,7 @@ impl Protocol {
             }
             self.queue_request(bytes, now);
         }
-        if let Drawn::Motion(fidelity) = drawn {
+        if let FrameKind::Motion(fidelity) = drawn {
             self.flow.sent_motion(bytes, fidelity);
         }
     }

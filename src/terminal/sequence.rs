@@ -97,7 +97,7 @@ pub(crate) const QUERY_FENCE: &str = "\x1b[c";
 
 /// The program's changes to the terminal, and the answers that may still arrive.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Changes {
+pub(crate) struct TerminalChanges {
     pub(crate) key_flags: KeyFlags,
     /// The unit of mouse positions. `None` if the mouse is not reported.
     pub(crate) mouse: Option<MouseUnits>,
@@ -120,7 +120,7 @@ pub(crate) enum KeyFlags {
     Received,
 }
 
-impl Changes {
+impl TerminalChanges {
     /// The sequences that take the alternate screen, hide the cursor and enable the reports.
     pub(crate) fn start(&mut self) -> String {
         let mut text = of(EnterAlternateScreen) + &of(Hide);
@@ -174,7 +174,7 @@ impl Changes {
     }
 
     /// Records that the terminal may have received a part of the sequences from [`Changes::end`].
-    pub(crate) fn doubt_key_flags(&mut self) {
+    pub(crate) fn mark_key_flags_uncertain(&mut self) {
         if self.key_flags == KeyFlags::Received {
             self.key_flags = KeyFlags::Pushed;
         }

@@ -7,13 +7,13 @@ use std::task::Poll;
 use std::time::Duration;
 use std::{io, mem};
 
-use super::error::Kind;
-use super::guard::Guard;
+use super::error::TerminalErrorKind;
+use super::guard::TerminalGuard;
 use super::signals::{Signal, Signals};
-use super::tmux::Request;
+use super::tmux::TmuxCommand;
 use super::unix::Device;
 use super::{
-    Error, Event, Options, Protocol, QuitReason, Recorder, Screen, TmuxClient, WindowSize,
+    Error, Event, SessionOptions, Protocol, QuitReason, Recorder, Screen, TmuxClient, WindowSize,
 };
 use crate::tui::GlyphSet;
 
@@ -26,15 +26,15 @@ use crate::tui::GlyphSet;
 /// process has one session at a time.
 #[derive(Debug)]
 pub struct Session {
-    guard: Arc<Guard>,
+    guard: Arc<TerminalGuard>,
     signals: Signals,
     protocol: Protocol,
     /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
     /// Whether the program runs in tmux. The next two fields are unanswered requests to tmux.
     is_in_tmux: bool,
-    tmux: Option<Request<TmuxClient>>,
-    tmux_remedy: Option<Request<()>>,
+    tmux: Option<TmuxCommand<TmuxClient>>,
+    tmux_remedy: Option<TmuxCommand<()>>,
     last_key_at: Duration,
 }
 
@@ -45,7 +45,7 @@ impl Session {
     /// # Errors
     /// If standard input or output is not a terminal, if the terminal cannot move its cursor, if the process
     /// already has a session, if the platform has no Unix terminals, or if a write to the terminal fails.
-    pub fn enter(options: Options) -> Result<Self, Error> {
+    pub fn enter(options: SessionOptions) -> Result<Self, Error> {
         Self::enter_recorded(options, None)
     }
 
@@ -54,14 +54,14 @@ impl Session {
     /// # Errors
     /// As [`Session::enter`].
     pub fn enter_recorded(
-        options: Options,
+        options: SessionOptions,
         recorder: Option<Box<dyn Recorder>>,
     ) -> Result<Self, Error> {
         let device = Device::open()?;
         if let Some(term) = options.teletype {
-            return Err(Kind::Teletype { term }.into());
+            return Err(TerminalErrorKind::Teletype { term }.into());
         }
-        let guard = Guard::install(device, recorder)?;
+        let guard = TerminalGuard::install(device, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
@@ -87,7 +87,7 @@ impl Session {
                 }
             }
             if !self.guard.is_taken() {
-                return Err(Kind::GivenBack.into());
+                return Err(TerminalErrorKind::GivenBack.into());
             }
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
@@ -137,7 +137,7 @@ impl Session {
 
     /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] reports the outcome.
     pub fn tell_tmux(&mut self) {
-        self.tmux_remedy = self.protocol.tmux_client().and_then(Request::remedy);
+        self.tmux_remedy = self.protocol.tmux_client().and_then(TmuxCommand::remedy);
         if self.tmux_remedy.is_none() {
             self.protocol.push_event(Event::TmuxTold(false));
         }
@@ -189,7 +189,7 @@ impl Session {
         self.receive(Some(Duration::ZERO)).is_err() || self.protocol.has_event(is_such)
     }
 
-    fn take(guard: &Arc<Guard>, mut options: Options) -> Result<Self, Error> {
+    fn take(guard: &Arc<TerminalGuard>, mut options: SessionOptions) -> Result<Self, Error> {
         let signals =
             Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
         let size = guard.device().size();
@@ -217,7 +217,7 @@ impl Session {
     /// Asks tmux about the terminal around it, unless a request is open.
     fn ask_tmux(&mut self) {
         if self.is_in_tmux && self.tmux.is_none() {
-            self.tmux = Some(Request::client());
+            self.tmux = Some(TmuxCommand::client());
         }
     }
 
@@ -235,13 +235,13 @@ impl Session {
     }
 
     fn take_tmux_replies(&mut self) {
-        if let Some(Poll::Ready(client)) = self.tmux.as_ref().map(Request::reply) {
+        if let Some(Poll::Ready(client)) = self.tmux.as_ref().map(TmuxCommand::reply) {
             self.tmux = None;
             if let Some(client) = client {
                 self.protocol.take_tmux_client(client);
             }
         }
-        if let Some(Poll::Ready(done)) = self.tmux_remedy.as_ref().map(Request::reply) {
+        if let Some(Poll::Ready(done)) = self.tmux_remedy.as_ref().map(TmuxCommand::reply) {
             self.tmux_remedy = None;
             self.protocol.push_event(Event::TmuxTold(done.is_some()));
         }

@@ -28,7 +28,7 @@ use signal_hook::iterator::{Handle, SignalsInfo};
 use signal_hook::low_level::{emulate_default_handler, exit};
 
 use super::QuitReason;
-use super::guard::Guard;
+use super::guard::TerminalGuard;
 use super::unix::wait;
 
 /// The time from a signal that should end the program until the thread ends it by force.
@@ -85,7 +85,7 @@ pub(crate) struct Signals {
 impl Signals {
     /// Starts to receive signals. If a signal should end the program and the program continues, the thread gives the
     /// terminal back through `guard` and ends the program.
-    pub(crate) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
+    pub(crate) fn listen(guard: &Arc<TerminalGuard>) -> io::Result<Self> {
         let (receiver, sender) = UnixStream::pair()?;
         receiver.set_nonblocking(true)?;
         sender.set_nonblocking(true)?;
@@ -98,7 +98,7 @@ impl Signals {
         }
         let thread = thread::Builder::new().name("signals".to_owned()).spawn({
             let guard = Arc::clone(guard);
-            move || pass_on(incoming, &sender, &guard)
+            move || forward_signals(incoming, &sender, &guard)
         })?;
         Ok(Self { receiver, handle, thread: Some(thread), deferred: Vec::new() })
     }
@@ -177,7 +177,7 @@ fn default_effects() -> io::Result<&'static AtomicBool> {
     Ok(FLAG.get_or_init(|| flag))
 }
 
-fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
+fn forward_signals(mut incoming: Incoming, mut sender: &UnixStream, guard: &TerminalGuard) {
     for info in incoming.forever() {
         let number = info.si_signo;
         if NAMELESS.iter().any(|numbers| numbers.contains(&number)) {
@@ -206,7 +206,7 @@ fn nameless() -> impl Iterator<Item = i32> {
 }
 
 /// Gives the terminal back and ends the program by this signal.
-fn end(number: i32, guard: &Guard) {
+fn end(number: i32, guard: &TerminalGuard) {
     // Returns only if the number is not a signal.
     guard.give_back_and(|| _ = emulate_default_handler(number));
 }

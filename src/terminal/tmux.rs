@@ -23,7 +23,7 @@ use std::task::Poll;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::known::{Colors, Known, known};
+use super::known::{TrueColorSupport, TerminalProperties, known};
 use crate::tui::GlyphSet;
 
 /// The client of tmux that shows the program.
@@ -32,7 +32,7 @@ pub struct TmuxClient {
     has_true_color: bool,
     /// The value of `TERM` outside of tmux. Empty if it contains unusual characters.
     term: String,
-    known: Known,
+    known: TerminalProperties,
 }
 
 /// The separator between the parts of the answer. No part contains it.
@@ -54,19 +54,19 @@ impl TmuxClient {
 
     /// The value that the remedy adds to `terminal-features`.
     fn missing_feature(&self) -> Option<String> {
-        let is_missing = !self.has_true_color && self.known.colors != Colors::Unknown;
+        let is_missing = !self.has_true_color && self.known.colors != TrueColorSupport::Unknown;
         (is_missing && !self.term.is_empty()).then(|| format!(",{}:RGB", self.term))
     }
 
     /// The properties of the client's terminal, as far as tmux passes them on.
-    pub(crate) fn known(&self) -> Known {
+    pub(crate) fn known(&self) -> TerminalProperties {
         // tmux drops characters that its C library does not know, and the rest of the line moves. With
         // glibc 2.36 it drops all octants (measured with 3.3a), with older versions also sextants.
         let blocks = match self.known.blocks {
             GlyphSet::Sextant | GlyphSet::Octant => GlyphSet::Quadrant,
             blocks => blocks,
         };
-        Known { is_tmux: true, blocks, ..self.known }
+        TerminalProperties { is_tmux: true, blocks, ..self.known }
     }
 
     /// The client in tmux's answer. `None` if the answer has another form.
@@ -89,9 +89,9 @@ impl TmuxClient {
 
 /// A tmux command that may still be running, with the parsed part of its answer.
 #[derive(Debug)]
-pub(crate) struct Request<T>(Receiver<Option<T>>);
+pub(crate) struct TmuxCommand<T>(Receiver<Option<T>>);
 
-impl Request<TmuxClient> {
+impl TmuxCommand<TmuxClient> {
     /// Asks the tmux that the environment names for its client.
     pub(crate) fn client() -> Self {
         Self::begin(|| {
@@ -101,7 +101,7 @@ impl Request<TmuxClient> {
     }
 }
 
-impl Request<()> {
+impl TmuxCommand<()> {
     /// Runs the remedy for `client`. `None` if there is no remedy.
     pub(crate) fn remedy(client: &TmuxClient) -> Option<Self> {
         let feature = client.missing_feature()?;
@@ -112,7 +112,7 @@ impl Request<()> {
     }
 }
 
-impl<T: Send + 'static> Request<T> {
+impl<T: Send + 'static> TmuxCommand<T> {
     fn begin(work: impl FnOnce() -> Option<T> + Send + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
         // If no thread starts, there is no answer, as without tmux.

@@ -12,7 +12,7 @@ use rustix::termios::{
     ttyname,
 };
 
-use super::error::Kind;
+use super::error::TerminalErrorKind;
 use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
@@ -43,7 +43,7 @@ impl Device {
         let (input, output) = (rustix::stdio::stdin(), rustix::stdio::stdout());
         for (stream, name) in [(input, "standard input"), (output, "standard output")] {
             if !isatty(stream) {
-                return Err(Kind::NotATerminal { stream: name }.into());
+                return Err(TerminalErrorKind::NotATerminal { stream: name }.into());
             }
         }
         let open = || {

@@ -29,7 +29,7 @@ use super::canvas::{Canvas, Mosaic, SHADES, draw_characters};
 use super::correction::{Edge, local_contrast, outline, raised};
 use super::glyphs::{GlyphSet, color_at};
 use crate::color::Rgb;
-use crate::color::palette::mixture::{Look, Mixer, WHOLE};
+use crate::color::palette::mixture::{CellMixture, Mixer, WHOLE};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{Frame, Surface};
 
@@ -141,11 +141,11 @@ fn draw_mixed<const PIXELS: usize>(
         for (Split { mask, colors }, x) in splits.zip(area.left()..area.right()) {
             let share = mask.count_ones() as u8 * (WHOLE / PIXELS as u8);
             match mixer.look(colors, share) {
-                Look::Parts(parts) => {
+                CellMixture::Parts(parts) => {
                     let cell = (Mosaic::of_dots(PIXELS, mask), parts.map(Color::Indexed));
                     canvas.draw_mosaics(x, y, iter::once(cell));
                 }
-                Look::Shade(quarters, colors) => {
+                CellMixture::Shade(quarters, colors) => {
                     let shade = SHADES[usize::from(quarters - 1)];
                     canvas.draw_character(x, y, shade, colors.map(Color::Indexed));
                 }

@@ -158,8 +158,8 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// Handles a repetition of `key` from a terminal that reports releases.
     pub fn repeat(&mut self, key: K) {
         let mut held = self.take(key);
-        if held.state == State::Up {
-            held.state = State::Down;
+        if held.state == KeyState::Up {
+            held.state = KeyState::Down;
         }
         self.keys.push(held);
     }
@@ -167,7 +167,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// Handles the release of `key`. Its tap continues to its end.
     pub fn release(&mut self, key: K) {
         if let Some(held) = self.keys.iter_mut().find(|held| held.key == key) {
-            held.state = State::Up;
+            held.state = KeyState::Up;
         }
     }
 
@@ -221,7 +221,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// repetition. Call it when another key is pressed, for keys that should not outlast it: a player who turns and
     /// then walks wants to walk straight on.
     pub fn release_lingering(&mut self, is_meant: impl Fn(K) -> bool) {
-        let lingering = self.keys.iter_mut().filter(|held| held.state == State::Lingers);
+        let lingering = self.keys.iter_mut().filter(|held| held.state == KeyState::Lingers);
         lingering.filter(|held| is_meant(held.key)).for_each(HeldKey::mark_as_up);
     }
 
@@ -276,7 +276,7 @@ const SURE_COUNT: u32 = 4;
 const SURE_SPAN: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum KeyState {
     Up,
     /// The key is down, and releases are reported.
     Down,
@@ -294,7 +294,7 @@ enum State {
 #[derive(Clone, Debug)]
 struct HeldKey<K> {
     key: K,
-    state: State,
+    state: KeyState,
     timing: RepeatTiming,
     /// The time of the key's last byte, if any.
     last_byte: Option<Duration>,
@@ -332,7 +332,7 @@ impl<K: Copy + Eq> HeldKey<K> {
     fn new(key: K) -> Self {
         Self {
             key,
-            state: State::Up,
+            state: KeyState::Up,
             timing: RepeatTiming::default(),
             last_byte: None,
             pressed: Duration::ZERO,
@@ -345,16 +345,16 @@ impl<K: Copy + Eq> HeldKey<K> {
     fn hold(&self) -> Hold {
         match self.state {
             _ if self.tap.pauses => Hold::Up,
-            State::Repeats | State::Lingers => Hold::Held,
+            KeyState::Repeats | KeyState::Lingers => Hold::Held,
             _ if self.tap.left > 0 => Hold::Tap,
-            State::Up | State::Suppressed => Hold::Up,
-            State::Pressed => Hold::Unknown,
-            State::Down => Hold::Held,
+            KeyState::Up | KeyState::Suppressed => Hold::Up,
+            KeyState::Pressed => Hold::Unknown,
+            KeyState::Down => Hold::Held,
         }
     }
 
     fn is_held(&self) -> bool {
-        matches!(self.state, State::Down | State::Repeats | State::Lingers)
+        matches!(self.state, KeyState::Down | KeyState::Repeats | KeyState::Lingers)
     }
 
     fn has_taps(&self) -> bool {
@@ -365,7 +365,7 @@ impl<K: Copy + Eq> HeldKey<K> {
     fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
         let was_held = self.hold() == Hold::Held;
         self.tap.add(steps, was_held);
-        self.state = State::Down;
+        self.state = KeyState::Down;
         self.pressed = now;
         Press::Fresh
     }
@@ -378,11 +378,11 @@ impl<K: Copy + Eq> HeldKey<K> {
         self.last_byte = Some(now);
         let known = self.timing.or(prior);
         match (self.state, gap) {
-            (State::Repeats, Some(gap)) => {
+            (KeyState::Repeats, Some(gap)) => {
                 self.timing.learn_interval(gap);
                 return Press::Repeat;
             }
-            (State::Suppressed, Some(gap)) if gap <= known.timeout().max(MAX_INTERVAL) => {
+            (KeyState::Suppressed, Some(gap)) if gap <= known.timeout().max(MAX_INTERVAL) => {
                 return Press::Repeat;
             }
             _ => {}
@@ -402,7 +402,7 @@ impl<K: Copy + Eq> HeldKey<K> {
             self.pressed = now;
         }
         let was_held = self.is_held();
-        self.state = State::Pressed;
+        self.state = KeyState::Pressed;
         self.tap.add(steps, was_held);
         if is_unclear { Press::Unclear } else { Press::Fresh }
     }
@@ -415,22 +415,22 @@ impl<K: Copy + Eq> HeldKey<K> {
         }
         let span = now.saturating_sub(self.series.start);
         self.timing.learn_interval(span / self.series.count.max(1));
-        self.state = State::Repeats;
+        self.state = KeyState::Repeats;
         self.repeated = true;
         self.tap = Tap::default();
     }
 
     /// Handles the press of another key, which ends the repetition of this one.
     fn end_repetition(&mut self) {
-        if self.state == State::Repeats {
-            self.state = State::Lingers;
+        if self.state == KeyState::Repeats {
+            self.state = KeyState::Lingers;
         }
     }
 
     /// Holds this key if it was pressed together with `newer`, which is held.
     fn join(&mut self, newer: &Self) {
         if self.was_pressed_within(CHORD, newer) {
-            self.state = State::Lingers;
+            self.state = KeyState::Lingers;
             self.tap = Tap::default();
         }
     }
@@ -442,7 +442,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// Returns true if this key was pressed at or before `time` and may have been down ever since.
     fn is_down_since(&self, time: Duration) -> bool {
-        let may_be_down = !matches!(self.state, State::Up | State::Suppressed);
+        let may_be_down = !matches!(self.state, KeyState::Up | KeyState::Suppressed);
         may_be_down && self.pressed <= time
     }
 
@@ -456,16 +456,16 @@ impl<K: Copy + Eq> HeldKey<K> {
     /// Marks the key as up. Its tap continues to its end, so that two opposing taps lead back to
     /// the start.
     fn mark_as_up(&mut self) {
-        if !matches!(self.state, State::Suppressed | State::Up) {
-            self.repeated = self.state == State::Repeats;
-            self.state = State::Up;
+        if !matches!(self.state, KeyState::Suppressed | KeyState::Up) {
+            self.repeated = self.state == KeyState::Repeats;
+            self.state = KeyState::Up;
         }
     }
 
     /// Marks the key as up and ignores its repetitions.
     fn suppress(&mut self) {
-        let may_repeat = matches!(self.state, State::Down | State::Repeats | State::Suppressed);
-        self.state = if may_repeat { State::Suppressed } else { State::Up };
+        let may_repeat = matches!(self.state, KeyState::Down | KeyState::Repeats | KeyState::Suppressed);
+        self.state = if may_repeat { KeyState::Suppressed } else { KeyState::Up };
         self.last_byte = self.last_byte.filter(|_| may_repeat);
         self.tap = Tap::default();
     }
@@ -474,10 +474,10 @@ impl<K: Copy + Eq> HeldKey<K> {
     fn expiry(&self, prior: RepeatTiming, lingers_until: Duration) -> Option<Duration> {
         let timing = self.timing.or(prior);
         match self.state {
-            State::Pressed => Some(self.last_byte? + timing.first_timeout()),
-            State::Repeats => Some(self.last_byte? + timing.timeout()),
-            State::Lingers => Some(lingers_until),
-            State::Up | State::Down | State::Suppressed => None,
+            KeyState::Pressed => Some(self.last_byte? + timing.first_timeout()),
+            KeyState::Repeats => Some(self.last_byte? + timing.timeout()),
+            KeyState::Lingers => Some(lingers_until),
+            KeyState::Up | KeyState::Down | KeyState::Suppressed => None,
         }
     }
 }

@@ -13,7 +13,7 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 pub use self::explored::Explored;
-use self::top_view::{MapPoint, Row, TopView};
+use self::top_view::{MapPoint, MapRow, TopView};
 use super::canvas::{Canvas, draw_characters};
 use super::glyphs::color_at;
 use super::{GlyphSet, blocks};
@@ -127,7 +127,7 @@ impl Minimap<'_> {
         // The width of a pixel in cells of the map.
         let pixel = 1.0 / window.scale.x;
         let top_view = TopView::new(self.world, self.camera, seen, pixel);
-        let picture = Picture { top_view, window };
+        let picture = MapPicture { top_view, window };
         match self.glyphs {
             GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
                 self.draw_mosaics(&picture, area, canvas);
@@ -176,16 +176,16 @@ impl Minimap<'_> {
     /// The number of the map's cells that an area of this size shows.
     #[cfg(feature = "terminal")]
     pub(crate) fn extent_within(&self, room: Size) -> DVec2 {
-        let Window { size, scale, .. } = self.window(Rect::from(room));
+        let MapViewport { size, scale, .. } = self.window(Rect::from(room));
         size / scale
     }
 
-    fn window(&self, area: Rect) -> Window {
+    fn window(&self, area: Rect) -> MapViewport {
         let center = self.camera.position() + self.offset;
-        Window::new(area, self.glyphs, self.world, center, self.zoom)
+        MapViewport::new(area, self.glyphs, self.world, center, self.zoom)
     }
 
-    fn draw_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+    fn draw_mosaics(&self, picture: &MapPicture, area: Rect, canvas: &mut impl Canvas) {
         let color = |point: MapPoint| match self.depth {
             ColorDepth::Indexed16 => palette::of_256(point.look().index_of_16),
             _ => point.color(),
@@ -200,7 +200,7 @@ impl Minimap<'_> {
     }
 
     /// Draws the map without colour. Things are letters.
-    fn draw_lit_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+    fn draw_lit_mosaics(&self, picture: &MapPicture, area: Rect, canvas: &mut impl Canvas) {
         let [columns, rows] = self.glyphs.pixels_per_cell();
         draw_characters(area, canvas, |column, row| {
             let dots = || {
@@ -252,7 +252,7 @@ const SCALES: [f64; 10] = [0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0]
 
 /// The part of the map that an area shows.
 #[derive(Clone, Copy, Debug)]
-struct Window {
+struct MapViewport {
     /// The width and the height of the area in pixels.
     size: DVec2,
     /// The number of pixels per cell of the map.
@@ -264,7 +264,7 @@ struct Window {
     pixels_per_cell: [u32; 2],
 }
 
-impl Window {
+impl MapViewport {
     /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
     fn new(area: Rect, glyphs: GlyphSet, world: &World, center: DVec2, zoom: i32) -> Self {
         let pixels_per_cell = glyphs.pixels_per_cell();
@@ -338,12 +338,12 @@ fn scale(world: &World, pixels: DVec2, glyphs: GlyphSet, zoom: i32) -> DVec2 {
 
 /// The pixels of a map and the part of it that is shown. A row of pixels finds its row of tiles and things once, not
 /// for each pixel.
-struct Picture<'a> {
+struct MapPicture<'a> {
     top_view: TopView<'a>,
-    window: Window,
+    window: MapViewport,
 }
 
-impl<'a> Picture<'a> {
+impl<'a> MapPicture<'a> {
     /// The pixels in row `y`.
     fn row(&self, y: u32) -> PixelRow<'_, 'a> {
         let y = self.window.y_of(y);
@@ -358,11 +358,11 @@ impl<'a> Picture<'a> {
 
 /// A row of pixels of a map.
 struct PixelRow<'p, 'a> {
-    picture: &'p Picture<'a>,
+    picture: &'p MapPicture<'a>,
     /// The position of the middle of the pixels.
     y: f64,
     /// The points in the middle of the pixels.
-    middle: Row<'p>,
+    middle: MapRow<'p>,
 }
 
 impl PixelRow<'_, '_> {

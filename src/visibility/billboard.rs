@@ -6,7 +6,7 @@ use glam::DVec2;
 
 #[cfg(feature = "terminal")]
 use super::{Column, Projection};
-use super::{Faded, Scene};
+use super::{Faded, FrameContext};
 use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
@@ -89,7 +89,7 @@ enum Pose {
 
 impl Billboard {
     /// The billboard of `thing` in an image; `None` if it is outside the picture.
-    pub(crate) fn of_thing(scene: Scene<'_>, image: MirrorTransform, thing: Thing) -> Option<Self> {
+    pub(crate) fn of_thing(scene: FrameContext<'_>, image: MirrorTransform, thing: Thing) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
         let base = sprite.base(world.room_in(thing.cell));
@@ -107,7 +107,7 @@ impl Billboard {
 
     /// The billboards, in an image, of the figures that are at least partly inside the picture.
     pub(crate) fn of_figures(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         image: MirrorTransform,
     ) -> impl Iterator<Item = Self> {
         let figures = (1..).zip(scene.world.figures());
@@ -117,7 +117,7 @@ impl Billboard {
     /// The billboard of `figure` in an image. `None` if it is outside the picture, fully transparent, or has an
     /// unknown sprite.
     fn of_figure(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         image: MirrorTransform,
         number: u32,
         figure: &Figure,
@@ -135,7 +135,7 @@ impl Billboard {
 
     /// The billboard of the player in an image, drawn as `figure`.
     pub(crate) fn of_player(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         image: MirrorTransform,
         figure: &Sprite,
     ) -> Option<Self> {
@@ -148,14 +148,14 @@ impl Billboard {
 
     /// The billboard of `sprite` with its middle at a point on the map, and its base at a height.
     fn new(
-        scene: Scene<'_>,
+        scene: FrameContext<'_>,
         image: MirrorTransform,
         sprite: &Sprite,
         pose: Pose,
         (center, base): (DVec2, f64),
         light: Light,
     ) -> Option<Self> {
-        let Scene { world, projection, plan, .. } = scene;
+        let FrameContext { world, projection, plan, .. } = scene;
         let place = projection.place(image.in_image(center));
         let depth = place.depth;
         if !(NEAREST..f64::INFINITY).contains(&depth) {
@@ -207,7 +207,7 @@ impl Billboard {
     /// The mip level from which it is drawn. A billboard of the player takes it from the sprite `player`.
     pub(crate) fn level<'a>(
         &self,
-        scene: Scene<'a>,
+        scene: FrameContext<'a>,
         player: Option<&'a Sprite>,
     ) -> Option<&'a MipLevel> {
         let sprite = match self.sprite {
@@ -231,7 +231,7 @@ impl Billboard {
     }
 
     /// The next time at which a billboard in view changes its appearance; `None` for never.
-    pub(crate) fn next_change(billboards: &[Self], scene: Scene<'_>) -> Option<f64> {
+    pub(crate) fn next_change(billboards: &[Self], scene: FrameContext<'_>) -> Option<f64> {
         let drawn =
             billboards.iter().filter(|it| it.is_drawn && it.is_animated).filter_map(|it| it.sprite);
         let changes = drawn.filter_map(|id| scene.world.sprite(id).next_change(scene.seconds));

@@ -26,7 +26,7 @@ pub(crate) struct DrawList {
     pub(crate) images: Vec<MirrorTransform>,
     /// The backdrops below and above the horizon, behind all other items, if they are the same in all columns.
     pub(crate) backdrops: [Option<Backdrop>; 2],
-    pub(crate) planes: Vec<Plane>,
+    pub(crate) planes: Vec<VisiblePlane>,
     /// The rows of each column of the planes.
     pub(crate) plane_rows: Vec<Rows>,
     /// The opaque faces.
@@ -37,7 +37,7 @@ pub(crate) struct DrawList {
     /// The items that rays passed, from near to far in each column.
     pub(crate) passed: Vec<Layer>,
     /// The columns of the ray parts in `passed`.
-    pub(crate) stretches: Vec<Stretch>,
+    pub(crate) stretches: Vec<RaySegment>,
     /// The items in front of all planes and opaque faces, in the order of painting.
     pub(crate) layers: Vec<Layer>,
     pub(crate) billboards: Vec<Billboard>,
@@ -56,7 +56,7 @@ pub(crate) enum Backdrop {
 
 /// A floor, a ceiling or a sky in neighbouring columns.
 #[derive(Clone, Debug)]
-pub(crate) struct Plane {
+pub(crate) struct VisiblePlane {
     pub(crate) columns: Range<u32>,
     /// The index of the rows of the first column. The others follow.
     pub(crate) first: usize,
@@ -98,7 +98,7 @@ pub(crate) struct RayPart {
 
 /// The part of a ray in one sector: the rows that no nearer surface covers, and the distances of its ends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stretch {
+pub(crate) struct RaySegment {
     pub(crate) rows: Rows,
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -176,11 +176,11 @@ impl DrawList {
             self.plane_rows.truncate(first);
             return;
         }
-        self.planes.push(Plane { columns: columns.clone(), first, kind, height, image });
+        self.planes.push(VisiblePlane { columns: columns.clone(), first, kind, height, image });
     }
 
     /// The first column of `plane`, and its rows from that column on.
-    pub(crate) fn rows_of_plane(&self, plane: &Plane) -> (usize, &[Rows]) {
+    pub(crate) fn rows_of_plane(&self, plane: &VisiblePlane) -> (usize, &[Rows]) {
         (plane.columns.start as usize, &self.plane_rows[plane.first..][..plane.columns.len()])
     }
 
@@ -201,7 +201,7 @@ impl DrawList {
 
     /// Returns true if the sky may be in view.
     pub(crate) fn shows_sky(&self) -> bool {
-        let is_of_sky = |plane: &Plane| match plane.kind {
+        let is_of_sky = |plane: &VisiblePlane| match plane.kind {
             PlaneKind::Ceiling(sector) => {
                 let surface = self.sectors.even_surface(sector, PlaneSide::Ceiling);
                 surface.is_none_or(|surface| surface.covering.is_none())

@@ -19,7 +19,7 @@ use super::Projection;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows};
 use super::fan::Border;
 use super::sectors::{Sector, SectorId, TileSectors};
-use super::walk::{ColumnMemory, Group, Visit, Walk, texture_coordinate_at};
+use super::walk::{ColumnMemory, BorderGroup, Visit, SectorWalk, texture_coordinate_at};
 use crate::world::TileKind;
 
 /// The height in the picture of a face on the grid, as a linear function of the column.
@@ -37,7 +37,7 @@ pub(crate) struct FaceEdges {
 
 /// The border between two walls that may share a column of pixels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Joint {
+pub(crate) struct WallBorder {
     /// The position, in columns from the left edge of the picture.
     place: f64,
 }
@@ -115,7 +115,7 @@ impl FaceEdges {
     }
 }
 
-impl Walk<'_> {
+impl SectorWalk<'_> {
     /// Returns true if faces are blended over the surfaces behind their edges.
     pub(crate) fn blends(&self) -> bool {
         self.scene.plan.filter == super::Filter::Area
@@ -136,7 +136,7 @@ impl Walk<'_> {
         sector: &Sector,
         left: &Border,
         right: &Border,
-    ) -> Option<Joint> {
+    ) -> Option<WallBorder> {
         let tile = |border: &Border| border.into.map(|(_, tile)| tile);
         let is_one_wall = left.face.is_in_line_with(&right.face) && tile(left) == tile(right);
         if is_one_wall || !self.is_wall(sector, left) || !self.is_wall(sector, right) {
@@ -154,7 +154,7 @@ impl Walk<'_> {
             self.end_of_wall(visit, right, right.face.left_end(), &between)
         };
         let place = end?.max(between.start).min(between.end);
-        Some(Joint { place })
+        Some(WallBorder { place })
     }
 
     /// Returns true if a wall that hides everything is behind `border`.
@@ -200,7 +200,7 @@ impl Walk<'_> {
                 let [column, row] = visit.image.cell_to_map(place);
                 grid.tile(column, row)
             });
-            let is_clear = in_front.is_none_or(|tile| self.fan.sectors.goes_on(visit.sector, tile));
+            let is_clear = in_front.is_none_or(|tile| self.fan.sectors.continues(visit.sector, tile));
             if beside != Some(tile) || !is_clear {
                 break;
             }
@@ -267,7 +267,7 @@ impl Walk<'_> {
         let projection = self.scene.projection;
         let ground = projection.first_row_of_ground();
         for (index, joint) in self.memory.joints.iter().enumerate() {
-            let Some(x) = joint.and_then(Joint::column) else { continue };
+            let Some(x) = joint.and_then(WallBorder::column) else { continue };
             let ColumnMemory { bottoms, tops, .. } = &mut self.memory.columns;
             let (bottom, top) = (&mut bottoms[x as usize], &mut tops[x as usize]);
             for border in &self.memory.borders[index..=index + 1] {
@@ -289,7 +289,7 @@ impl Walk<'_> {
     pub(crate) fn find_outer_limits(
         &mut self,
         sector: &Sector,
-        group: &Group,
+        group: &BorderGroup,
         top: f64,
         bottom: f64,
     ) {
@@ -317,13 +317,13 @@ impl Walk<'_> {
     pub(crate) fn show_blended_face(
         &mut self,
         visit: &Visit,
-        group: &Group,
+        group: &BorderGroup,
         material: Material,
         (bottom, top): (f64, f64),
     ) {
         let Range { start, end } = group.columns;
         let shared = |index: Option<usize>| {
-            self.memory.joints.get(index?).copied().flatten().and_then(Joint::column)
+            self.memory.joints.get(index?).copied().flatten().and_then(WallBorder::column)
         };
         let before = shared(group.borders.start.checked_sub(1));
         let after = shared(Some(group.borders.end - 1));
@@ -371,7 +371,7 @@ impl Walk<'_> {
     pub(crate) fn show_shared_columns(&mut self, visit: &Visit, sector: &Sector) {
         let mut index = 0;
         while index < self.memory.joints.len() {
-            let column = |index: usize| self.memory.joints.get(index)?.and_then(Joint::column);
+            let column = |index: usize| self.memory.joints.get(index)?.and_then(WallBorder::column);
             let Some(x) = column(index) else {
                 index += 1;
                 continue;
@@ -406,7 +406,7 @@ impl Walk<'_> {
         let Border { columns, face, into } = self.memory.borders[border].clone();
         let Some((_, id)) = into else { return };
         let is_own = columns.contains(&x);
-        let group = &Group { borders: border..border + 1, columns, face };
+        let group = &BorderGroup { borders: border..border + 1, columns, face };
         let tile = &self.scene.world.tiles()[usize::from(id.0)];
         let paint = self.paint_of_rock(visit, group, tile);
         let edges = FaceEdges::new(self.scene.projection, &face);
@@ -433,7 +433,7 @@ impl Walk<'_> {
     }
 }
 
-impl Joint {
+impl WallBorder {
     /// The column that both walls share; `None` if the joint is on the border of a pixel.
     fn column(self) -> Option<u32> {
         let column = self.place as u32;

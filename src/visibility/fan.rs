@@ -19,7 +19,7 @@ use glam::DVec2;
 
 use super::face::CellFace;
 use super::sectors::{SectorId, Sectors};
-use super::{Projection, Scene, WalkStats};
+use super::{Projection, FrameContext, WalkStats};
 use crate::cast::{
     Caster, CommonOrder, Course, DynCaster, MajorAxisTraversal, MirrorTransform, Order, Ray, Side,
 };
@@ -36,17 +36,17 @@ pub(crate) struct Border {
 
 /// The start of rays in a sector.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View<'a> {
+pub(crate) struct RayStarts<'a> {
     pub(crate) sector: SectorId,
     pub(crate) image: MirrorTransform,
-    pub(crate) entries: &'a [Entry],
+    pub(crate) entries: &'a [SectorEntry],
     /// `true` if the rays begin at the camera.
     pub(crate) is_at_camera: bool,
 }
 
 /// The cell in which rays enter a sector: the ray of `column`, and the rays to its right up to the next entry.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry {
+pub(crate) struct SectorEntry {
     pub(crate) column: u32,
     /// The column and the row of the cell along the straight rays.
     pub(crate) place: [i64; 2],
@@ -62,7 +62,7 @@ pub(crate) struct Directions {
 
 /// State shared by the rays of a frame.
 pub(crate) struct Fan<'a> {
-    pub(crate) scene: Scene<'a>,
+    pub(crate) scene: FrameContext<'a>,
     pub(crate) sectors: &'a Sectors,
     pub(crate) directions: &'a Directions,
     /// The caster of the rays from the camera; `None` for the exact one.
@@ -73,10 +73,10 @@ pub(crate) struct Fan<'a> {
 }
 
 /// Rays whose neighbours to the left are not known yet, in memory that is reused from frame to frame.
-pub(crate) type FanMemory = Vec<(u32, Hit)>;
+pub(crate) type FanMemory = Vec<(u32, FaceHit)>;
 
 /// The face through which a ray leaves a sector, and the cell behind the face.
-type Hit = (CellFace, Option<(Cell, TileId)>);
+type FaceHit = (CellFace, Option<(Cell, TileId)>);
 
 /// The distance, in columns, within which a corner counts as on the centre of a pixel.
 const EPSILON: f64 = 1e-6;
@@ -112,7 +112,7 @@ impl Directions {
 
 impl<'a> Fan<'a> {
     pub(crate) fn new(
-        scene: Scene<'a>,
+        scene: FrameContext<'a>,
         sectors: &'a Sectors,
         directions: &'a Directions,
         caster: Option<&'a DynCaster>,
@@ -127,7 +127,7 @@ impl<'a> Fan<'a> {
     /// to right. `columns` must not be empty.
     pub(crate) fn find(
         &self,
-        view: View<'_>,
+        view: RayStarts<'_>,
         columns: Range<u32>,
         memory: &mut FanMemory,
         borders: &mut Vec<Border>,
@@ -150,16 +150,16 @@ impl<'a> Fan<'a> {
             memory.push((last, cast(last)));
         }
         while let Some(&(column, right)) = memory.last() {
-            let gap = Gap { projection: self.scene.projection, first, width: column - first };
+            let gap = RayPair { projection: self.scene.projection, first, width: column - first };
             let next = match gap.step(self, [&left.0, &right.0]) {
-                Step::Split(split) => {
+                FanStep::Split(split) => {
                     extend(borders, first + 1..first + split, left);
                     extend(borders, first + split..column + 1, right);
                     (first, left) = (column, right);
                     memory.pop();
                     continue;
                 }
-                Step::Cast(next) => first + next,
+                FanStep::Cast(next) => first + next,
             };
             memory.push((next, cast(next)));
         }
@@ -167,7 +167,7 @@ impl<'a> Fan<'a> {
 
     /// The grid in which exactly the cells outside the sector of `view` are solid; `None` if the world has no
     /// such grid.
-    fn grid_of(&self, view: View<'_>) -> Option<&'a Grid> {
+    fn grid_of(&self, view: RayStarts<'_>) -> Option<&'a Grid> {
         let world = self.scene.world;
         if !view.is_at_camera {
             return None;
@@ -179,12 +179,12 @@ impl<'a> Fan<'a> {
         };
         let tiles = (0..world.tiles().len()).map(|tile| TileId(tile as u8));
         let mut tiles =
-            tiles.map(|tile| self.sectors.goes_on(view.sector, tile) == is_of_level(tile));
+            tiles.map(|tile| self.sectors.continues(view.sector, tile) == is_of_level(tile));
         tiles.all(|is_alike| is_alike).then_some(grid)
     }
 
     /// The hit of the ray of `column`.
-    fn cast(&self, view: View<'_>, grid: Option<&Grid>, column: u32) -> Hit {
+    fn cast(&self, view: RayStarts<'_>, grid: Option<&Grid>, column: u32) -> FaceHit {
         let direction = self.directions.of(column);
         let hit = grid.and_then(|grid| self.cast_through(grid, direction));
         hit.unwrap_or_else(|| self.walk(view, column, direction))
@@ -192,7 +192,7 @@ impl<'a> Fan<'a> {
 
     /// The hit of the ray from the camera along `direction`: the first solid cell of `grid` that it enters.
     #[inline]
-    fn cast_through(&self, grid: &Grid, direction: DVec2) -> Option<Hit> {
+    fn cast_through(&self, grid: &Grid, direction: DVec2) -> Option<FaceHit> {
         let ray = Ray::of_camera(self.scene.projection.origin(), direction);
         let (cell, side) = match self.caster {
             None => {
@@ -227,7 +227,7 @@ impl<'a> Fan<'a> {
     }
 
     /// The hit of the ray of `column`, found by following it from cell to cell.
-    fn walk(&self, view: View<'_>, column: u32, direction: DVec2) -> Hit {
+    fn walk(&self, view: RayStarts<'_>, column: u32, direction: DVec2) -> FaceHit {
         let grid = self.scene.world.grid();
         let mut order = self.order.along(direction);
         let entry = view.entries.iter().rfind(|entry| entry.column <= column);
@@ -240,7 +240,7 @@ impl<'a> Fan<'a> {
             let side = order.next(x, y);
             let Some(crossed) = course.cross(grid, side) else { continue };
             if let Some((_, tile)) = crossed.into
-                && self.sectors.goes_on(view.sector, tile)
+                && self.sectors.continues(view.sector, tile)
             {
                 continue;
             }
@@ -254,7 +254,7 @@ impl<'a> Fan<'a> {
 /// Adds `columns` whose rays leave through the face of a hit. They extend the last border if it has the same
 /// face.
 #[inline]
-fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): Hit) {
+fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): FaceHit) {
     if columns.is_empty() {
         return;
     }
@@ -265,7 +265,7 @@ fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): Hit) {
 }
 
 /// Two rays with known hits, and the columns from the first to the second.
-struct Gap<'a> {
+struct RayPair<'a> {
     projection: &'a Projection,
     first: u32,
     /// The number of columns from the first ray to the second.
@@ -273,21 +273,21 @@ struct Gap<'a> {
 }
 
 /// The next step for the rays in a gap. Columns are counted from the column of the first ray.
-enum Step {
+enum FanStep {
     /// The rays before this column hit the first face, and the others hit the second one.
     Split(u32),
     /// The ray of this column must be cast.
     Cast(u32),
 }
 
-impl Gap<'_> {
+impl RayPair<'_> {
     /// The next step for the rays between the two: the split if it follows from their hits, else the ray to
     /// cast.
-    fn step(&self, fan: &Fan<'_>, faces: [&CellFace; 2]) -> Step {
+    fn step(&self, fan: &Fan<'_>, faces: [&CellFace; 2]) -> FanStep {
         let [left, right] = faces;
         let (width, last) = (self.width, self.width - 1);
         if left == right || width == 1 {
-            return Step::Split(width);
+            return FanStep::Split(width);
         }
         // The face on the left ends before this column.
         let end_of_left = self.column_of(left.right_end()).unwrap_or(f64::INFINITY);
@@ -299,18 +299,18 @@ impl Gap<'_> {
                 && is_clear(beyond_left)
                 && self.has_no_room_for_a_cell(fan, faces);
             return if are_known {
-                Step::Split(beyond_left)
+                FanStep::Split(beyond_left)
             } else {
-                Step::Cast(beyond_left.min(last))
+                FanStep::Cast(beyond_left.min(last))
             };
         }
         if beyond_left == 0 {
-            return Step::Cast(1);
+            return FanStep::Cast(1);
         }
         // The face on the right, or a third face, is in front.
         let start_of_right = self.column_of(right.left_end()).unwrap_or(0.0);
         let first_of_right = self.first_column_from(start_of_right);
-        Step::Cast(if first_of_right == 0 {
+        FanStep::Cast(if first_of_right == 0 {
             width / 2
         } else {
             (first_of_right - 1).clamp(1, last)

@@ -15,11 +15,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::draw_list::{BillboardPart, DrawList, Layer, RayPart, Stretch};
+use super::draw_list::{BillboardPart, DrawList, Layer, RayPart, RaySegment};
 use super::face::Rows;
 use super::sectors::Sector;
 use super::visible_cells::VisibleCells;
-use super::{Billboard, Scene};
+use super::{Billboard, FrameContext};
 use crate::world::World;
 use crate::world::sprite::builtin;
 
@@ -64,7 +64,7 @@ impl LayerMemory {
 
 /// Makes the layers of `list` from the items that rays passed. Returns the number of things and figures
 /// considered.
-pub(crate) fn fill(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawList) -> u64 {
+pub(crate) fn fill(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &mut DrawList) -> u64 {
     let has_parts = list.passed.iter().any(|layer| matches!(layer, Layer::Part(_)));
     let considered = if has_parts { find_billboards(scene, memory, list) } else { 0 };
     let mut passed = std::mem::take(&mut list.passed);
@@ -79,7 +79,7 @@ pub(crate) fn fill(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawLi
 }
 
 /// Finds the billboards of all images. Returns the number of things and figures considered.
-fn find_billboards(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawList) -> u64 {
+fn find_billboards(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &mut DrawList) -> u64 {
     let world = scene.world;
     if list.player.is_none() && world.has_mirrors() {
         list.player = builtin::named(builtin::PLAYER);
@@ -108,7 +108,7 @@ fn find_billboards(scene: Scene<'_>, memory: &mut LayerMemory, list: &mut DrawLi
 }
 
 /// Finds the cells in view in each image.
-fn look(scene: Scene<'_>, memory: &mut LayerMemory, list: &DrawList) {
+fn look(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &DrawList) {
     let world = scene.world;
     let images = list.images.len();
     memory.make_images(world, images);
@@ -134,7 +134,7 @@ fn look(scene: Scene<'_>, memory: &mut LayerMemory, list: &DrawList) {
 /// Calls `follow` with the index of the image and each edge of the area on the map that a ray part covers. It
 /// skips edges whose ends are not finite. In the direct image, it also skips edges at which a part begins,
 /// because another part ends there.
-fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize, [DVec2; 2])) {
+fn for_each_edge(scene: FrameContext<'_>, list: &DrawList, mut follow: impl FnMut(usize, [DVec2; 2])) {
     let origin = scene.projection.origin();
     for layer in &list.passed {
         let Layer::Part(part) = layer else { continue };
@@ -164,7 +164,7 @@ fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize
 }
 
 /// Returns true if the world has a figure at the camera, which mirrors show instead of the built-in player.
-fn has_own_figure(scene: Scene<'_>) -> bool {
+fn has_own_figure(scene: FrameContext<'_>) -> bool {
     let origin = scene.projection.origin();
     scene.world.figures().iter().any(|figure| figure.position == origin)
 }
@@ -174,7 +174,7 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
 }
 
 /// Adds the layers of the billboards in a ray part, from far to near.
-fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawList) {
+fn cut(scene: FrameContext<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawList) {
     let index = list.index_of_image(part.image);
     let of_image = memory.of_image[index].clone();
     if of_image.is_empty() {
@@ -197,7 +197,7 @@ fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawLi
         let first_rows = list.billboard_rows.len();
         let of_columns = &stretches[(columns.start - part.columns.start) as usize..];
         list.billboard_rows.extend(of_columns[..columns.len()].iter().map(|stretch| {
-            let &Stretch { rows, from, to } = stretch;
+            let &RaySegment { rows, from, to } = stretch;
             let is_in_it = from <= billboard.depth && billboard.depth < to;
             let rows = Rows { start: rows.start.max(limits.start), end: rows.end.min(limits.end) };
             if is_in_it { rows } else { Rows::NONE }
@@ -213,7 +213,7 @@ fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawLi
 }
 
 /// The rows of `billboard` between the heights of a ray part.
-fn limits(scene: Scene<'_>, part: &RayPart, sector: &Sector, billboard: &Billboard) -> Rows {
+fn limits(scene: FrameContext<'_>, part: &RayPart, sector: &Sector, billboard: &Billboard) -> Rows {
     let row_of = |height| scene.projection.row_of_height(height, billboard.depth);
     let top = if sector.top < f64::INFINITY { row_of(sector.top) } else { 0 };
     let bottom = row_of(part.top_below.unwrap_or(sector.bottom));

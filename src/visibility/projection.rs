@@ -40,7 +40,7 @@ pub(crate) struct Rise(f64);
 
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct ProjectedPoint {
     /// The distance from the camera plane, in cells; at most 0 for a point behind it.
     pub depth: f64,
     /// The number of columns of pixels from the left edge.
@@ -183,12 +183,12 @@ impl Projection {
     }
 
     /// The position in the picture of a point on the map.
-    pub fn place(&self, point: DVec2) -> Place {
+    pub fn place(&self, point: DVec2) -> ProjectedPoint {
         let from_eye = point - self.origin;
         let depth = from_eye.dot(self.direction);
         let beside = from_eye.dot(self.direction.perp());
         let column = f64::from(self.width) / 2.0 + self.focal_length_across * beside / depth;
-        Place { depth, column }
+        ProjectedPoint { depth, column }
     }
 
     /// The number of columns of pixels that an object `width` cells wide covers at `depth`.

@@ -9,7 +9,7 @@
 //! a ceiling at that height, so a level world that is half roofed is a single sector. If the eye is above that
 //! height, the gap has no top.
 
-use super::Scene;
+use super::FrameContext;
 use crate::world::sprite::builtin;
 use crate::world::{Camera, Ceiling, Covering, Gap, Heights, Light, Tile, TileId, TileKind, World};
 
@@ -30,9 +30,9 @@ pub(crate) struct Sector {
     pub(crate) bottom: f64,
     /// The height of the top; infinite if there is none.
     pub(crate) top: f64,
-    pub(crate) holds: Holds,
+    pub(crate) holds: GapObject,
     /// The floor and the ceiling of the first tile in the sector.
-    surfaces: [Surface; 2],
+    surfaces: [PlaneSurface; 2],
     /// Whether the floors, and whether the ceilings, may differ between cells.
     vary: [bool; 2],
 }
@@ -47,7 +47,7 @@ pub(crate) struct TileSectors {
 
 /// The object that stands at the bottom of a gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Holds {
+pub(crate) enum GapObject {
     Nothing,
     /// The leaf of a door, or a shape. It does not fill its cell.
     Standing,
@@ -57,7 +57,7 @@ pub(crate) enum Holds {
 
 /// The floor or the ceiling of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surface {
+pub(crate) struct PlaneSurface {
     /// The covering; `None` for the sky.
     pub(crate) covering: Option<Covering>,
     pub(crate) light: Light,
@@ -82,23 +82,23 @@ impl SectorId {
 
 impl Sectors {
     /// Finds the sectors of the tiles of `scene`.
-    pub(crate) fn begin(&mut self, scene: Scene<'_>) {
+    pub(crate) fn begin(&mut self, scene: FrameContext<'_>) {
         let world = scene.world;
         self.list.clear();
         self.of_tiles.clear();
         // No tile has more than two gaps.
         self.list.reserve(2 + 2 * world.tiles().len());
         let top_of_sky = top_of_sky(scene);
-        let ground = Surface {
+        let ground = PlaneSurface {
             covering: Some(world.floor()),
             light: world.ground().light.unwrap_or(Light::FULL),
         };
-        let sky = Surface { covering: None, light: Light::FULL };
+        let sky = PlaneSurface { covering: None, light: Light::FULL };
         for bottom in [0.0, BOTTOMLESS] {
             self.list.push(Sector {
                 bottom,
                 top: top_of_sky,
-                holds: Holds::Nothing,
+                holds: GapObject::Nothing,
                 surfaces: [ground, sky],
                 vary: [false; 2],
             });
@@ -107,8 +107,8 @@ impl Sectors {
         let tiles = (0..).map(TileId).zip(world.tiles());
         self.of_tiles.extend(tiles.map(|(id, tile)| {
             let mut gaps = tile.gaps().enumerate().map(|(index, gap)| {
-                let surfaces = Surface::of_gap(tile, gap, index > 0);
-                let holds = Holds::new(id, tile, gap);
+                let surfaces = PlaneSurface::of_gap(tile, gap, index > 0);
+                let holds = GapObject::new(id, tile, gap);
                 let gap = Gap { top: gap.top.min(top_of_sky), ..gap };
                 add(&mut self.list, gap, holds, surfaces, are_lamplit)
             });
@@ -124,7 +124,7 @@ impl Sectors {
     }
 
     /// The object in the lower gap of the cells of `tile`.
-    pub(crate) fn held_by(&self, tile: TileId) -> Holds {
+    pub(crate) fn held_by(&self, tile: TileId) -> GapObject {
         self.get(self.of(tile).lower).holds
     }
 
@@ -135,10 +135,10 @@ impl Sectors {
 
     /// Returns true if rays in `sector` continue into a cell of `tile` without meeting anything.
     #[inline]
-    pub(crate) fn goes_on(&self, sector: SectorId, tile: TileId) -> bool {
+    pub(crate) fn continues(&self, sector: SectorId, tile: TileId) -> bool {
         match sector {
             SectorId::SOLID => tile == TileId(0),
-            _ => self.of(tile).have(sector) && self.get(sector).holds != Holds::Standing,
+            _ => self.of(tile).have(sector) && self.get(sector).holds != GapObject::Standing,
         }
     }
 
@@ -160,7 +160,7 @@ impl Sectors {
     }
 
     /// The floor or the ceiling of `sector`, if it looks the same everywhere.
-    pub(crate) fn even_surface(&self, sector: SectorId, side: PlaneSide) -> Option<Surface> {
+    pub(crate) fn even_surface(&self, sector: SectorId, side: PlaneSide) -> Option<PlaneSurface> {
         let sector = self.get(sector);
         (!sector.vary[side as usize]).then_some(sector.surfaces[side as usize])
     }
@@ -172,7 +172,7 @@ impl Sectors {
         sector: SectorId,
         side: PlaneSide,
         id: TileId,
-    ) -> Surface {
+    ) -> PlaneSurface {
         let TileSectors { lower, upper } = self.of(id);
         let tile = &world.tiles()[usize::from(id.0)];
         let index = match sector {
@@ -183,7 +183,7 @@ impl Sectors {
         };
         let gap = tile.gaps().nth(index);
         gap.map_or(self.get(sector).surfaces[side as usize], |gap| {
-            Surface::of_gap(tile, gap, index > 0)[side as usize]
+            PlaneSurface::of_gap(tile, gap, index > 0)[side as usize]
         })
     }
 }
@@ -192,8 +192,8 @@ impl Sectors {
 fn add(
     list: &mut Vec<Sector>,
     gap: Gap,
-    holds: Holds,
-    surfaces: [Surface; 2],
+    holds: GapObject,
+    surfaces: [PlaneSurface; 2],
     are_lamplit: bool,
 ) -> SectorId {
     let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (gap.bottom, gap.top, holds);
@@ -213,8 +213,8 @@ fn add(
 }
 
 /// The height above which there is only sky; infinite if the eye is above it.
-fn top_of_sky(scene: Scene<'_>) -> f64 {
-    let Scene { world, projection, .. } = scene;
+fn top_of_sky(scene: FrameContext<'_>) -> f64 {
+    let FrameContext { world, projection, .. } = scene;
     let mut top = world.tiles().iter().map(Tile::top).fold(world.top_of_figures(), f64::max);
     if !world.things().is_empty() {
         top = top.max(world.limit_of_things());
@@ -245,7 +245,7 @@ impl Sector {
     }
 }
 
-impl Holds {
+impl GapObject {
     fn new(id: TileId, tile: &Tile, gap: Gap) -> Self {
         match tile.kind {
             _ if gap.bottom != tile.heights.floor() => Self::Nothing,
@@ -258,7 +258,7 @@ impl Holds {
     }
 }
 
-impl Surface {
+impl PlaneSurface {
     /// The floor and the ceiling of a gap of `tile`, which may be above its roof.
     fn of_gap(tile: &Tile, gap: Gap, is_roof: bool) -> [Self; 2] {
         let light = tile.light.unwrap_or(Light::FULL);

@@ -23,11 +23,11 @@ pub enum Pass {
 
 /// The cost of a frame or of a band, if counts are kept.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Stats {
+pub(crate) struct StatsCounter {
     counts: Option<FrameStats>,
 }
 
-impl Stats {
+impl StatsCounter {
     /// Stats that are kept, starting at zero.
     pub(crate) fn kept() -> Self {
         Self { counts: Some(FrameStats::default()) }

@@ -26,19 +26,19 @@ pub(crate) struct VisibleCells {
     /// The number of rows of the map.
     row_count: u32,
     first_row: u32,
-    intervals: Vec<Interval>,
+    intervals: Vec<ColumnInterval>,
     /// `true` if all things count as visible, because they are so few that a lookup by cell takes longer.
     shows_all: bool,
 }
 
 /// The visible columns of a row of the map, within the margin north and south of the row's middle.
 #[derive(Clone, Copy, Debug)]
-struct Interval {
+struct ColumnInterval {
     low: f64,
     high: f64,
 }
 
-impl Interval {
+impl ColumnInterval {
     const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
 
     fn include(&mut self, x: f64) {
@@ -62,7 +62,7 @@ impl VisibleCells {
         self.first_row = rows.start;
         self.intervals.clear();
         self.make_room(world);
-        self.intervals.resize(rows.len(), Interval::NONE);
+        self.intervals.resize(rows.len(), ColumnInterval::NONE);
     }
 
     /// Reserves memory for any view of `world`.
@@ -74,7 +74,7 @@ impl VisibleCells {
     /// The things that may be at least partly in view, row by row.
     pub(crate) fn things<'a>(&self, world: &'a World) -> impl Iterator<Item = &'a Thing> {
         let all: &[Thing] = if self.shows_all { world.things() } else { &[] };
-        let intervals: &[Interval] = if self.shows_all { &[] } else { &self.intervals };
+        let intervals: &[ColumnInterval] = if self.shows_all { &[] } else { &self.intervals };
         let width = world.grid().width();
         let rows = (self.first_row..).zip(intervals);
         let reached = rows

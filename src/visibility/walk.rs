@@ -17,13 +17,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, Stretch};
-use super::edges::Joint;
+use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, RaySegment};
+use super::edges::WallBorder;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
-use super::fan::{Border, Entry, Fan, FanMemory, View};
+use super::fan::{Border, SectorEntry, Fan, FanMemory, RayStarts};
 use super::projection::Rise;
-use super::sectors::{Holds, PlaneSide, Sector, SectorId, TileSectors};
-use super::{Projection, Scene, WalkStats};
+use super::sectors::{GapObject, PlaneSide, Sector, SectorId, TileSectors};
+use super::{Projection, FrameContext, WalkStats};
 use crate::cast::{
     Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
     is_from_left,
@@ -39,17 +39,17 @@ pub(crate) struct WalkMemory {
     /// The remaining visits, with their clips and entries.
     visits: Vec<Visit>,
     clips: Vec<Clip>,
-    entries: Vec<Entry>,
+    entries: Vec<SectorEntry>,
     fan: FanMemory,
     pub(crate) borders: Vec<Border>,
     /// The positions at which neighbouring borders share a column, for the area filter.
-    pub(crate) joints: Vec<Option<Joint>>,
+    pub(crate) joints: Vec<Option<WallBorder>>,
     /// The passage of each ray of a visit through the cell of an object.
     passages: Vec<Passage>,
     /// Values of the current visit, by column.
     pub(crate) columns: ColumnMemory,
     /// The next visits: in the lower gap, in the upper gap, and in a mirror.
-    next: [Next; 3],
+    next: [PendingVisit; 3],
 }
 
 /// A sector, and the columns whose rays enter it.
@@ -95,14 +95,14 @@ pub(crate) struct ColumnMemory {
 
 /// An incomplete visit, which the next face may extend.
 #[derive(Clone, Debug, Default)]
-struct Next {
+struct PendingVisit {
     visit: Option<(Visit, CellFace)>,
     rows: Vec<Rows>,
-    entries: Vec<Entry>,
+    entries: Vec<SectorEntry>,
 }
 
 /// Neighbouring borders that look alike.
-pub(crate) struct Group {
+pub(crate) struct BorderGroup {
     /// The indices of the borders.
     pub(crate) borders: Range<usize>,
     pub(crate) columns: Range<u32>,
@@ -112,7 +112,7 @@ pub(crate) struct Group {
 
 /// The kind of a next visit.
 #[derive(Clone, Copy)]
-enum Slot {
+enum VisitKind {
     Lower,
     Upper,
     Mirror,
@@ -170,7 +170,7 @@ impl WalkMemory {
 
 /// Walks from the camera of `scene` to everything in view, and adds it to `list`, whose sectors must be known.
 pub(crate) fn walk(
-    scene: Scene<'_>,
+    scene: FrameContext<'_>,
     caster: Option<&DynCaster>,
     memory: &mut WalkMemory,
     list: &mut DrawList,
@@ -183,7 +183,7 @@ pub(crate) fn walk(
         || !scene.world.figures().is_empty()
         || scene.world.has_mirrors();
     let stats = WalkStats::default();
-    let mut walk = Walk { scene, fan, has_things, memory, list, stats };
+    let mut walk = SectorWalk { scene, fan, has_things, memory, list, stats };
     walk.begin();
     walk.follow_all();
     let WalkStats { rays, cells, looks, .. } = walk.fan.counts.get();
@@ -193,8 +193,8 @@ pub(crate) fn walk(
     stats
 }
 
-pub(crate) struct Walk<'a> {
-    pub(crate) scene: Scene<'a>,
+pub(crate) struct SectorWalk<'a> {
+    pub(crate) scene: FrameContext<'a>,
     pub(crate) fan: Fan<'a>,
     /// `true` if billboards may show: things, figures, or the player in a mirror.
     has_things: bool,
@@ -203,11 +203,11 @@ pub(crate) struct Walk<'a> {
     stats: WalkStats,
 }
 
-impl Walk<'_> {
+impl SectorWalk<'_> {
     /// Stores the visits to the sector of the camera. If the camera is on a grid line or off the map, there is
     /// one visit for each range of columns whose directions have the same signs.
     fn begin(&mut self) {
-        let Scene { world, projection, .. } = self.scene;
+        let FrameContext { world, projection, .. } = self.scene;
         let (grid, origin) = (world.grid(), projection.origin());
         let edge = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let is_inside = origin.cmpgt(DVec2::ZERO).all() && origin.cmplt(edge).all();
@@ -228,7 +228,7 @@ impl Walk<'_> {
 
     /// Stores a visit to the sector of the camera.
     fn store_first(&mut self, columns: Range<u32>) {
-        let Scene { world, projection, .. } = self.scene;
+        let FrameContext { world, projection, .. } = self.scene;
         let ray = Ray::of_camera(projection.origin(), self.fan.directions.of(columns.start));
         let course = Course::new(world.grid(), &ray);
         let tile = course.cell(world.grid()).map(|(_, tile)| tile);
@@ -242,7 +242,7 @@ impl Walk<'_> {
             first_entry: entries.len(),
             columns: columns.clone(),
         });
-        entries.push(Entry { column: columns.start, place: course.place() });
+        entries.push(SectorEntry { column: columns.start, place: course.place() });
     }
 
     fn follow_all(&mut self) {
@@ -267,7 +267,7 @@ impl Walk<'_> {
             }
         }
         clips.truncate(visit.first_clip);
-        let view = View {
+        let view = RayStarts {
             sector: visit.sector,
             image: visit.image,
             entries: &entries[visit.first_entry..],
@@ -277,7 +277,7 @@ impl Walk<'_> {
         let first_place = view.entries[0].place;
         entries.truncate(visit.first_entry);
         let sector = self.fan.sectors.get(visit.sector);
-        if sector.holds == Holds::Standing {
+        if sector.holds == GapObject::Standing {
             self.meet_standing(visit, sector, first_place);
         }
         self.find_distances(visit.is_at_camera);
@@ -351,7 +351,7 @@ impl Walk<'_> {
         }
         let is_everything = visit.is_at_camera
             && range.len() == projection.columns()
-            && sector.holds != Holds::Standing;
+            && sector.holds != GapObject::Standing;
         if shows_floor && !(is_everything && self.show_behind(visit, PlaneSide::Floor)) {
             self.add_plane(visit, sector, &range, PlaneSide::Floor);
         }
@@ -439,7 +439,7 @@ impl Walk<'_> {
         self.list.stretches.extend(range.clone().map(|column| {
             let x = column as usize;
             let rows = Rows { start: starts[x], end: ends[x] };
-            Stretch { rows, from: from[x], to: t[x] }
+            RaySegment { rows, from: from[x], to: t[x] }
         }));
         let part =
             RayPart { columns: range, first, sector: visit.sector, top_below, image: visit.image };
@@ -457,7 +457,7 @@ impl Walk<'_> {
             let borders = &self.memory.borders;
             let is_other = |&index: &usize| !self.looks_like(&borders[first], &borders[index]);
             let end = (first + 1..borders.len()).find(is_other).unwrap_or(borders.len());
-            let group = &Group {
+            let group = &BorderGroup {
                 borders: first..end,
                 columns: borders[first].columns.start..borders[end - 1].columns.end,
                 face: borders[first].face,
@@ -468,7 +468,7 @@ impl Walk<'_> {
             }
             first = end;
         }
-        for slot in [Slot::Lower, Slot::Upper, Slot::Mirror] {
+        for slot in [VisitKind::Lower, VisitKind::Upper, VisitKind::Mirror] {
             self.store(slot);
         }
     }
@@ -477,7 +477,7 @@ impl Walk<'_> {
     fn looks_like(&self, one: &Border, other: &Border) -> bool {
         let walls = self.scene.plan.walls;
         let tile = |border: &Border| border.into.map(|(_, tile)| tile);
-        let stands = |id: TileId| self.fan.sectors.held_by(id) == Holds::Standing;
+        let stands = |id: TileId| self.fan.sectors.held_by(id) == GapObject::Standing;
         !(walls.faded || walls.jambs)
             && one.face.is_in_line_with(&other.face)
             && tile(one) == tile(other)
@@ -486,7 +486,7 @@ impl Walk<'_> {
 
     /// Shows the surfaces beyond the edge of the map: the side of the ground if the sector's floor is lower,
     /// the sky, and the ground below the horizon.
-    fn meet_edge(&mut self, visit: &Visit, sector: &Sector, group: &Group) {
+    fn meet_edge(&mut self, visit: &Visit, sector: &Sector, group: &BorderGroup) {
         let ground = self.fan.sectors.get(SectorId::BEYOND).bottom;
         let range = &group.columns;
         if ground > sector.bottom {
@@ -512,15 +512,15 @@ impl Walk<'_> {
 
     /// Shows the solid parts of the cells of the tile `id` behind `group`, and prepares the visits to their
     /// gaps.
-    fn meet(&mut self, visit: &Visit, sector: &Sector, group: &Group, id: TileId) {
+    fn meet(&mut self, visit: &Visit, sector: &Sector, group: &BorderGroup, id: TileId) {
         let tile = &self.scene.world.tiles()[usize::from(id.0)];
         let TileSectors { lower, upper } = self.fan.sectors.of(id);
         let gap = self.fan.sectors.get(lower);
         if gap.bottom > sector.bottom {
-            self.meet_rock(visit, sector, group, (tile, gap.bottom));
+            self.add_solid_part(visit, sector, group, (tile, gap.bottom));
         }
         if gap.overlaps(sector) {
-            self.open(visit, sector, group, (Slot::Lower, lower, tile));
+            self.open(visit, sector, group, (VisitKind::Lower, lower, tile));
         }
         let Some(upper) = upper else { return };
         let above = self.fan.sectors.get(upper);
@@ -530,13 +530,13 @@ impl Walk<'_> {
             self.show_face(visit, group, Material::Opaque(tile.lintel), (bottom, top));
         }
         if above.overlaps(sector) {
-            self.open(visit, sector, group, (Slot::Upper, upper, tile));
+            self.open(visit, sector, group, (VisitKind::Upper, upper, tile));
         }
     }
 
     /// Writes the rows of `group` between two heights to `tops` and `bottoms`. A height outside `sector` leaves
     /// all rows or none.
-    fn find_limits(&mut self, sector: &Sector, group: &Group, top: f64, bottom: f64) {
+    fn find_limits(&mut self, sector: &Sector, group: &BorderGroup, top: f64, bottom: f64) {
         let range = &group.columns;
         let indices = range.start as usize..range.end as usize;
         if sector.is_inside(top) {
@@ -559,11 +559,11 @@ impl Walk<'_> {
     }
 
     /// Shows the solid part of `tile` up to `top` behind `group`, as a face or as a mirror.
-    fn meet_rock(
+    fn add_solid_part(
         &mut self,
         visit: &Visit,
         sector: &Sector,
-        group: &Group,
+        group: &BorderGroup,
         (tile, top): (&Tile, f64),
     ) {
         self.find_limits(sector, group, top, f64::NEG_INFINITY);
@@ -579,7 +579,7 @@ impl Walk<'_> {
     }
 
     /// The paint of the sides of `tile`.
-    pub(crate) fn paint_of_rock(&self, visit: &Visit, group: &Group, tile: &Tile) -> Paint {
+    pub(crate) fn paint_of_rock(&self, visit: &Visit, group: &BorderGroup, tile: &Tile) -> Paint {
         match tile.kind {
             TileKind::Wall(_) if self.scene.plan.walls.jambs => {
                 self.jamb(visit, group).unwrap_or(tile.riser)
@@ -589,7 +589,7 @@ impl Walk<'_> {
     }
 
     /// The paint of a wall that faces a door: the door's jamb.
-    fn jamb(&self, visit: &Visit, group: &Group) -> Option<Paint> {
+    fn jamb(&self, visit: &Visit, group: &BorderGroup) -> Option<Paint> {
         let (_, before) = self.cell_before(visit, group)?;
         match self.scene.world.tiles()[usize::from(before.0)].kind {
             TileKind::Door(door) | TileKind::Doorway(door) => Some(door.jamb),
@@ -598,13 +598,13 @@ impl Walk<'_> {
     }
 
     /// The cell from which the rays come to `group`, and its tile.
-    fn cell_before(&self, visit: &Visit, group: &Group) -> Option<(Cell, TileId)> {
+    fn cell_before(&self, visit: &Visit, group: &BorderGroup) -> Option<(Cell, TileId)> {
         let [column, row] = visit.image.cell_to_map(group.face.place_before());
         self.scene.world.grid().cell(column, row)
     }
 
     /// Shows the tint of a mirror, and prepares the visit to the mirror image in the rows of the mirror.
-    fn reflect(&mut self, visit: &Visit, group: &Group, tint: Glass) {
+    fn reflect(&mut self, visit: &Visit, group: &BorderGroup, tint: Glass) {
         if !tint.is_clear() {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
             self.show_face(visit, group, Material::Translucent(tint), everywhere);
@@ -614,13 +614,13 @@ impl Walk<'_> {
         _ = image.reflect(face.side, face.line(), 0);
         self.list.add_image(image);
         let ColumnMemory { starts, ends, tops, .. } = &self.memory.columns;
-        let rows = &mut self.memory.next[Slot::Mirror as usize].rows;
+        let rows = &mut self.memory.next[VisitKind::Mirror as usize].rows;
         for x in group.columns.start as usize..group.columns.end as usize {
             rows[x] = Rows { start: starts[x].max(tops[x]), end: ends[x] };
             self.stats.bounces += u64::from(!rows[x].is_empty());
         }
         let bounces = visit.bounces + 1;
-        self.extend(Slot::Mirror, visit.sector, (image, bounces), group);
+        self.extend(VisitKind::Mirror, visit.sector, (image, bounces), group);
     }
 
     /// Prepares the visit to a gap of the cells of `tile` behind `group`, if it has open rows.
@@ -628,8 +628,8 @@ impl Walk<'_> {
         &mut self,
         visit: &Visit,
         sector: &Sector,
-        group: &Group,
-        (slot, id, tile): (Slot, SectorId, &Tile),
+        group: &BorderGroup,
+        (slot, id, tile): (VisitKind, SectorId, &Tile),
     ) {
         let gap = self.fan.sectors.get(id);
         self.find_limits(sector, group, gap.top, gap.bottom);
@@ -643,14 +643,14 @@ impl Walk<'_> {
         if !is_seen {
             return;
         }
-        if let Holds::Cube(_) = gap.holds {
+        if let GapObject::Cube(_) = gap.holds {
             self.pass_cube(visit, group, slot, tile);
         }
         self.extend(slot, id, (visit.image, visit.bounces), group);
     }
 
     /// Shows the face of the glass or the mask behind `group`, in the rows of the next visit.
-    fn pass_cube(&mut self, visit: &Visit, group: &Group, slot: Slot, tile: &Tile) {
+    fn pass_cube(&mut self, visit: &Visit, group: &BorderGroup, slot: VisitKind, tile: &Tile) {
         let (bottom, top) = (tile.heights.floor(), tile.heights.ceiling());
         let material = match tile.kind {
             TileKind::Glass(glass) if glass.is_clear() => return,
@@ -681,11 +681,11 @@ impl Walk<'_> {
     fn show_face(
         &mut self,
         visit: &Visit,
-        group: &Group,
+        group: &BorderGroup,
         material: Material,
         (bottom, top): (f64, f64),
     ) {
-        let Group { columns: range, face, .. } = group;
+        let BorderGroup { columns: range, face, .. } = group;
         for border in &self.memory.borders[group.borders.clone()] {
             find_texture_coordinates(visit.image, &self.fan, border, &mut self.memory.columns);
         }
@@ -714,7 +714,7 @@ impl Walk<'_> {
 
     /// Stores the faces of `group` as hits of the columns that show them, from column `x` on. `first` is the
     /// index of the face column of `x`.
-    pub(crate) fn set_hits(&mut self, visit: &Visit, group: &Group, x: u32, first: usize) {
+    pub(crate) fn set_hits(&mut self, visit: &Visit, group: &BorderGroup, x: u32, first: usize) {
         if visit.bounces > 0 {
             return;
         }
@@ -733,14 +733,14 @@ impl Walk<'_> {
     }
 
     /// Returns true if there is glass or a mask behind `group`.
-    fn is_cube(&self, group: &Group) -> bool {
+    fn is_cube(&self, group: &BorderGroup) -> bool {
         let into = self.memory.borders[group.borders.start].into;
-        into.is_some_and(|(_, id)| matches!(self.fan.sectors.held_by(id), Holds::Cube(_)))
+        into.is_some_and(|(_, id)| matches!(self.fan.sectors.held_by(id), GapObject::Cube(_)))
     }
 
     /// The light on the faces of `group`: the light of their tile if it is solid and has its own, else the
     /// light in the cell in front of the first face.
-    pub(crate) fn light_on_face(&self, visit: &Visit, group: &Group) -> FaceLight {
+    pub(crate) fn light_on_face(&self, visit: &Visit, group: &BorderGroup) -> FaceLight {
         let world = self.scene.world;
         if !self.scene.plan.walls.faded {
             return FaceLight::FULL;
@@ -764,28 +764,28 @@ impl Walk<'_> {
     /// stored and another one begins.
     fn extend(
         &mut self,
-        slot: Slot,
+        slot: VisitKind,
         sector: SectorId,
         (image, bounces): (MirrorTransform, u32),
-        group: &Group,
+        group: &BorderGroup,
     ) {
-        let Group { columns: range, face, .. } = group;
+        let BorderGroup { columns: range, face, .. } = group;
         let holds = self.fan.sectors.get(sector).holds;
         let goes_on = |(visit, of_visit): &(Visit, CellFace)| {
             (visit.sector, visit.image) == (sector, image)
                 && visit.columns.end == range.start
                 && of_visit.is_in_line_with(face)
-                && holds != Holds::Standing
+                && holds != GapObject::Standing
         };
         if !self.memory.next[slot as usize].visit.as_ref().is_some_and(goes_on) {
             self.store(slot);
         }
         let WalkMemory { next, borders, .. } = &mut *self.memory;
-        let Next { visit, entries, .. } = &mut next[slot as usize];
+        let PendingVisit { visit, entries, .. } = &mut next[slot as usize];
         entries.extend(
             borders[group.borders.clone()]
                 .iter()
-                .map(|border| Entry { column: border.columns.start, place: border.face.place }),
+                .map(|border| SectorEntry { column: border.columns.start, place: border.face.place }),
         );
         if let Some((visit, _)) = visit {
             visit.columns.end = range.end;
@@ -798,9 +798,9 @@ impl Walk<'_> {
     }
 
     /// Stores the visit in `slot`, without the columns that have no open rows.
-    fn store(&mut self, slot: Slot) {
+    fn store(&mut self, slot: VisitKind) {
         let WalkMemory { visits, clips, entries, next, columns, .. } = &mut *self.memory;
-        let Next { visit, rows, entries: of_visit } = &mut next[slot as usize];
+        let PendingVisit { visit, rows, entries: of_visit } = &mut next[slot as usize];
         let Some((visit, _)) = visit.take() else { return };
         let is_open = |&column: &u32| !rows[column as usize].is_empty();
         let mut rest = visit.columns.clone();

@@ -28,11 +28,11 @@ use super::BeamTable;
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct DistanceField {
     /// Row by row from the border row in the north, each from the border cell in the west.
-    cells: Vec<Coded>,
+    cells: Vec<CodedDistance>,
     /// The number of cells in a row.
     width: usize,
     /// The minimum of each block of cells; empty if no minimum is above 1.
-    blocks: Vec<Coded>,
+    blocks: Vec<CodedDistance>,
     /// The number of blocks in a row.
     width_in_blocks: usize,
     /// The beam tables for rays along rows and along columns.
@@ -46,9 +46,9 @@ const BLOCK_BITS: u32 = 3;
 /// A number of lines in a byte: exact up to [`Coded::EXACT`], then rounded down to a multiple of
 /// [`Coded::STEP`]. The largest number exceeds the lines of any map.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Coded(u8);
+struct CodedDistance(u8);
 
-impl Coded {
+impl CodedDistance {
     const NONE: Self = Self(0);
     const ONE: Self = Self(1);
     const EXACT: u16 = 128;
@@ -83,13 +83,13 @@ impl DistanceField {
             if cells.is_empty() {
                 width += row.len();
                 cells.reserve_exact(width * height);
-                cells.resize(width, Coded::NONE);
+                cells.resize(width, CodedDistance::NONE);
             }
-            cells.push(Coded::NONE);
-            cells.extend(row.map(|may_be| if may_be { Coded::NONE } else { Coded::ONE }));
-            cells.push(Coded::NONE);
+            cells.push(CodedDistance::NONE);
+            cells.extend(row.map(|may_be| if may_be { CodedDistance::NONE } else { CodedDistance::ONE }));
+            cells.push(CodedDistance::NONE);
         }
-        cells.resize(width * height, Coded::NONE);
+        cells.resize(width * height, CodedDistance::NONE);
         Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, beam_tables: None }
     }
 
@@ -116,7 +116,7 @@ impl DistanceField {
     /// before the cell in reading order or after it.
     pub(crate) fn measured(&self) -> Self {
         let width = self.width;
-        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MAX };
+        let farthest = |&cell: &CodedDistance| if cell == CodedDistance::NONE { 0 } else { CodedDistance::MAX };
         let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
         for end in (2 * width..=cells.len()).step_by(width) {
             let (before, row) = cells[..end].split_at_mut(end - width);
@@ -135,10 +135,10 @@ impl DistanceField {
                     |row: &[u16]| row.iter().skip(block * BLOCK).take(BLOCK).min().copied();
                 rows.chunks_exact(width).filter_map(of_row).min().unwrap_or(0)
             };
-            (0..width_in_blocks).map(least).map(Coded::new).collect::<Vec<_>>()
+            (0..width_in_blocks).map(least).map(CodedDistance::new).collect::<Vec<_>>()
         });
         let blocks = blocks.collect();
-        let cells = cells.into_iter().map(Coded::new).collect();
+        let cells = cells.into_iter().map(CodedDistance::new).collect();
         Self { cells, width, blocks, width_in_blocks, beam_tables: None }
     }
 
@@ -152,7 +152,7 @@ impl DistanceField {
     }
 
     fn are_beams_worthwhile(&self) -> bool {
-        let solid = self.cells.iter().filter(|&&cell| cell == Coded::NONE).count();
+        let solid = self.cells.iter().filter(|&&cell| cell == CodedDistance::NONE).count();
         BeamTable::are_worthwhile(self.size(), solid as i64)
     }
 
@@ -165,7 +165,7 @@ impl DistanceField {
     fn solid(&self) -> impl Iterator<Item = [i64; 2]> {
         let rows = self.cells.chunks_exact(self.width).zip(-1..);
         rows.flat_map(|(cells, row)| {
-            let solid = cells.iter().zip(-1..).filter(|&(&cell, _)| cell == Coded::NONE);
+            let solid = cells.iter().zip(-1..).filter(|&(&cell, _)| cell == CodedDistance::NONE);
             solid.map(move |(_, column)| [column, row])
         })
     }
@@ -173,11 +173,11 @@ impl DistanceField {
     /// Returns whether the mean of the distances is large enough for distances to pay off.
     fn is_worthwhile(&self) -> bool {
         let mut counts = [0_u64; u8::MAX as usize + 1];
-        for &Coded(code) in &self.cells {
+        for &CodedDistance(code) in &self.cells {
             counts[usize::from(code)] += 1;
         }
         let clear: u64 = counts[1..].iter().sum();
-        let lines = (1..=u8::MAX).map(|code| f64::from(Coded(code).lines()));
+        let lines = (1..=u8::MAX).map(|code| f64::from(CodedDistance(code).lines()));
         let looks: f64 = lines.zip(&counts[1..]).map(|(lines, &count)| count as f64 / lines).sum();
         clear as f64 > Self::WORTHWHILE * looks
     }
@@ -191,12 +191,12 @@ impl DistanceField {
     /// Returns whether the cell at `index` is not solid and cannot become so.
     #[inline]
     pub(crate) fn is_clear(&self, index: i64) -> bool {
-        self.at(index) != Coded::NONE
+        self.at(index) != CodedDistance::NONE
     }
 
     #[inline]
-    fn at(&self, index: i64) -> Coded {
-        self.cells.get(index as usize).copied().unwrap_or(Coded::NONE)
+    fn at(&self, index: i64) -> CodedDistance {
+        self.cells.get(index as usize).copied().unwrap_or(CodedDistance::NONE)
     }
 
     /// A lower bound of the number of lines that a ray can cross at once from the cell at `places`
@@ -206,7 +206,7 @@ impl DistanceField {
     pub(crate) fn lines_of_block(&self, places: [i64; 2], strides: [i64; 2]) -> i64 {
         let [one, other] = places.map(|place| (place + 1) >> BLOCK_BITS);
         let index = one * strides[0] + other * strides[1];
-        i64::from(self.blocks.get(index as usize).copied().unwrap_or(Coded::NONE).lines())
+        i64::from(self.blocks.get(index as usize).copied().unwrap_or(CodedDistance::NONE).lines())
     }
 
     /// The strides of blocks, in the order of [`DistanceField::strides`].

@@ -119,12 +119,12 @@ impl Lamplight {
     }
 
     /// Adds `light` in `cell`, or takes away light that was added before.
-    fn change(&mut self, cell: Cell, light: Light, change: Change) {
+    fn change(&mut self, cell: Cell, light: Light, change: LightChange) {
         let place = self.place(cell);
         if let Some(sum) = self.sums.get_mut(place) {
             *sum = match change {
-                Change::Add => *sum + light.in_256ths(),
-                Change::TakeAway => *sum - light.in_256ths(),
+                LightChange::Add => *sum + light.in_256ths(),
+                LightChange::TakeAway => *sum - light.in_256ths(),
             };
         }
     }
@@ -164,7 +164,7 @@ impl Glow {
         let mut branches: Vec<Branch> = Vec::new();
         let mut open: Vec<usize> = Vec::new();
         let mut before: &[Offset] = &[];
-        for Line { cells, light } in &lines {
+        for LampLine { cells, light } in &lines {
             let shared = before.iter().zip(cells).take_while(|(one, other)| one == other).count();
             close(&mut branches, open.drain(shared..));
             for &(columns, rows) in &cells[shared..] {
@@ -216,19 +216,19 @@ type Offset = (i64, i64);
 
 /// The cells on the line from a lamp to a cell, excluding the lamp's own and including the last
 /// one.
-struct Line {
+struct LampLine {
     cells: Vec<Offset>,
     light: Light,
 }
 
 /// The lines from a lamp to all other cells within its reach.
-fn lines(lamp: &Lamp) -> Vec<Line> {
+fn lines(lamp: &Lamp) -> Vec<LampLine> {
     let reach = lamp.reach.cells() as i64;
     let around = (-reach..=reach).flat_map(|row| (-reach..=reach).map(move |column| (column, row)));
     let ends = around.filter(|&end| end != (0, 0)).filter_map(|end| {
         let distance = DVec2::new(end.0 as f64, end.1 as f64).length();
         let is_reached = distance < lamp.reach.cells();
-        is_reached.then(|| Line { cells: cells_to(end), light: lamp.light_at(distance) })
+        is_reached.then(|| LampLine { cells: cells_to(end), light: lamp.light_at(distance) })
     });
     ends.collect()
 }
@@ -253,7 +253,7 @@ fn cells_to(end: Offset) -> Vec<Offset> {
 
 /// Whether light is added or taken away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Change {
+pub(crate) enum LightChange {
     Add,
     TakeAway,
 }
@@ -291,7 +291,7 @@ impl World {
             if old == new {
                 continue;
             }
-            for (lamp, change) in [(old, Change::TakeAway), (new, Change::Add)] {
+            for (lamp, change) in [(old, LightChange::TakeAway), (new, LightChange::Add)] {
                 if let Some(lamp) = lamp {
                     shine(
                         &self.grid,
@@ -312,7 +312,7 @@ impl World {
     /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out. A flame that is out gives
     /// no light and shows the last frame of its sprite.
     pub(crate) fn set_flame(&mut self, cell: Cell, burns: bool) {
-        let change = if burns { Change::Add } else { Change::TakeAway };
+        let change = if burns { LightChange::Add } else { LightChange::TakeAway };
         let is_it = |thing: &&mut Thing| thing.kind == ThingKind::Flame && thing.burns() != burns;
         for thing in self.things.in_cell_mut(cell).iter_mut().filter(is_it) {
             let sprite = &self.sprites[usize::from(thing.sprite.0)];
@@ -329,7 +329,7 @@ impl World {
         for thing in self.things.between(cell.row, cell.column, cell.column) {
             let lamp = self.sprites[usize::from(thing.sprite.0)].lamp;
             if let Some(lamp) = lamp.filter(|_| is_taken(thing.kind) && thing.burns()) {
-                let (lamp, carrier, change) = ((cell, lamp), Carrier::Thing, Change::TakeAway);
+                let (lamp, carrier, change) = ((cell, lamp), Carrier::Thing, LightChange::TakeAway);
                 shine(&self.grid, &self.tiles, &mut self.lamplight, lamp, carrier, change);
             }
         }
@@ -347,7 +347,7 @@ impl World {
         };
         let changed = [Carrier::Thing, Carrier::Mover].map(|it| Some(it).filter(changes));
         for &carrier in changed.iter().flatten() {
-            self.shine_around(cell, carrier, Change::TakeAway);
+            self.shine_around(cell, carrier, LightChange::TakeAway);
         }
         self.grid.set(cell, tile);
         let is_level = self.tile(tile).is_level();
@@ -355,7 +355,7 @@ impl World {
             grid.set(cell, if is_level { tile } else { TileId(u8::MAX) });
         }
         for &carrier in changed.iter().flatten() {
-            self.shine_around(cell, carrier, Change::Add);
+            self.shine_around(cell, carrier, LightChange::Add);
         }
     }
 
@@ -384,14 +384,14 @@ impl World {
                 glow_of[usize::from(sprite.0)].get_or_insert_with(|| lamplight.glows.of(lamp));
             let is_clear = |tile: TileId| passed[usize::from(tile.0)];
             glow.shine(&self.grid, cell, is_clear, |cell, light| {
-                lamplight.change(cell, light, Change::Add);
+                lamplight.change(cell, light, LightChange::Add);
             });
         }
         self.light_varies = !self.lamplight.is_dark() || self.tiles_differ_in_light();
     }
 
     /// Adds or takes away the light of all lamps of a carrier whose light may pass through `cell`.
-    fn shine_around(&mut self, cell: Cell, carrier: Carrier, change: Change) {
+    fn shine_around(&mut self, cell: Cell, carrier: Carrier, change: LightChange) {
         let Self { grid, tiles, things, sprites, lamplight, .. } = self;
         let is_near = |&(place, lamp): &(Cell, Lamp)| {
             place.center().distance(cell.center()) < lamp.reach.cells()
@@ -483,7 +483,7 @@ fn shine(
     lamplight: &mut Lamplight,
     (cell, lamp): (Cell, Lamp),
     carrier: Carrier,
-    change: Change,
+    change: LightChange,
 ) {
     if lamplight.is_dark() || grid.tile_in(cell).is_none() {
         return;

@@ -29,12 +29,12 @@ pub struct Scene {
     /// The fog, if there is any.
     pub fog: Option<Fog>,
     /// The player's start.
-    pub start: Start,
+    pub start: SceneStart,
 }
 
 /// The position and direction in which the player starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct SceneStart {
     /// The position of the eye, within the limits of a camera.
     position: DVec3,
     /// The compass direction.
@@ -43,7 +43,7 @@ pub struct Start {
     pub elevation: Elevation,
 }
 
-impl Start {
+impl SceneStart {
     /// A start at `position`, in cells. `None` if a coordinate is beyond [`MAX_COORDINATE`].
     pub fn new(position: DVec3, heading: Heading, elevation: Elevation) -> Option<Self> {
         is_near(position).then_some(Self { position, heading, elevation })
@@ -59,14 +59,14 @@ impl Start {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// The position and the shape.
-    pub shape: Shape,
+    pub shape: BodyShape,
     /// The colours.
     pub texture: SolidTexture,
 }
 
 /// The position and the shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum BodyShape {
     /// A sphere, which is hollow for a camera inside.
     Sphere(Sphere),
     /// An infinite plane, which is visible from both sides.
@@ -169,7 +169,7 @@ impl Block {
     }
 }
 
-impl Shape {
+impl BodyShape {
     /// The distance of `point` from the surface, in cells, and the unit vector from the nearest
     /// point of the surface to `point`. Inside a sphere or a box, the distance is negative and the
     /// vector still points outwards.
@@ -355,23 +355,23 @@ mod tests {
 
     #[test]
     fn signed_distance_is_negative_inside() {
-        let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
+        let sphere = BodyShape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
         assert_eq!(sphere.signed_distance(DVec3::new(3.0, 0.0, 0.0)), (1.0, DVec3::X));
         assert_eq!(sphere.signed_distance(DVec3::new(0.0, -1.0, 0.0)), (-1.0, -DVec3::Y));
-        let block = Shape::Block(Block::new(DVec3::ZERO, DVec3::splat(4.0)).unwrap());
+        let block = BodyShape::Block(Block::new(DVec3::ZERO, DVec3::splat(4.0)).unwrap());
         assert_eq!(block.signed_distance(DVec3::new(2.0, 2.0, 5.0)), (1.0, DVec3::Z));
         assert_eq!(block.signed_distance(DVec3::new(2.0, 0.5, 2.0)), (-0.5, -DVec3::Y));
-        let plane = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+        let plane = BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
         assert_eq!(plane.signed_distance(DVec3::new(9.0, 9.0, -2.0)), (2.0, -DVec3::Z));
     }
 
     #[test]
     fn shapes_that_touch_do_not_overlap() {
         let block = |low: f64, high: f64| {
-            Shape::Block(Block::new(DVec3::splat(low), DVec3::splat(high)).unwrap())
+            BodyShape::Block(Block::new(DVec3::splat(low), DVec3::splat(high)).unwrap())
         };
-        let plane = |normal| Shape::Plane(Plane::new(DVec3::ZERO, normal).unwrap());
-        let sphere = Shape::Sphere(Sphere::new(DVec3::splat(3.0), 1.0).unwrap());
+        let plane = |normal| BodyShape::Plane(Plane::new(DVec3::ZERO, normal).unwrap());
+        let sphere = BodyShape::Sphere(Sphere::new(DVec3::splat(3.0), 1.0).unwrap());
         assert!(block(0.0, 2.0).overlaps(&block(1.0, 3.0)));
         assert!(block(0.0, 9.0).overlaps(&block(1.0, 3.0)));
         assert!(!block(0.0, 1.0).overlaps(&block(1.0, 3.0)));

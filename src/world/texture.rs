@@ -33,7 +33,7 @@ pub struct Texture {
     /// The number of texels.
     area: f64,
     has_alpha: bool,
-    source: Source,
+    source: PictureSource,
     /// The mip levels after the picture itself, down to one texel.
     smaller: OnceLock<Vec<MipLevel>>,
     /// Its means over boxes, which most textures never need.
@@ -58,9 +58,9 @@ impl Texture {
         height: NonZeroU32,
         texel: impl FnMut(u32, u32) -> (Rgb, u8),
     ) -> Self {
-        let picture = Picture::from_fn(width, height, texel);
+        let picture = TexturePicture::from_fn(width, height, texel);
         let has_alpha = picture.level.has_alpha();
-        Self::new(width, height, has_alpha, Source::Made(picture))
+        Self::new(width, height, has_alpha, PictureSource::Made(picture))
     }
 
     /// A texture as [`Texture::from_fn_with_alpha`]. Its function of texels is requested when a
@@ -71,11 +71,11 @@ impl Texture {
         has_alpha: bool,
         texels: impl Fn() -> T + Send + Sync + 'static,
     ) -> Self {
-        let source = Source::on_demand(move || Picture::from_fn(width, height, texels()));
+        let source = PictureSource::on_demand(move || TexturePicture::from_fn(width, height, texels()));
         Self::new(width, height, has_alpha, source)
     }
 
-    fn new(width: NonZeroU32, height: NonZeroU32, has_alpha: bool, source: Source) -> Self {
+    fn new(width: NonZeroU32, height: NonZeroU32, has_alpha: bool, source: PictureSource) -> Self {
         let area = f64::from(width.get()) * f64::from(height.get());
         let (smaller, means) = (OnceLock::new(), OnceLock::new());
         Self { width, height, area, has_alpha, source, smaller, means }
@@ -183,22 +183,22 @@ impl fmt::Debug for Texture {
 
 /// The picture itself, and its mean colour.
 #[derive(Clone)]
-struct Picture {
+struct TexturePicture {
     level: MipLevel,
     mean: Rgb,
 }
 
 /// The source of a texture's picture.
 #[derive(Clone)]
-enum Source {
-    Made(Picture),
-    OnDemand { paint: Arc<Paint>, made: OnceLock<Picture> },
+enum PictureSource {
+    Made(TexturePicture),
+    OnDemand { paint: Arc<PictureFunction>, made: OnceLock<TexturePicture> },
 }
 
 /// The function that makes a picture. It returns the same picture at every call.
-type Paint = dyn Fn() -> Picture + Send + Sync;
+type PictureFunction = dyn Fn() -> TexturePicture + Send + Sync;
 
-impl Picture {
+impl TexturePicture {
     /// The picture with the texel `texel(x, y)`, a colour and an alpha, at `(x, y)`.
     fn from_fn(
         width: NonZeroU32,
@@ -217,14 +217,14 @@ impl Picture {
     }
 }
 
-impl Source {
+impl PictureSource {
     /// The picture that `paint` makes when it is first read.
-    fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
+    fn on_demand(paint: impl Fn() -> TexturePicture + Send + Sync + 'static) -> Self {
         Self::OnDemand { paint: Arc::new(paint), made: OnceLock::new() }
     }
 
     #[inline]
-    fn picture(&self) -> &Picture {
+    fn picture(&self) -> &TexturePicture {
         match self {
             Self::Made(picture) => picture,
             Self::OnDemand { paint, made } => made.get_or_init(&**paint),

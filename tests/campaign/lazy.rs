@@ -1,7 +1,7 @@
 //! A careless player, who walks the shortest way from errand to errand, whatever happens.
 
 use cellcaster::game::{Game, Outcome, Rules};
-use cellcaster::map::builtin::{self, Level};
+use cellcaster::map::builtin::{self, BuiltinLevel};
 use cellcaster::world::{Cell, Difficulty};
 
 use crate::levels::{route, world};
@@ -13,7 +13,7 @@ use crate::ways::Ways;
 const MAX_STEPS: u64 = 60 * 60 * 6;
 
 /// Plays a level carelessly.
-pub(crate) fn play(level: &Level, rules: Rules) -> Pilot {
+pub(crate) fn play(level: &BuiltinLevel, rules: Rules) -> Pilot {
     let mut pilot = Pilot::new(Game::with_rules(world(level), rules));
     for errand in route(level).into_iter().filter(|errand| !errand.is_careful) {
         run(&mut pilot, errand);

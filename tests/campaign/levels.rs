@@ -1,24 +1,24 @@
 //! Properties of every level of the campaign.
 
 use cellcaster::map;
-use cellcaster::map::builtin::{self, Level};
+use cellcaster::map::builtin::{self, BuiltinLevel};
 use cellcaster::world::{Difficulty, Driver, ThingKind, World};
 
 use crate::route::{self, Errand};
 
 /// The world of a level, read from its file, so that a change of a map does not require compiling
 /// the tests again.
-pub(crate) fn world(level: &Level) -> World {
+pub(crate) fn world(level: &BuiltinLevel) -> World {
     map::parse_str(&text(level)).unwrap_or_else(|faults| panic!("{}: {faults}", level.name))
 }
 
-fn text(level: &Level) -> String {
+fn text(level: &BuiltinLevel) -> String {
     let path = format!("{}/maps/{}.toml", env!("CARGO_MANIFEST_DIR"), level.name);
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 /// The route through a level.
-pub(crate) fn route(level: &Level) -> Vec<Errand> {
+pub(crate) fn route(level: &BuiltinLevel) -> Vec<Errand> {
     let path = format!("{}/tests/campaign/routes/{}.route", env!("CARGO_MANIFEST_DIR"), level.name);
     let route = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     route::parse(&route, &text(level))

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use cellcaster::game::{Game, Outcome, Rules, Script};
-use cellcaster::map::builtin::{self, Level};
+use cellcaster::map::builtin::{self, BuiltinLevel};
 use cellcaster::world::Difficulty;
 
 use crate::careful;
@@ -21,18 +21,18 @@ use crate::pilot::Pilot;
 /// The variable that requests new scripts.
 const UPDATE: &str = "CELLCASTER_UPDATE_SCRIPTS";
 
-fn path(level: &Level, difficulty: Difficulty) -> PathBuf {
+fn path(level: &BuiltinLevel, difficulty: Difficulty) -> PathBuf {
     let name = format!("maps/scripts/{}.{}.script", level.name, difficulty.name());
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-fn runs() -> Vec<(&'static Level, Difficulty)> {
+fn runs() -> Vec<(&'static BuiltinLevel, Difficulty)> {
     let of_level = |level| Difficulty::ALL.map(|difficulty| (level, difficulty));
     builtin::LEVELS.iter().flat_map(of_level).collect()
 }
 
 /// The game after the script of a level.
-fn replayed(level: &Level, difficulty: Difficulty) -> Result<Game, String> {
+fn replayed(level: &BuiltinLevel, difficulty: Difficulty) -> Result<Game, String> {
     let path = path(level, difficulty);
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let script = Script::parse(&text, level.name).unwrap_or_else(|faults| panic!("{faults}"));
@@ -42,7 +42,7 @@ fn replayed(level: &Level, difficulty: Difficulty) -> Result<Game, String> {
 }
 
 /// Searches for a script that wins, and writes it.
-fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
+fn update(level: &BuiltinLevel, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{}.{}", level.name, difficulty.name());
     let game = Game::with_rules(levels::world(level), Rules { difficulty, seed: 0 });
     let pilot = careful::search(&Pilot::new(game), &route(level))
@@ -56,7 +56,7 @@ fn update(level: &Level, difficulty: Difficulty) -> Result<String, String> {
 /// Searches for the scripts that [`UPDATE`] requests, in two threads.
 fn update_all() {
     let Ok(wanted) = env::var(UPDATE) else { return };
-    let is_wanted = |&(level, difficulty): &(&Level, Difficulty)| {
+    let is_wanted = |&(level, difficulty): &(&BuiltinLevel, Difficulty)| {
         let pair = format!("{}.{}", level.name, difficulty.name());
         wanted.split(',').any(|word| word == "1" || word == level.name || word == pair)
     };
@@ -73,7 +73,7 @@ fn update_all() {
 }
 
 /// Describes the state at the end of a script in a line; `Err` if the script does not win.
-fn line(level: &Level, difficulty: Difficulty) -> Result<String, String> {
+fn line(level: &BuiltinLevel, difficulty: Difficulty) -> Result<String, String> {
     let name = format!("{} {}", level.name, difficulty.name());
     let game = replayed(level, difficulty)?;
     if game.outcome() != Outcome::Won {

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use cellcaster::game::{Game, Intents, Look, Outcome, Rules, Script};
-use cellcaster::map::builtin::{self, Level};
+use cellcaster::map::builtin::{self, BuiltinLevel};
 use cellcaster::world::Difficulty;
 
 use crate::careful;
@@ -20,13 +20,13 @@ const RULES: Rules = Rules { difficulty: Difficulty::Easy, seed: 0 };
 /// The steps for which the player looks around first.
 const LOOK: u32 = 60;
 
-fn path(level: &Level) -> PathBuf {
+fn path(level: &BuiltinLevel) -> PathBuf {
     let name = format!("tests/terminal/taps/{}.script", level.name);
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
 /// Searches for a script, and writes it.
-fn update(level: &Level) {
+fn update(level: &BuiltinLevel) {
     let mut pilot = Pilot::tapping(Game::with_rules(levels::world(level), RULES));
     pilot.wait(LOOK);
     let pilot = careful::search(&pilot, &route(level))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::support::{complaint_about, output_of};
 use cellcaster::game::{Game, Intent, Intents};
-use cellcaster::generate::{CHUNK_SIDE, Chunk, ChunkArea, Extent, Generator, Level, Site, Terrain};
+use cellcaster::generate::{CHUNK_SIDE, Chunk, ChunkArea, Extent, Generator, GeneratedLevel, Site, Terrain};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
 use proptest::prelude::*;
@@ -135,7 +135,7 @@ proptest! {
         walk in prop::collection::vec((intents(), 30..300), 2..8),
     ) {
         let side = CHUNK_SIDE as i64;
-        let level = Level::new(Arc::new(Repeated), Extent::Endless).unwrap();
+        let level = GeneratedLevel::new(Arc::new(Repeated), Extent::Endless).unwrap();
         let far = Site { column: column.wrapping_mul(side) + 3, row: row.wrapping_mul(side) + 3 };
         let home = Site { column: 3, row: 3 };
         let mut at_home = Game::in_level(level.clone(), home).unwrap();

@@ -3,7 +3,7 @@
 use cellcaster::color::Rgb;
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
 use cellcaster::space::{
-    Block, Body, Camera, Elevation, Fraction, Plane, Ray, Renderer, Scene, Shape, SolidTexture,
+    Block, Body, Camera, Elevation, Fraction, Plane, Ray, Renderer, Scene, BodyShape, SolidTexture,
     Sphere, Sun,
 };
 use cellcaster::world::{FieldOfView, Heading, Scale};
@@ -12,14 +12,14 @@ use proptest::prelude::*;
 
 const ROUNDING: f64 = 1e-12;
 
-fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
+fn scene(shapes: impl IntoIterator<Item = BodyShape>) -> Scene {
     let body =
         |(index, shape)| Body { shape, texture: SolidTexture::Plain(Rgb::new(index, 255, 255)) };
     Scene { bodies: (0..).zip(shapes).map(body).collect(), ..Scene::default() }
 }
 
-fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere(Sphere::new(center, radius).unwrap())
+fn sphere(center: DVec3, radius: f64) -> BodyShape {
+    BodyShape::Sphere(Sphere::new(center, radius).unwrap())
 }
 
 fn direction() -> impl Strategy<Value = DVec3> {
@@ -37,13 +37,13 @@ fn point(reach: f64) -> impl Strategy<Value = DVec3> {
     [-reach..reach, -reach..reach, -reach..reach].prop_map(DVec3::from)
 }
 
-fn shape() -> impl Strategy<Value = Shape> {
+fn shape() -> impl Strategy<Value = BodyShape> {
     prop_oneof![
         (point(6.0), 0.01..4.0).prop_map(|(center, radius)| sphere(center, radius)),
         (point(6.0), direction())
-            .prop_map(|(point, normal)| Shape::Plane(Plane::new(point, normal).unwrap())),
+            .prop_map(|(point, normal)| BodyShape::Plane(Plane::new(point, normal).unwrap())),
         (point(6.0), point(3.0)).prop_filter_map("no size", |(corner, size)| {
-            Block::new(corner, corner + size).map(Shape::Block)
+            Block::new(corner, corner + size).map(BodyShape::Block)
         }),
     ]
 }
@@ -66,7 +66,7 @@ fn is_in_shadow(scene: &Scene, body: usize, point: DVec3) -> bool {
     others.map(|(_, &other)| other).any(|other| {
         let alone = Scene { bodies: vec![other], ..Scene::default() };
         let is_outside = other.shape.signed_distance(point).0 > 0.0;
-        let casts = !matches!(other.shape, Shape::Plane(_)) && is_outside;
+        let casts = !matches!(other.shape, BodyShape::Plane(_)) && is_outside;
         casts && alone.cast(&Ray::new(point, scene.sun.toward())).is_some()
     })
 }
@@ -82,7 +82,7 @@ proptest! {
         share in power_of_ten(-6.0..0.0),
     ) {
         let scene = scene([sphere(toward * distance, (distance * share).max(1e-9))]);
-        let Shape::Sphere(sphere) = scene.bodies[0].shape else { unreachable!() };
+        let BodyShape::Sphere(sphere) = scene.bodies[0].shape else { unreachable!() };
         let beside = libm::atan2(ray.cross(toward).length(), ray.dot(toward));
         let half_angle = libm::asin(sphere.radius() / sphere.center().length());
         prop_assume!((beside - half_angle).abs() > 1e-9);
@@ -183,8 +183,8 @@ proptest! {
         field_of_view in prop_oneof![Just(1e-320), Just(180.0_f64.next_down()), 1.0..170.0],
     ) {
         let center = DVec3::from(center);
-        let block = Block::new(center, center - DVec3::splat(1e-6)).map(Shape::Block);
-        let plane = Plane::new(center, DVec3::new(1e-300, 0.0, 1e-300)).map(Shape::Plane);
+        let block = Block::new(center, center - DVec3::splat(1e-6)).map(BodyShape::Block);
+        let plane = Plane::new(center, DVec3::new(1e-300, 0.0, 1e-300)).map(BodyShape::Plane);
         let shapes = [Some(sphere(center, radius)), block, plane];
         let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
         let camera = Camera::new(center, Heading::default(), field_of_view).unwrap();
@@ -208,7 +208,7 @@ fn a_small_body_costs_few_tests() {
 #[test]
 fn a_checkered_floor_is_the_mean_over_each_pixel() {
     const SAMPLES: u32 = 24;
-    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let floor = BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let texture = SolidTexture::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
     let sun = Sun::new(DVec3::Z, Fraction::new(0.5).unwrap()).unwrap();
     let bodies = vec![Body { shape: floor, texture }];
@@ -249,7 +249,7 @@ fn a_checkered_floor_is_the_mean_over_each_pixel() {
 
 #[test]
 fn far_squares_are_grey() {
-    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let floor = BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let texture = SolidTexture::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);
     let sun = Sun::new(DVec3::Z, Fraction::new(0.0).unwrap()).unwrap();
     let scene = Scene { bodies: vec![Body { shape: floor, texture }], sun, ..Scene::default() };
@@ -266,7 +266,7 @@ fn far_squares_are_grey() {
 #[test]
 fn a_thousand_balls_in_a_row_cast_few_shadow_rays_at_each_other() {
     let ball = |index: u32| sphere(DVec3::new(8.0, f64::from(index) - 500.0, 0.5), 0.4);
-    let floor = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
+    let floor = BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let shapes = (0..1000).map(ball).chain([floor]);
     let scene = Scene {
         bodies: shapes

@@ -9,7 +9,7 @@ use std::env;
 use std::thread;
 use std::time::Duration;
 
-use cellcaster::terminal::{Event, Key, Options, Phase, Session};
+use cellcaster::terminal::{Event, Key, SessionOptions, Phase, Session};
 use cellcaster::tui::canvas::Canvas;
 use ratatui::widgets::{Paragraph, Wrap};
 use rustix::process::Signal;
@@ -28,7 +28,7 @@ fn program() {
         return;
     }
     let variable = |name: &str| env::var(name).ok();
-    let mut session = Session::enter(Options::from_environment(variable)).unwrap();
+    let mut session = Session::enter(SessionOptions::from_environment(variable)).unwrap();
     let mut lines = vec!["ready".to_owned()];
     loop {
         show(&mut session, &lines.join("\n"));

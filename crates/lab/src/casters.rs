@@ -26,7 +26,7 @@ mod table;
 
 pub use lines::{Accumulate, Dda, Dda32, Fixed};
 pub use march::March;
-pub use table::Table;
+pub use table::AngleTable;
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -54,7 +54,7 @@ pub enum Method {
     /// [`Fixed`].
     Fixed(Fixed),
     /// [`Table`].
-    Table(Table),
+    Table(AngleTable),
     /// [`March`].
     March(March),
 }
@@ -146,7 +146,7 @@ impl FromStr for Method {
             "fixed" => number(parameter, 10, 4..=26, "\"fixed\" takes 4 to 26 fraction bits")
                 .map(|fraction_bits| Self::Fixed(Fixed { fraction_bits })),
             "table" => number(parameter, 1920, 8..=65_536, "\"table\" takes 8 to 65536 angles")
-                .map(|count| Self::Table(Table::new(count))),
+                .map(|count| Self::Table(AngleTable::new(count))),
             "march" => {
                 let takes = "\"march\" takes steps of 0.0001 to 1 cells";
                 number(parameter, 0.01, 0.0001..=1.0, takes).map(|step| Self::March(March { step }))

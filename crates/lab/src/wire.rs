@@ -30,7 +30,7 @@ pub use tour::{report_glyphs, report_palettes};
 
 /// The options of a measurement.
 #[derive(Debug)]
-pub struct Plan<'a> {
+pub struct WirePlan<'a> {
     /// The script to play.
     pub script: &'a Script,
     /// The size of the window in which `replay` plays.
@@ -46,7 +46,7 @@ pub struct Plan<'a> {
 /// Plays the script of `plan`, and compares ratatui's encoder (`stock`), Cellcaster's at each
 /// fidelity, and Cellcaster's at each fidelity with repeated characters and a defined palette
 /// (`+`).
-pub fn report(plan: &Plan, replay: &mut Replay) -> Table {
+pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
     let ours = [false, true].into_iter().flat_map(|extensions| {
         plan.fidelities.iter().map(move |&fidelity| {
             let encoder = Encoder::ours(plan.size, plan.depth, fidelity, extensions);

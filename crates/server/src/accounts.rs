@@ -42,7 +42,7 @@ pub use rusqlite::types::Value as ColumnValue;
 
 pub use account::{Account, AccountId, AccountKey, AccountSettings, UnixTime};
 pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
-pub use failure::{Refusal, StoreFailure};
+pub use failure::{AccountRefusal, StoreFailure};
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
 pub use presence::{HostNotice, HostRow, Visit, VisitId};

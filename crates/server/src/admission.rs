@@ -31,10 +31,10 @@ use cellcaster::rng::SplitMix64;
 #[derive(Debug)]
 pub struct Admission {
     limits: Limits,
-    visits: BTreeMap<VisitId, Visit>,
+    visits: BTreeMap<ConnectionId, ConnectionSource>,
     next: u64,
     /// The unauthenticated connections, oldest first.
-    waiting: BTreeMap<VisitId, Networks>,
+    waiting: BTreeMap<ConnectionId, Networks>,
     /// The number of unauthenticated connections in each network of each width.
     per_network: BTreeMap<AddressPrefix, u32>,
     /// Keyed by [`counted_address`].
@@ -68,15 +68,15 @@ const WIDTHS: [[u8; 2]; 3] = [[16, 48], [24, 56], [32, 64]];
 
 /// The number of an admitted connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct VisitId(u64);
+pub struct ConnectionId(u64);
 
 /// An admitted connection, and the one that it displaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Admitted {
     /// The new connection.
-    pub id: VisitId,
+    pub id: ConnectionId,
     /// The connection that was displaced to make room. It no longer counts.
-    pub displaced: Option<VisitId>,
+    pub displaced: Option<ConnectionId>,
 }
 
 /// The reason why a connection is refused.
@@ -187,7 +187,7 @@ impl Outcome {
 }
 
 #[derive(Debug)]
-struct Visit {
+struct ConnectionSource {
     address: IpAddr,
     key: Option<AccountKey>,
 }
@@ -261,23 +261,23 @@ impl Admission {
         if let Some(displaced) = displaced {
             self.leave(displaced, Outcome::Displaced, now);
         }
-        let id = VisitId(self.next);
+        let id = ConnectionId(self.next);
         self.next += 1;
-        self.visits.insert(id, Visit { address, key: None });
+        self.visits.insert(id, ConnectionSource { address, key: None });
         self.waiting.insert(id, networks);
         add(&mut self.per_address, counted);
         Ok(Admitted { id, displaced })
     }
 
     /// The unauthenticated connection that makes room. The search visits all of them: about 10 µs for 200.
-    fn oldest_of_the_busiest(&self) -> Option<VisitId> {
+    fn oldest_of_the_busiest(&self) -> Option<ConnectionId> {
         let busy = |networks: &Networks| networks.map(|network| count(&self.per_network, &network));
         let all = self.waiting.iter();
         all.max_by_key(|&(id, networks)| (busy(networks), Reverse(id))).map(|(id, _)| *id)
     }
 
     /// Removes a connection from the unauthenticated ones. Returns true if it was one of them.
-    fn stop_waiting(&mut self, id: VisitId) -> bool {
+    fn stop_waiting(&mut self, id: ConnectionId) -> bool {
         let networks = self.waiting.remove(&id);
         for network in networks.iter().flatten() {
             remove(&mut self.per_network, network);
@@ -294,7 +294,7 @@ impl Admission {
     ///   connections with that key. The connection then counts as one without a key until it leaves.
     pub fn log_in(
         &mut self,
-        id: VisitId,
+        id: ConnectionId,
         key: Option<AccountKey>,
         now: Duration,
     ) -> Result<(), Refusal> {
@@ -317,7 +317,7 @@ impl Admission {
     }
 
     /// Removes a connection that has ended.
-    pub fn leave(&mut self, id: VisitId, outcome: Outcome, now: Duration) {
+    pub fn leave(&mut self, id: ConnectionId, outcome: Outcome, now: Duration) {
         let Some(visit) = self.visits.remove(&id) else { return };
         self.stop_waiting(id);
         remove(&mut self.per_address, &counted_address(visit.address));

@@ -11,7 +11,7 @@ mod serve;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, ServerCommand};
 use cellcaster::cli::{Error, exit_code, parse};
 
 /// Runs the command in `words`, and returns the exit status. The first word is the program's own name.
@@ -23,8 +23,8 @@ fn execute(arguments: Arguments) -> Result<(), Error> {
     match arguments.command {
         None => serve::run(arguments.serve),
         #[cfg(unix)]
-        Some(Command::Admin(options)) => admin::run(options),
-        Some(Command::Scores(options)) => scores::run(&options),
-        Some(Command::Replay(options)) => replay::run(&options),
+        Some(ServerCommand::Admin(options)) => admin::run(options),
+        Some(ServerCommand::Scores(options)) => scores::run(&options),
+        Some(ServerCommand::Replay(options)) => replay::run(&options),
     }
 }

@@ -435,106 +435,106 @@ const NUMBERS: [Setting<Config>; 21] = [
     Setting {
         key: "connections",
         about: "the most visitors at a time who have logged in",
-        value: &Number(1..=100_000, Place::U32(|it| &mut it.admission.connections)),
+        value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.connections)),
     },
     Setting {
         key: "connections-per-address",
         about: "the most connections of one address, or of one /64 of IPv6; behind a proxy, all\n\
                 visitors have the same",
-        value: &Number(1..=100_000, Place::U32(|it| &mut it.admission.per_address)),
+        value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.per_address)),
     },
     Setting {
         key: "connections-per-key",
         about: "the most connections with one public key",
-        value: &Number(1..=1000, Place::U32(|it| &mut it.admission.per_key)),
+        value: &Number(1..=1000, NumberField::U32(|it| &mut it.admission.per_key)),
     },
     Setting {
         key: "startups",
         about: "the most connections at a time that have not logged in, besides; one more displaces\n\
                 the oldest one of the busiest network",
-        value: &Number(1..=10_000, Place::U32(|it| &mut it.admission.startups)),
+        value: &Number(1..=10_000, NumberField::U32(|it| &mut it.admission.startups)),
     },
     Setting {
         key: "failures",
         about: "failed connections of one network after which nearly all of its new ones are\n\
                 refused for a while; successful ones make up for failed ones",
-        value: &Number(2..=1_000_000, Place::U32(|it| &mut it.admission.failures)),
+        value: &Number(2..=1_000_000, NumberField::U32(|it| &mut it.admission.failures)),
     },
     Setting {
         key: "forget-seconds",
         about: "the time after which one of them is forgotten",
-        value: &Number(1..=86_400, Place::Seconds(|it| &mut it.admission.forget)),
+        value: &Number(1..=86_400, NumberField::Seconds(|it| &mut it.admission.forget)),
     },
     Setting {
         key: "accounts-per-hour",
         about: "the new accounts that one network (/24, /64) may make in an hour",
-        value: &Number(1..=1_000_000, Place::U32(|it| &mut it.accounts.per_hour)),
+        value: &Number(1..=1_000_000, NumberField::U32(|it| &mut it.accounts.per_hour)),
     },
     Setting {
         key: "accounts-at-once",
         about: "how many of them at once",
-        value: &Number(1..=1_000_000, Place::U32(|it| &mut it.accounts.at_once)),
+        value: &Number(1..=1_000_000, NumberField::U32(|it| &mut it.accounts.at_once)),
     },
     Setting {
         key: "handshake-seconds",
         about: "the time in which a client exchanges keys; its version has to arrive within 3",
-        value: &Number(1..=600, Place::Seconds(|it| &mut it.handshake)),
+        value: &Number(1..=600, NumberField::Seconds(|it| &mut it.handshake)),
     },
     Setting {
         key: "login-seconds",
         about: "the time in which a session begins; people look at a host key, and type a passphrase",
-        value: &Number(1..=3600, Place::Seconds(|it| &mut it.login)),
+        value: &Number(1..=3600, NumberField::Seconds(|it| &mut it.login)),
     },
     Setting {
         key: "login-bytes",
         about: "the most bytes of a client before it is authenticated",
-        value: &Number(8192..=16 << 20, Place::U32(|it| &mut it.login_bytes)),
+        value: &Number(8192..=16 << 20, NumberField::U32(|it| &mut it.login_bytes)),
     },
     Setting {
         key: "bytes-per-second",
         about: "the most bytes that a client sends in a second after that; more have to wait",
-        value: &Number(1024..=1 << 30, Place::U32(|it| &mut it.bytes_per_second)),
+        value: &Number(1024..=1 << 30, NumberField::U32(|it| &mut it.bytes_per_second)),
     },
     Setting {
         key: "silence-seconds",
         about: "the time after which a client that answers nothing has gone",
-        value: &Number(2..=3600, Place::Seconds(|it| &mut it.silence)),
+        value: &Number(2..=3600, NumberField::Seconds(|it| &mut it.silence)),
     },
     Setting {
         key: "stall-seconds",
         about: "the time after which a client that takes nothing is disconnected",
-        value: &Number(2..=86_400, Place::Seconds(|it| &mut it.stall)),
+        value: &Number(2..=86_400, NumberField::Seconds(|it| &mut it.stall)),
     },
     Setting {
         key: "columns",
         about: "the largest window",
-        value: &Number(20..=2048, Place::U16(|it| &mut it.columns)),
+        value: &Number(20..=2048, NumberField::U16(|it| &mut it.columns)),
     },
-    Setting { key: "rows", about: "", value: &Number(10..=1024, Place::U16(|it| &mut it.rows)) },
+    Setting { key: "rows", about: "", value: &Number(10..=1024, NumberField::U16(|it| &mut it.rows)) },
     Setting {
         key: "drain-seconds",
         about: "the time for which sessions go on when the server ends",
-        value: &Number(0..=3600, Place::Seconds(|it| &mut it.drain)),
+        value: &Number(0..=3600, NumberField::Seconds(|it| &mut it.drain)),
     },
     Setting {
         key: "rooms",
         about: "the most rooms at a time",
-        value: &Number(2..=10_000, Place::U32(|it| &mut it.rooms)),
+        value: &Number(2..=10_000, NumberField::U32(|it| &mut it.rooms)),
     },
     Setting {
         key: "watchers",
         about: "the most visitors who watch one room",
-        value: &Number(0..=10_000, Place::U32(|it| &mut it.watchers)),
+        value: &Number(0..=10_000, NumberField::U32(|it| &mut it.watchers)),
     },
     Setting {
         key: "empty-room-seconds",
         about: "the time after which a room without members is closed",
-        value: &Number(0..=86_400, Place::Seconds(|it| &mut it.empty_room)),
+        value: &Number(0..=86_400, NumberField::Seconds(|it| &mut it.empty_room)),
     },
     Setting {
         key: "frames-per-second",
         about: "the most frames that a visitor gets in a second; fewer, if the processor is busy",
-        value: &Number(5..=60, Place::U32(|it| &mut it.frames_per_second)),
+        value: &Number(5..=60, NumberField::U32(|it| &mut it.frames_per_second)),
     },
 ];
 
@@ -575,10 +575,10 @@ impl<T: Clone + PartialEq> Field<Config> for Text<T> {
 }
 
 /// A whole number in a range.
-struct Number(RangeInclusive<u32>, Place);
+struct Number(RangeInclusive<u32>, NumberField);
 
 /// The field that stores a number.
-enum Place {
+enum NumberField {
     U16(fn(&mut Config) -> &mut u16),
     U32(fn(&mut Config) -> &mut u32),
     Seconds(fn(&mut Config) -> &mut Duration),
@@ -588,17 +588,17 @@ impl Number {
     fn get(&self, of: &Config) -> u32 {
         let mut of = of.clone();
         match self.1 {
-            Place::U16(at) => u32::from(*at(&mut of)),
-            Place::U32(at) => *at(&mut of),
-            Place::Seconds(at) => u32::try_from(at(&mut of).as_secs()).unwrap_or(u32::MAX),
+            NumberField::U16(at) => u32::from(*at(&mut of)),
+            NumberField::U32(at) => *at(&mut of),
+            NumberField::Seconds(at) => u32::try_from(at(&mut of).as_secs()).unwrap_or(u32::MAX),
         }
     }
 
     fn set(&self, of: &mut Config, value: u32) {
         match self.1 {
-            Place::U16(at) => *at(of) = value as u16,
-            Place::U32(at) => *at(of) = value,
-            Place::Seconds(at) => *at(of) = Duration::from_secs(u64::from(value)),
+            NumberField::U16(at) => *at(of) = value as u16,
+            NumberField::U32(at) => *at(of) = value,
+            NumberField::Seconds(at) => *at(of) = Duration::from_secs(u64::from(value)),
         }
     }
 }

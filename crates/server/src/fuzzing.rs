@@ -19,7 +19,7 @@ use crate::rooms::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
+use crate::sessions::session::{HostFacts, Profile, Request, Session, SessionEvent, Way};
 pub use crate::ssh::fuzzing::serve;
 use crate::visitors::{Presence, Visitors};
 use cellcaster::app::Configuration;
@@ -27,7 +27,7 @@ use cellcaster::app::store::Preferences;
 use cellcaster::game::{Intent, Intents, PlayerColor};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
-use cellcaster::terminal::{Options, WindowSize};
+use cellcaster::terminal::{SessionOptions, WindowSize};
 use cellcaster::world::Difficulty;
 
 /// Read once, because that takes longer than most inputs.
@@ -48,11 +48,11 @@ pub struct Hall {
     room: Room,
     /// The recording of the current round.
     recording: String,
-    visitors: Vec<Visitor>,
+    visitors: Vec<FuzzedVisitor>,
     now: Duration,
 }
 
-struct Visitor {
+struct FuzzedVisitor {
     session: Session,
     member: Option<MemberId>,
     /// `true` while the visitor is in the room, as a member or a watcher.
@@ -87,9 +87,9 @@ impl Hall {
     }
 
     /// Adds a visitor whose terminal has these options.
-    pub fn arrive(&mut self, name: &str, options: Options, size: WindowSize) {
+    pub fn arrive(&mut self, name: &str, options: SessionOptions, size: WindowSize) {
         let name = Line::of(name, NAME_COLUMNS).expect("a name");
-        let identity = Identity {
+        let identity = Profile {
             has_account: size.columns % 2 == 0,
             name: name.clone(),
             is_named: size.rows % 2 == 0,
@@ -106,7 +106,7 @@ impl Hall {
             frame_time: Duration::from_millis(33),
         };
         let session = Session::new(identity, options, size, host, self.now);
-        self.visitors.push(Visitor { session, member: None, is_inside: false, name });
+        self.visitors.push(FuzzedVisitor { session, member: None, is_inside: false, name });
     }
 
     /// Handles bytes from a visitor's terminal.
@@ -164,7 +164,7 @@ impl Hall {
 
     /// The bytes for a visitor's terminal, with a frame if one is due. They count as written at once.
     pub fn output(&mut self, visitor: usize) -> Vec<u8> {
-        let Visitor { session, is_inside, .. } = &mut self.visitors[visitor];
+        let FuzzedVisitor { session, is_inside, .. } = &mut self.visitors[visitor];
         let view = self.room.view();
         let view = is_inside.then_some(&view);
         if session.output(self.now).is_empty() && session.is_due(view, self.now) {
@@ -247,7 +247,7 @@ impl Hall {
                 let name = self.visitors[visitor].name.clone();
                 let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
                 self.apply(member, Command::Join { color, name });
-                let Visitor { member: own, is_inside, .. } = &mut self.visitors[visitor];
+                let FuzzedVisitor { member: own, is_inside, .. } = &mut self.visitors[visitor];
                 (*own, *is_inside) = (Some(member), true);
                 Some(SessionEvent::Entered { room: ROOM, member: Some(member) })
             }
@@ -277,7 +277,7 @@ impl Hall {
     }
 
     fn leave(&mut self, visitor: usize) {
-        let Visitor { member, is_inside, .. } = &mut self.visitors[visitor];
+        let FuzzedVisitor { member, is_inside, .. } = &mut self.visitors[visitor];
         *is_inside = false;
         if let Some(member) = member.take() {
             self.apply(member, Command::Leave);

@@ -213,7 +213,7 @@ impl Metrics {
             let tasks = runtime.metrics().num_alive_tasks();
             page.register("tasks", help, ConstGauge::new(tasks as u64));
         }
-        page.register_collector(Box::new(Rooms(self.room_figures())));
+        page.register_collector(Box::new(RoomCollector(self.room_figures())));
     }
 }
 
@@ -239,12 +239,12 @@ impl RoomFigures {
 
 /// The rooms that exist now, with their figures.
 #[derive(Debug)]
-struct Rooms(Vec<(u32, Arc<RoomFigures>)>);
+struct RoomCollector(Vec<(u32, Arc<RoomFigures>)>);
 
 /// The name, the help and the value of a room's figure.
 type RoomFigure<F> = (&'static str, &'static str, fn(&RoomFigures) -> &F);
 
-impl Collector for Rooms {
+impl Collector for RoomCollector {
     fn encode(&self, mut page: DescriptorEncoder<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return Ok(());

@@ -27,7 +27,7 @@ pub struct Visitors(Arc<Mutex<Table>>);
 pub struct Presence {
     number: u64,
     visitors: Visitors,
-    inbox: Arc<Inbox>,
+    inbox: Arc<NoticeQueue>,
 }
 
 /// An operator's notice to a visitor's session.
@@ -69,11 +69,11 @@ struct Table {
     run: u16,
     next: u64,
     /// The entries, in order of arrival.
-    entries: BTreeMap<u64, (Present, Arc<Inbox>)>,
+    entries: BTreeMap<u64, (Present, Arc<NoticeQueue>)>,
 }
 
 #[derive(Debug, Default)]
-struct Inbox {
+struct NoticeQueue {
     notices: Mutex<Notices>,
     changed: Notify,
 }
@@ -117,7 +117,7 @@ impl fmt::Display for SessionId {
 impl Visitors {
     /// Adds a visitor.
     pub fn arrive(&self, address: IpAddr, key: Option<AccountKey>) -> Presence {
-        let inbox = Arc::<Inbox>::default();
+        let inbox = Arc::<NoticeQueue>::default();
         let number = locked(&self.0, |table| {
             let number = table.next;
             table.next += 1;
@@ -175,7 +175,7 @@ impl Visitors {
     }
 
     /// Calls `act` on the inboxes of matching visitors; returns their number.
-    fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&Inbox)) -> usize {
+    fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&NoticeQueue)) -> usize {
         locked(&self.0, |table| {
             let meant = table.entries.values().filter(|(present, _)| is_meant(present));
             meant.map(|(_, inbox)| act(inbox)).count()
@@ -239,7 +239,7 @@ impl Drop for Presence {
     }
 }
 
-impl Inbox {
+impl NoticeQueue {
     fn say(&self, line: &str) {
         locked(&self.notices, |notices| {
             notices.lines.push_back(line.to_owned());

@@ -28,7 +28,7 @@ pub(crate) struct Home {
 
 /// The result of a change.
 #[derive(Debug)]
-pub(crate) struct Written {
+pub(crate) struct ChangeResult {
     /// The state of the file before the change.
     pub(crate) before: Progress,
     /// The state of the file after the change.
@@ -103,7 +103,7 @@ impl Home {
         &mut self,
         changes: &[Change],
         known: &Progress,
-    ) -> Result<Written, String> {
+    ) -> Result<ChangeResult, String> {
         let not_kept = |folder: &Path, error: &io::Error| {
             format!("{} can't be written: {error}; this game is not kept", printable_path(folder))
         };
@@ -145,7 +145,7 @@ impl Home {
         }
     }
 
-    fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<Written> {
+    fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<ChangeResult> {
         let Found { mut progress, damage } = found;
         let sentence = damage.map(|damage| self.put_aside(damage)).transpose()?;
         if sentence.is_some() {
@@ -165,7 +165,7 @@ impl Home {
             // The progress is already written, and a leftover script does no harm.
             _ = self.disk.remove(&self.folder.join(RUNS).join(name));
         }
-        Ok(Written { before, progress, sentence })
+        Ok(ChangeResult { before, progress, sentence })
     }
 
     /// Keeps the damaged file under another name, and returns a sentence about it.
@@ -250,12 +250,12 @@ pub trait Disk: fmt::Debug + Send {
 
 /// The files of the operating system.
 #[derive(Clone, Copy, Debug)]
-pub struct Real;
+pub struct SystemFiles;
 
 /// The time between two attempts to lock a file.
 const PAUSE: Duration = Duration::from_millis(2);
 
-impl Disk for Real {
+impl Disk for SystemFiles {
     fn create_folder(&self, folder: &Path) -> io::Result<()> {
         private::create_folder(folder)
     }

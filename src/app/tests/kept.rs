@@ -42,7 +42,7 @@ fn playing_builtin(store: Store) -> Rig {
     let mut rig = titled(Offers::default(), store);
     rig.choose("New game");
     rig.choose("Normal");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     rig
 }
 
@@ -72,7 +72,7 @@ fn left_and_continued(rig: Rig, folder: &Folder, offers: Offers) -> (Game, Rig) 
     assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Continue"));
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     while left.tally().steps < rig.game().tally().steps {
         left.step(Intents::new());
     }
@@ -108,7 +108,7 @@ fn a_game_in_an_own_map_goes_on_unless_the_map_has_changed() {
     let shown = text(&mut title.app, 80, 24);
     assert!(shown.contains("Continue  Danger"), "{shown}");
     title.choose("Continue");
-    assert_eq!(title.app.screen(), Screen::Title);
+    assert_eq!(title.app.screen(), AppScreen::Title);
     let shown = text(&mut title.app, 80, 24);
     assert!(shown.contains("The map of the saved game is not as it was."), "{shown}");
 }

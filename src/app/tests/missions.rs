@@ -53,7 +53,7 @@ pub(crate) fn playing_own(text: &'static str, store: Store) -> Rig {
     let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
     rig.choose("danger.toml");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     rig
 }
 
@@ -71,7 +71,7 @@ pub(crate) fn dead() -> Rig {
     }
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
-        if rig.app.screen() == Screen::Dead {
+        if rig.app.screen() == AppScreen::Dead {
             return rig;
         }
         rig.wait(1);
@@ -93,11 +93,11 @@ fn the_dead_say_what_happened_and_go_on_at_once() {
     assert!(shown.contains("killed by spikes") && shown.contains("> Try again"), "{shown}");
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen(), Screen::Dead, "nothing counts in the first half second");
+    assert_eq!(rig.app.screen(), AppScreen::Dead, "nothing counts in the first half second");
     rig.wait(700);
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     assert_eq!((rig.position().x, rig.game().tally().deaths), (1.5, 1));
 }
 
@@ -106,12 +106,12 @@ fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Restart the level");
-    assert_eq!((rig.app.screen(), rig.game().tally().deaths), (Screen::Playing, 0));
+    assert_eq!((rig.app.screen(), rig.game().tally().deaths), (AppScreen::Playing, 0));
     assert!(rig.game().elapsed() < 1.0);
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Leave to the title");
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     let left = rig.app.left.as_ref().unwrap();
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
 }
@@ -124,13 +124,13 @@ pub(crate) fn won() -> Rig {
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
         rig.wait(1);
-        if rig.app.screen() == Screen::Dead {
+        if rig.app.screen() == AppScreen::Dead {
             rig.wait(700);
             rig.tap(Key::Enter, 30);
             rig.wait(300);
             rig.tap(Key::Char('g'), 30);
         }
-        if rig.app.screen() == Screen::LevelDone {
+        if rig.app.screen() == AppScreen::LevelDone {
             return rig;
         }
     }

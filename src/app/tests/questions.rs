@@ -29,7 +29,7 @@ fn at_the_exit(rate: Option<Rate>, key: Key, milliseconds: u64) -> Rig {
     // The player reaches the exit after 1570 ms.
     rig.wait(1590 - milliseconds);
     rig.press(key);
-    while rig.app.screen() == Screen::Playing {
+    while rig.app.screen() == AppScreen::Playing {
         rig.wait(1);
     }
     rig
@@ -42,12 +42,12 @@ fn a_repetition_confirms_nothing_and_a_fresh_press_does() {
             for key in [SPACE, ENTER] {
                 let mut rig = at_the_exit(rate, key, milliseconds);
                 rig.wait(3000);
-                assert_eq!(rig.app.screen(), Screen::LevelDone, "{rate:?} {milliseconds} {key}");
+                assert_eq!(rig.app.screen(), AppScreen::LevelDone, "{rate:?} {milliseconds} {key}");
                 rig.release(key);
                 rig.wait(400);
                 rig.tap(ENTER, 50);
                 rig.wait(200);
-                assert_eq!(rig.app.screen(), Screen::End, "{rate:?} {milliseconds} {key}");
+                assert_eq!(rig.app.screen(), AppScreen::End, "{rate:?} {milliseconds} {key}");
             }
         }
     }
@@ -60,12 +60,12 @@ fn nothing_confirms_in_the_first_half_second() {
         rig.release(Key::Char('k'));
         rig.wait(300);
         rig.tap(ENTER, 50);
-        assert_eq!(rig.app.screen(), Screen::LevelDone);
+        assert_eq!(rig.app.screen(), AppScreen::LevelDone);
         // The time until the second press could be the keyboard's delay.
         rig.wait(400);
         rig.tap(ENTER, 50);
         rig.wait(200);
-        assert_eq!(rig.app.screen(), Screen::End);
+        assert_eq!(rig.app.screen(), AppScreen::End);
         rig.tap(ENTER, 50);
         rig.wait(1000);
         assert!(!rig.app.has_left);
@@ -100,7 +100,7 @@ fn on_spikes(rate: Option<Rate>) -> Rig {
 /// Waits until the player is dead. Returns the time in milliseconds.
 fn wait_for_death(rig: &mut Rig) -> u64 {
     for milliseconds in 0..20_000 {
-        if rig.app.screen() == Screen::Dead {
+        if rig.app.screen() == AppScreen::Dead {
             return milliseconds;
         }
         rig.wait(1);
@@ -124,13 +124,13 @@ fn keys_that_are_held_at_a_death_do_nothing_on_the_panel() {
                 wait_for_death(&mut rig);
                 rig.wait(3000);
                 let shown = (rig.app.screen(), rig.app.pages.menu.selected(), rig.app.has_left);
-                assert_eq!(shown, (Screen::Dead, 0, false), "{case}");
+                assert_eq!(shown, (AppScreen::Dead, 0, false), "{case}");
                 rig.release(key);
                 rig.wait(400);
                 rig.tap(ENTER, 50);
                 rig.wait(200);
                 let goes_on = (rig.app.screen(), rig.game().tally().deaths);
-                assert_eq!(goes_on, (Screen::Playing, 1), "{case}");
+                assert_eq!(goes_on, (AppScreen::Playing, 1), "{case}");
             }
         }
     }
@@ -157,7 +157,7 @@ fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
         }
         rig.tap(ENTER, 10);
         let case = format!("released after {released:?} ms, answered after {answered}");
-        assert_eq!(rig.app.screen() == Screen::Playing, is_answered, "{case}");
+        assert_eq!(rig.app.screen() == AppScreen::Playing, is_answered, "{case}");
     }
     // Without release reports, a repeating key is up once it stops repeating. A tapped key may be
     // down for as long as the first repeat may take.
@@ -175,7 +175,7 @@ fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
         }
         rig.tap(ENTER, 10);
         let case = format!("released after {key_lasts} ms, answered after {answered}");
-        assert_eq!(rig.app.screen() == Screen::Playing, is_answered, "{case}");
+        assert_eq!(rig.app.screen() == AppScreen::Playing, is_answered, "{case}");
     }
 }
 
@@ -235,22 +235,22 @@ fn escape_closes_help_and_pause_and_leaving_is_asked_once() {
         let mut rig = start(rate);
         for opens in ['?', 'p'] {
             rig.tap(Key::Char(opens), 50);
-            assert_ne!(rig.app.screen(), Screen::Playing);
+            assert_ne!(rig.app.screen(), AppScreen::Playing);
             rig.tap(Key::Escape, 50);
-            assert_eq!(rig.app.screen(), Screen::Playing, "after {opens}");
+            assert_eq!(rig.app.screen(), AppScreen::Playing, "after {opens}");
             rig.wait(2000);
         }
         for (asks, goes_on) in [('q', Key::Escape), ('q', W), ('q', SPACE)] {
             rig.tap(Key::Char(asks), 50);
-            assert_eq!(rig.app.screen(), Screen::Leaving);
+            assert_eq!(rig.app.screen(), AppScreen::Leaving);
             rig.tap(goes_on, 50);
-            assert_eq!((rig.app.screen(), rig.app.has_left), (Screen::Playing, false));
+            assert_eq!((rig.app.screen(), rig.app.has_left), (AppScreen::Playing, false));
             rig.wait(2000);
         }
         // A held key must not confirm the question that it opened.
         rig.press(Key::Char('q'));
         rig.wait(3000);
-        assert_eq!((rig.app.screen(), rig.app.has_left), (Screen::Leaving, false));
+        assert_eq!((rig.app.screen(), rig.app.has_left), (AppScreen::Leaving, false));
         rig.release(Key::Char('q'));
         rig.wait(1000);
         rig.tap(Key::Char('q'), 50);
@@ -259,7 +259,7 @@ fn escape_closes_help_and_pause_and_leaving_is_asked_once() {
 
         let mut rig = start(rate);
         rig.tap(Key::Escape, 50);
-        assert_eq!(rig.app.screen(), Screen::Leaving);
+        assert_eq!(rig.app.screen(), AppScreen::Leaving);
         rig.tap(ENTER, 50);
         assert!(rig.app.has_left);
     }

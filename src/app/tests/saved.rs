@@ -5,7 +5,7 @@ use super::titles::titled;
 use super::*;
 use crate::app::recording::RunLog;
 use crate::app::store::{Descent, MAX_SAVES, Run, Save, SaveId, SavedGame, map_key};
-use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
+use crate::app::{SettingOrigins, Offers, InitialState, Origin, OwnLevel};
 use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
 use crate::tui::GlyphSet;
@@ -23,8 +23,8 @@ fn playing(label: &str, offers: Offers) -> Rig {
     let mut rig = titled(offers, Store::in_memory());
     rig.choose(label);
     match rig.app.screen() {
-        Screen::NewGame => rig.choose("Normal"),
-        Screen::Daily => rig.choose("Begin the try that counts"),
+        AppScreen::NewGame => rig.choose("Normal"),
+        AppScreen::Daily => rig.choose("Begin the try that counts"),
         _ => {}
     }
     walk(&mut rig);
@@ -33,7 +33,7 @@ fn playing(label: &str, offers: Offers) -> Rig {
 
 /// Walks for two seconds.
 fn walk(rig: &mut Rig) {
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     rig.press(W);
     rig.wait(1500);
     rig.release(W);
@@ -66,23 +66,23 @@ fn a_game_in_a_level_that_has_changed_can_begin_anew() {
     let changed = with_checksum(saved.save.checksum.map(|sum| sum ^ 1));
     rig.app.store.save(&changed).unwrap();
     rig.choose("Continue");
-    assert_eq!(rig.app.screen(), Screen::Outdated(id));
+    assert_eq!(rig.app.screen(), AppScreen::Outdated(id));
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("The level has changed since you left it."), "{shown}");
     rig.tap(Key::Escape, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     assert_eq!(newest(&rig), Some(changed), "a look costs nothing");
     rig.choose("Continue");
     rig.choose("Begin anew");
-    assert_eq!((rig.app.screen(), newest(&rig)), (Screen::Playing, None));
+    assert_eq!((rig.app.screen(), newest(&rig)), (AppScreen::Playing, None));
     assert!(rig.game().elapsed() < 1.0);
 
     // A file of the first version has no checksum.
     rig.app.store.save(&with_checksum(None)).unwrap();
     rig.app.show_title();
     rig.choose("Continue");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     assert!(rig.game().elapsed() > 2.0);
 }
 
@@ -98,7 +98,7 @@ fn a_descent_that_is_left_goes_on_once() {
         let shown = text(&mut rig.app, 80, 24);
         assert!(shown.contains(&format!("Continue  {name}")), "{shown}");
         rig.choose("Continue");
-        assert_eq!((rig.app.screen(), rig.app.levels.descent), (Screen::Playing, course));
+        assert_eq!((rig.app.screen(), rig.app.levels.descent), (AppScreen::Playing, course));
         while left.tally().steps < rig.game().tally().steps {
             left.step(Intents::new());
         }
@@ -145,7 +145,7 @@ fn each_level_and_difficulty_has_a_saved_game_and_the_newest_is_the_first() {
 /// The program, started with a built-in level.
 fn started(level: &str, store: Store) -> Rig {
     let index = builtin::LEVELS.iter().position(|it| it.name == level).unwrap();
-    let levels = Opening::Levels(Box::new(Levels::builtin(index).unwrap()));
+    let levels = InitialState::Levels(Box::new(Levels::builtin(index).unwrap()));
     Rig::of(App::opened(levels, Settings::default(), store), Some((500, 30)))
 }
 
@@ -158,7 +158,7 @@ fn quit(mut rig: Rig) -> Store {
 #[test]
 fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
     let mut rig = started("cellar", Store::in_memory());
-    assert_eq!(rig.app.screen(), Screen::Playing, "nothing is saved, and nothing is asked");
+    assert_eq!(rig.app.screen(), AppScreen::Playing, "nothing is saved, and nothing is asked");
     walk(&mut rig);
     let left = rig.game().clone();
     let store = quit(rig);
@@ -166,7 +166,7 @@ fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
     let mut rig = started("citadel", store);
     walk(&mut rig);
     let rig = started("cellar", quit(rig));
-    assert_eq!(rig.app.screen(), Screen::HasSaved);
+    assert_eq!(rig.app.screen(), AppScreen::HasSaved);
     let saved = |rig: &Rig| {
         let id = rig.app.store.saves().find(|save| save.level == "cellar").map(Save::id)?;
         rig.app.store.saved(id)
@@ -184,13 +184,13 @@ fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
     assert_eq!(saved(&rig), Some(first.clone()));
 
     rig.choose("Continue");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     assert!(rig.game().tally().steps >= left.tally().steps);
     let mut rig = started("cellar", quit(rig));
     assert!(saved(&rig).unwrap().script.len() >= first.script.len());
 
     rig.choose("Begin anew");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     assert!(rig.game().elapsed() < 1.0);
     assert!(saved(&rig).is_some(), "it is kept while the new game is played");
     let rig = started("cellar", quit(rig));
@@ -205,7 +205,7 @@ fn a_game_that_goes_on_is_recorded_from_the_start_of_its_level() {
     let script =
         std::env::temp_dir().join(format!("cellcaster-record-{}.script", std::process::id()));
     let file = std::fs::File::create(&script).unwrap();
-    rig.app.script = Some(crate::game::Recorder::with_header(Box::new(file), Header::default()));
+    rig.app.script = Some(crate::game::ScriptWriter::with_header(Box::new(file), Header::default()));
     rig.choose("Continue");
     walk(&mut rig);
     rig.app.script = None;
@@ -234,7 +234,7 @@ fn the_next_level_of_the_campaign_asks_too_and_is_offered_beside_saved_games() {
     assert!(text(&mut rig.app, 80, 24).contains("Continue  2 games"));
     rig.app.begin(Levels::builtin(0).unwrap());
     rig.app.next_level();
-    assert_eq!((rig.app.game.title(), rig.app.screen()), ("The Museum of Walls", Screen::HasSaved));
+    assert_eq!((rig.app.game.title(), rig.app.screen()), ("The Museum of Walls", AppScreen::HasSaved));
 }
 
 #[test]
@@ -247,16 +247,16 @@ fn a_saved_game_is_removed_from_the_list_after_a_question() {
     let remove = |rig: &mut Rig, answer: &str| {
         rig.tap(Key::Char('x'), 30);
         rig.wait(300);
-        assert!(matches!(rig.app.screen(), Screen::Remove(_)));
+        assert!(matches!(rig.app.screen(), AppScreen::Remove(_)));
         rig.choose(answer);
     };
     rig.choose("Continue");
     remove(&mut rig, "Keep it");
-    assert_eq!((rig.app.screen(), saved_levels(&rig).len()), (Screen::Saves, 2));
+    assert_eq!((rig.app.screen(), saved_levels(&rig).len()), (AppScreen::Saves, 2));
     remove(&mut rig, "Remove it");
     assert_eq!(saved_levels(&rig), [("cellar", Difficulty::Normal)]);
     remove(&mut rig, "Remove it");
-    assert_eq!((rig.app.screen(), saved_levels(&rig).len()), (Screen::Title, 0));
+    assert_eq!((rig.app.screen(), saved_levels(&rig).len()), (AppScreen::Title, 0));
     assert!(!text(&mut rig.app, 80, 24).contains("Continue"));
 }
 
@@ -277,7 +277,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
     let ids = |rig: &Rig| rig.app.store.saves().map(Save::id).collect::<Vec<SaveId>>();
     let mut rig = started("cellar", full());
     let before = ids(&rig);
-    assert_eq!(rig.app.screen(), Screen::NoRoom);
+    assert_eq!(rig.app.screen(), AppScreen::NoRoom);
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("Remove the oldest") && shown.contains("Level 0 on normal"), "{shown}");
     rig.choose("Play without saving");
@@ -292,7 +292,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
 
     let mut rig = started("cellar", quit(rig));
     rig.choose("Remove the oldest");
-    assert_eq!((rig.app.screen(), ids(&rig).len()), (Screen::Playing, MAX_SAVES - 1));
+    assert_eq!((rig.app.screen(), ids(&rig).len()), (AppScreen::Playing, MAX_SAVES - 1));
     walk(&mut rig);
     rig.tap(Key::Char('q'), 30);
     assert!(text(&mut rig.app, 80, 24).contains("the game is saved"));
@@ -306,28 +306,28 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
     assert!(!text(&mut rig.app, 80, 24).contains("Begin the try"));
     rig.choose("Remove the oldest");
     rig.choose("Begin the try that counts");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
 }
 
 #[test]
 fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
     // A start from the shell asks the same question as the title does.
-    let opening = Opening::Daily(offers());
+    let opening = InitialState::Daily(offers());
     let mut rig = Rig::of(App::opened(opening, Settings::default(), Store::in_memory()), None);
-    assert_eq!(rig.app.screen(), Screen::Daily);
+    assert_eq!(rig.app.screen(), AppScreen::Daily);
     let shown = text(&mut rig.app, 80, 24);
     for words in ["The descent of 2026-11-22", "One try counts", "it is saved"] {
         assert!(shown.contains(words), "{words}: {shown}");
     }
     rig.tap(Key::Escape, 30);
     rig.wait(300);
-    assert_eq!((rig.app.screen(), rig.app.store.daily(20_261_122)), (Screen::Title, None));
+    assert_eq!((rig.app.screen(), rig.app.store.daily(20_261_122)), (AppScreen::Title, None));
 
     rig.choose("Daily run");
     rig.choose("Begin the try that counts");
     let counts = Some(Descent::Daily);
-    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, Screen::Playing));
+    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, AppScreen::Playing));
     walk(&mut rig);
     rig.tap(Key::Char('q'), 30);
     let shown = text(&mut rig.app, 80, 24);
@@ -344,7 +344,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
         "the floors are not shown before the try is over: {shown}"
     );
     rig.choose("Continue the try that counts");
-    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, Screen::Playing));
+    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, AppScreen::Playing));
     assert!(rig.game().elapsed() > 1.5);
     assert_eq!(newest(&rig), None);
     // The program is killed, so the try is over.
@@ -359,7 +359,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     // Practice has its own saved game.
     rig.choose("Daily run");
     rig.choose("Practise");
-    assert_eq!(rig.app.screen(), Screen::HasSaved);
+    assert_eq!(rig.app.screen(), AppScreen::HasSaved);
     rig.choose("Continue");
     assert!(rig.game().elapsed() > 1.5);
 }
@@ -371,7 +371,7 @@ fn a_map_in_a_file_goes_on_wherever_it_lies() {
         let level = Level::from(parse_str(text).unwrap());
         OwnLevel { level, key: map_key("pit.toml", text), file: Some(file.to_owned()) }
     };
-    let opening = Opening::Levels(Box::new(Levels::own(own(PIT))));
+    let opening = InitialState::Levels(Box::new(Levels::own(own(PIT))));
     let app = App::opened(opening, Settings::default(), Store::in_memory());
     let mut rig = Rig::of(app, Some((500, 30)));
     walk(&mut rig);
@@ -388,7 +388,7 @@ fn a_map_in_a_file_goes_on_wherever_it_lies() {
     let mut rig = titled(offering(""), store);
     assert!(text(&mut rig.app, 80, 24).contains("Continue  Pit on normal"));
     rig.choose("Continue");
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("/somewhere/else/pit.toml is no file now"), "{shown}");
     rig.app.offers = Some(offering(PIT));
@@ -399,7 +399,7 @@ fn a_map_in_a_file_goes_on_wherever_it_lies() {
     let text = PIT.replace("start = 0", "start = 180").leak();
     rig.app.offers = Some(offering(text));
     rig.choose("Continue");
-    assert!(matches!(rig.app.screen(), Screen::Outdated(_)), "{:?}", rig.app.screen());
+    assert!(matches!(rig.app.screen(), AppScreen::Outdated(_)), "{:?}", rig.app.screen());
 }
 
 #[test]
@@ -420,11 +420,11 @@ fn settings_are_kept_unless_a_flag_or_a_file_gives_them() {
     assert_eq!((next.glyphs, next.depth), (GlyphSet::Quadrant, Some(ColorDepth::True)));
     assert_eq!(next.frame_time, Duration::from_secs(1) / 60);
 
-    let given = Given { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
+    let given = SettingOrigins { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
     let next = Settings { given, ..plain }.preferring(&kept);
     assert_eq!((next.glyphs, next.frame_time), (GlyphSet::Half, thirty));
     assert_eq!(next.depth, Some(ColorDepth::True));
-    let app = App::opened(Opening::Title(Offers::default()), next, Store::in_memory());
+    let app = App::opened(InitialState::Title(Offers::default()), next, Store::in_memory());
     let mut rig = Rig::of(app, Some((500, 30)));
     rig.choose("Settings");
     let shown = text(&mut rig.app, 80, 24);

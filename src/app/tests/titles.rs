@@ -2,7 +2,7 @@
 
 use super::missions::own_map;
 use super::*;
-use crate::app::{Offers, Opening};
+use crate::app::{Offers, InitialState};
 use crate::map::builtin;
 
 const ENTER: Key = Key::Enter;
@@ -15,7 +15,7 @@ fn title() -> Rig {
 
 pub(crate) fn titled(offers: Offers, store: Store) -> Rig {
     let settings = Settings { frame_time: Duration::from_secs(1) / 30, ..Settings::default() };
-    let app = App::opened(Opening::Title(offers), settings, store);
+    let app = App::opened(InitialState::Title(offers), settings, store);
     let mut rig = Rig::of(app, Some((500, 30)));
     rig.wait(100);
     rig
@@ -40,7 +40,7 @@ impl Rig {
 #[test]
 fn a_level_plays_itself_behind_the_title() {
     let mut rig = title();
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     let before = rig.app.game.elapsed();
     rig.wait(1000);
     assert!((rig.app.game.elapsed() - before - 1.0).abs() < 0.05);
@@ -60,14 +60,14 @@ fn a_level_plays_itself_behind_the_title() {
 fn a_new_game_begins_at_a_difficulty_and_returns_to_the_title() {
     let mut rig = title();
     rig.choose("New game");
-    assert_eq!(rig.app.screen(), Screen::NewGame);
+    assert_eq!(rig.app.screen(), AppScreen::NewGame);
     rig.choose("Hard");
-    assert_eq!((rig.app.screen(), rig.app.difficulty), (Screen::Playing, Difficulty::Hard));
+    assert_eq!((rig.app.screen(), rig.app.difficulty), (AppScreen::Playing, Difficulty::Hard));
     assert_eq!(rig.app.game.title(), "Cellar");
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
     rig.choose("Leave to the title");
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     assert!(rig.app.demo.is_some());
 }
 
@@ -76,15 +76,15 @@ fn escape_and_backspace_go_back_one_screen_and_the_selection_stays() {
     let mut rig = title();
     for back in [Key::Escape, Key::Backspace] {
         rig.choose("Levels");
-        assert_eq!(rig.app.screen(), Screen::Levels);
+        assert_eq!(rig.app.screen(), AppScreen::Levels);
         rig.tap(Key::Char('?'), 30);
-        assert_eq!(rig.app.screen(), Screen::Help);
+        assert_eq!(rig.app.screen(), AppScreen::Help);
         rig.wait(300);
         rig.tap(back, 30);
-        assert_eq!(rig.app.screen(), Screen::Levels);
+        assert_eq!(rig.app.screen(), AppScreen::Levels);
         rig.wait(700);
         rig.tap(back, 30);
-        assert_eq!(rig.app.screen(), Screen::Title);
+        assert_eq!(rig.app.screen(), AppScreen::Title);
         assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Levels"));
         rig.wait(700);
     }
@@ -98,18 +98,18 @@ fn a_digit_chooses_and_a_repetition_chooses_nothing() {
     let mut rig = title();
     rig.tap(Key::Char('2'), 30);
     rig.wait(700);
-    assert_eq!(rig.app.screen(), Screen::Levels);
+    assert_eq!(rig.app.screen(), AppScreen::Levels);
     rig.tap(Key::Char('2'), 30);
     rig.wait(700);
     assert_eq!(
         (rig.app.screen(), rig.app.levels.number.to_string()),
-        (Screen::Playing, format!("level 2 of {}", builtin::LEVELS.len()))
+        (AppScreen::Playing, format!("level 2 of {}", builtin::LEVELS.len()))
     );
 
     let mut rig = title();
     rig.press(ENTER);
     rig.wait(3000);
-    assert_eq!(rig.app.screen(), Screen::NewGame, "the held key chooses no difficulty");
+    assert_eq!(rig.app.screen(), AppScreen::NewGame, "the held key chooses no difficulty");
 }
 
 #[test]
@@ -117,13 +117,13 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
     let mut rig = title();
     rig.choose("My maps");
     rig.choose("bad.toml");
-    assert_eq!(rig.app.screen(), Screen::Maps);
+    assert_eq!(rig.app.screen(), AppScreen::Maps);
     let mut buffer = ratatui::buffer::Buffer::empty(ratatui::layout::Rect::new(0, 0, 80, 24));
     rig.app.draw(&mut buffer);
     let text: String = buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect();
     assert!(text.contains("it:1: "), "{text}");
     rig.choose("pit.toml");
-    assert_eq!(rig.app.screen(), Screen::Playing);
+    assert_eq!(rig.app.screen(), AppScreen::Playing);
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
     let before = rig.position();
@@ -136,7 +136,7 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
     rig.choose("Restart the level");
-    assert_eq!((rig.app.screen(), rig.position()), (Screen::Playing, before));
+    assert_eq!((rig.app.screen(), rig.position()), (AppScreen::Playing, before));
 }
 
 #[test]
@@ -155,12 +155,12 @@ fn the_exit_of_a_level_leads_to_the_next_one() {
         rig.press(W);
         rig.wait(1500);
         rig.release(W);
-        assert_eq!(rig.app.screen(), Screen::LevelDone);
+        assert_eq!(rig.app.screen(), AppScreen::LevelDone);
         rig.wait(1000);
         rig.tap(ENTER, 30);
         rig.wait(300);
     }
-    assert_eq!(rig.app.screen(), Screen::End);
+    assert_eq!(rig.app.screen(), AppScreen::End);
 }
 
 #[test]

@@ -57,7 +57,7 @@ fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
     assert!(!rig.app.take_tmux_order());
     rig.tap(Key::Escape, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     assert!(!rig.app.take_tmux_order());
     rig.choose(OFFER);
     rig.choose("Tell tmux");
@@ -67,7 +67,7 @@ fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
     assert!(shows(&mut rig, "Done. Detach (prefix d)"));
     assert!(shows(&mut rig, "set -as terminal-features ',xterm-kitty:RGB'"));
     says(&mut rig, "RGB|kitty(0.42.1)|xterm-kitty", ColorSource::Tmux);
-    assert_eq!(rig.app.screen(), Screen::Title);
+    assert_eq!(rig.app.screen(), AppScreen::Title);
     assert!(!shows(&mut rig, OFFER));
     assert_eq!(rig.app.tmux_order, TmuxOrder::None);
 }

@@ -8,7 +8,7 @@ use crate::color::Rgb;
 use crate::sort;
 
 /// A palette, and its entry for each colour of the pictures.
-pub(crate) struct Palette {
+pub(crate) struct IndexedPalette {
     /// The channels of the entries.
     pub(crate) entries: Vec<[u8; 3]>,
     indices: BTreeMap<[u8; 3], u8>,
@@ -17,7 +17,7 @@ pub(crate) struct Palette {
 /// The maximum number of entries.
 const MAX: usize = 256;
 
-impl Palette {
+impl IndexedPalette {
     /// A palette for `colors`. It is exact for up to 256 different ones.
     pub(crate) fn of(colors: impl Iterator<Item = Rgb>) -> Self {
         let mut counts = BTreeMap::new();
@@ -104,7 +104,7 @@ mod tests {
 
     /// The palette for `colors`, and its colour for each of them.
     fn shown(colors: &[Rgb]) -> (usize, Vec<Rgb>) {
-        let palette = Palette::of(colors.iter().copied());
+        let palette = IndexedPalette::of(colors.iter().copied());
         let entry = |&color| {
             let [red, green, blue] = palette.entries[usize::from(palette.index(color))];
             Rgb::new(red, green, blue)

@@ -31,7 +31,7 @@ use crate::color::srgb::linear;
 
 /// The look of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Look {
+pub(crate) enum CellMixture {
     /// Each part in its own palette colour.
     Parts([u8; 2]),
     /// A shade with this number of quarters of text colour, from 1 to 3, in a text and a background
@@ -60,7 +60,7 @@ impl Mixer {
     /// The look of a cell whose parts have these colours. The first part covers `share` of the
     /// cell, from 0 to [`WHOLE`].
     #[inline]
-    pub(crate) fn look(&mut self, colors: [Rgb; 2], share: u8) -> Look {
+    pub(crate) fn look(&mut self, colors: [Rgb; 2], share: u8) -> CellMixture {
         let shares = [share, WHOLE - share].map(u32::from);
         let (look, pair) = self.mixtures.look(colors, shares, self.left);
         self.left = pair;
@@ -81,7 +81,7 @@ struct Limits {
 impl Limits {
     /// The error that the contrast between two mixed colours adds.
     #[inline]
-    fn contrast(&self, [one, other]: [Place; 2]) -> u32 {
+    fn contrast(&self, [one, other]: [WeightedOklab; 2]) -> u32 {
         (distance(one, other) >> 12) * self.contrast
     }
 }
@@ -99,13 +99,13 @@ const SHARING: u32 = squared(0.015);
 const DETAIL_WEIGHT: u32 = 90;
 
 /// A weighted colour in Oklab, in steps of 1 / [`UNIT`].
-type Place = [i16; 3];
+type WeightedOklab = [i16; 3];
 
 const UNIT: f64 = 8192.0;
 
 /// The squared distance between two places.
 #[inline]
-fn distance(one: Place, other: Place) -> u32 {
+fn distance(one: WeightedOklab, other: WeightedOklab) -> u32 {
     (0..3).fold(0, |sum, i| {
         let part = i32::from(one[i]) - i32::from(other[i]);
         sum + (part * part) as u32
@@ -117,7 +117,7 @@ const fn squared(distance: f64) -> u32 {
     (distance * distance * UNIT * UNIT) as u32
 }
 
-fn place(Oklab([lightness, red, yellow]): Oklab) -> Place {
+fn place(Oklab([lightness, red, yellow]): Oklab) -> WeightedOklab {
     [lightness, CHROMA_WEIGHT * red, CHROMA_WEIGHT * yellow]
         .map(|part| libm::round(part * UNIT) as i16)
 }
@@ -162,13 +162,13 @@ const BITS: u32 = 6;
 /// A bit that is set in every word of a table.
 const FOUND: u64 = 1 << 63;
 
-fn pack(place: Place, index: u8) -> u64 {
+fn pack(place: WeightedOklab, index: u8) -> u64 {
     let [l, a, b] = place.map(|part| u64::from(part as u16));
     FOUND | u64::from(index) << 48 | l << 32 | a << 16 | b
 }
 
 #[inline]
-fn unpack(word: u64) -> (Place, u8) {
+fn unpack(word: u64) -> (WeightedOklab, u8) {
     ([32, 16, 0].map(|bits| (word >> bits) as i16), (word >> 48) as u8)
 }
 
@@ -205,16 +205,16 @@ impl Mixtures {
     /// The look of a cell to the right of a cell in the colours `left`, and the two colours of the
     /// cell.
     #[inline]
-    fn look(&self, colors: [Rgb; 2], shares: [u32; 2], left: [u8; 2]) -> (Look, [u8; 2]) {
-        let light = Light::get();
+    fn look(&self, colors: [Rgb; 2], shares: [u32; 2], left: [u8; 2]) -> (CellMixture, [u8; 2]) {
+        let light = LightTables::get();
         let nearest = colors.map(|color| self.nearest(light.level(color)));
         let level = light.level_of_mean(colors, shares);
         let wanted =
-            Wanted { parts: nearest.map(|(place, _)| place), mean: self.nearest(level).0, shares };
+            TargetColors { parts: nearest.map(|(place, _)| place), mean: self.nearest(level).0, shares };
         let indices = nearest.map(|(_, index)| index);
-        let parts = (self.error_of_parts(&wanted, indices), Look::Parts(indices));
+        let parts = (self.error_of_parts(&wanted, indices), CellMixture::Parts(indices));
         let (quarters, pair) = self.mixed(level);
-        let shade = (self.error_of_shade(&wanted, quarters, pair), Look::Shade(quarters, pair));
+        let shade = (self.error_of_shade(&wanted, quarters, pair), CellMixture::Shade(quarters, pair));
         let best = if shade.0 < parts.0 { shade } else { parts };
 
         let mut shared = (best.0 + SHARING, best.1);
@@ -225,12 +225,12 @@ impl Mixtures {
         };
         let [text, ground] = left;
         for pair in [[ground; 2], [text; 2], left, [ground, text]] {
-            offer(self.error_of_parts(&wanted, pair), Look::Parts(pair));
+            offer(self.error_of_parts(&wanted, pair), CellMixture::Parts(pair));
         }
         if text != ground {
             for quarters in 1..=3 {
                 let error = self.error_of_shade(&wanted, quarters, left);
-                offer(error, Look::Shade(quarters, left));
+                offer(error, CellMixture::Shade(quarters, left));
             }
         }
         let look = shared.1;
@@ -239,7 +239,7 @@ impl Mixtures {
 
     /// The error of drawing the parts in these palette colours.
     #[inline]
-    fn error_of_parts(&self, wanted: &Wanted, colors: [u8; 2]) -> u32 {
+    fn error_of_parts(&self, wanted: &TargetColors, colors: [u8; 2]) -> u32 {
         let [one, other] = colors.map(|color| self.place(color));
         let shown = array::from_fn(|i| {
             let [one, other] = [one[i], other[i]].map(i32::from);
@@ -251,7 +251,7 @@ impl Mixtures {
 
     /// The error of a shade, including the error of its contrast.
     #[inline]
-    fn error_of_shade(&self, wanted: &Wanted, quarters: u8, colors: [u8; 2]) -> u32 {
+    fn error_of_shade(&self, wanted: &TargetColors, quarters: u8, colors: [u8; 2]) -> u32 {
         let shown = self.place_of_shade(quarters, colors);
         let contrast = self.limits.contrast(colors.map(|color| self.place(color)));
         wanted.error(shown, [shown; 2]) + contrast
@@ -259,7 +259,7 @@ impl Mixtures {
 
     /// The place of the colour at that level, and the palette colour nearest to it.
     #[inline]
-    fn nearest(&self, level: usize) -> (Place, u8) {
+    fn nearest(&self, level: usize) -> (WeightedOklab, u8) {
         unpack(self.nearest.get(level, || {
             let place = place(Oklab::from_linear(light_of_level(level)));
             pack(place, self.shades.nearest_color(place))
@@ -280,13 +280,13 @@ impl Mixtures {
 
     /// The place of a palette colour.
     #[inline]
-    fn place(&self, index: u8) -> Place {
+    fn place(&self, index: u8) -> WeightedOklab {
         self.place_of_shade(0, [index; 2])
     }
 
     /// The place of a shade.
     #[inline]
-    fn place_of_shade(&self, quarters: u8, colors: [u8; 2]) -> Place {
+    fn place_of_shade(&self, quarters: u8, colors: [u8; 2]) -> WeightedOklab {
         let [text, ground] = colors.map(usize::from);
         let index = text << 10 | ground << 2 | usize::from(quarters);
         unpack(self.places.get(index, || pack(place(self.ink.mixed(quarters, colors)), 0))).0
@@ -294,18 +294,18 @@ impl Mixtures {
 }
 
 /// The look that a cell should have.
-struct Wanted {
-    parts: [Place; 2],
+struct TargetColors {
+    parts: [WeightedOklab; 2],
     /// The place of the mean light.
-    mean: Place,
+    mean: WeightedOklab,
     shares: [u32; 2],
 }
 
-impl Wanted {
+impl TargetColors {
     /// The error of a cell whose parts look like `parts` and that looks like `mean` as a whole.
     /// Most of it is the error of the whole, because the eye blurs the parts.
     #[inline]
-    fn error(&self, mean: Place, parts: [Place; 2]) -> u32 {
+    fn error(&self, mean: WeightedOklab, parts: [WeightedOklab; 2]) -> u32 {
         let apart = [0, 1].map(|i| self.shares[i] * (distance(self.parts[i], parts[i]) >> 8));
         let apart = (apart[0] + apart[1]) / u32::from(WHOLE);
         apart * DETAIL_WEIGHT + (distance(self.mean, mean) >> 8) * (256 - DETAIL_WEIGHT)
@@ -315,24 +315,24 @@ impl Wanted {
 /// The two colours of a cell to the right of a cell in the colours `left`. A cell of a single
 /// colour keeps one colour of `left` beside its own.
 #[inline]
-fn colors_after(look: Look, left: [u8; 2]) -> [u8; 2] {
+fn colors_after(look: CellMixture, left: [u8; 2]) -> [u8; 2] {
     match look {
-        Look::Parts([one, other]) if one == other => {
+        CellMixture::Parts([one, other]) if one == other => {
             if left.contains(&one) {
                 left
             } else {
                 [left[0], one]
             }
         }
-        Look::Parts([one, other]) if left == [other, one] => left,
-        Look::Parts(pair) | Look::Shade(_, pair) => pair,
+        CellMixture::Parts([one, other]) if left == [other, one] => left,
+        CellMixture::Parts(pair) | CellMixture::Shade(_, pair) => pair,
     }
 }
 
 /// A shade of two palette colours.
 #[derive(Clone, Copy)]
 struct Shade {
-    place: Place,
+    place: WeightedOklab,
     contrast: u32,
     quarters: u8,
     colors: [u8; 2],
@@ -340,7 +340,7 @@ struct Shade {
 
 /// All shades of a palette, and its colours.
 struct Shades {
-    colors: Vec<(u8, Place)>,
+    colors: Vec<(u8, WeightedOklab)>,
     /// In the order of their bins.
     all: Vec<Shade>,
     /// The index of the first shade of each bin. The last entry is the number of shades.
@@ -352,7 +352,7 @@ const BINS: i32 = 17;
 const BIN_WIDTH: i32 = UNIT as i32 / 16;
 
 /// The bin of a place, along each axis.
-fn bin([l, a, b]: Place) -> [i32; 3] {
+fn bin([l, a, b]: WeightedOklab) -> [i32; 3] {
     let middle = BINS / 2;
     let along = |part: i16| i32::from(part).div_euclid(BIN_WIDTH);
     [along(l), along(a) + middle, along(b) + middle].map(|bin| bin.clamp(0, BINS - 1))
@@ -391,15 +391,15 @@ impl Shades {
         Self { colors, all: shades, starts }
     }
 
-    fn nearest_color(&self, place: Place) -> u8 {
-        let by_distance = |&&(_, color): &&(u8, Place)| distance(place, color);
+    fn nearest_color(&self, place: WeightedOklab) -> u8 {
+        let by_distance = |&&(_, color): &&(u8, WeightedOklab)| distance(place, color);
         self.colors.iter().min_by_key(by_distance).map_or(0, |&(index, _)| index)
     }
 
     /// The shade with the least sum of error and contrast. The search starts in the bin of the
     /// place and continues in bins that are farther and farther away, until none of them can
     /// contain a better shade.
-    fn nearest(&self, place: Place) -> &Shade {
+    fn nearest(&self, place: WeightedOklab) -> &Shade {
         let mut best = (u32::MAX, &self.all[0]);
         let middle = bin(place);
         for radius in 0..BINS {
@@ -461,30 +461,30 @@ impl ShadeInk {
 }
 
 /// Tables from channel values and from steps of light to levels.
-struct Light {
+struct LightTables {
     of_channel: [u32; 256],
     level_of_channel: [u8; 256],
     /// The level of each step of light.
     levels: [u8; Self::STEPS + 1],
 }
 
-impl Light {
+impl LightTables {
     const STEPS: usize = 1 << 12;
     /// Full light. The sum of [`WHOLE`] shares of it has at most 32 bits.
     const FULL: f64 = (Self::STEPS << 3) as f64;
 
     #[inline]
     fn get() -> &'static Self {
-        static LIGHT: LazyLock<Light> = LazyLock::new(|| {
+        static LIGHT: LazyLock<LightTables> = LazyLock::new(|| {
             let of_channel = |value: usize| linear(Rgb::new(value as u8, 0, 0))[0];
             let level =
                 |light: f64| libm::round(libm::cbrt(light) * f64::from((1 << BITS) - 1)) as u8;
-            Light {
+            LightTables {
                 of_channel: array::from_fn(|value| {
-                    libm::round(of_channel(value) * Light::FULL) as u32
+                    libm::round(of_channel(value) * LightTables::FULL) as u32
                 }),
                 level_of_channel: array::from_fn(|value| level(of_channel(value))),
-                levels: array::from_fn(|step| level(step as f64 / Light::STEPS as f64)),
+                levels: array::from_fn(|step| level(step as f64 / LightTables::STEPS as f64)),
             }
         });
         &LIGHT
@@ -536,11 +536,11 @@ mod tests {
     /// The colour that a cell shows for one given colour.
     fn shown(color: Rgb, (depth, ink): (ColorDepth, ShadeInk)) -> Oklab {
         match Mixer::new(depth, ink).look([color; 2], WHOLE / 2) {
-            Look::Parts([one, other]) => {
+            CellMixture::Parts([one, other]) => {
                 assert_eq!(one, other, "{color:?}");
                 of_256(one).into()
             }
-            Look::Shade(quarters, colors) => ink.mixed(quarters, colors),
+            CellMixture::Shade(quarters, colors) => ink.mixed(quarters, colors),
         }
     }
 
@@ -610,13 +610,13 @@ mod tests {
     fn a_cell_keeps_the_colours_at_its_left_and_an_edge_its_halves() {
         let mut mixer = Mixer::new(ColorDepth::Indexed256, ShadeInk::Dots);
         let pair = |look| match look {
-            Look::Shade(_, pair) | Look::Parts(pair) => pair,
+            CellMixture::Shade(_, pair) | CellMixture::Parts(pair) => pair,
         };
         let wall = |shade: u8| [Rgb::new(90 + shade, 60 + shade, 36 + shade); 2];
         let pairs: Vec<_> = (0..40).map(|shade| pair(mixer.look(wall(shade), 12))).collect();
         let changes = pairs.windows(2).filter(|pair| pair[0] != pair[1]).count();
         assert!(changes < 15, "{pairs:?}");
         let edge = mixer.look([Rgb::new(230, 220, 200), Rgb::new(20, 20, 20)], 12);
-        assert!(matches!(edge, Look::Parts([top, bottom]) if top != bottom), "{edge:?}");
+        assert!(matches!(edge, CellMixture::Parts([top, bottom]) if top != bottom), "{edge:?}");
     }
 }

@@ -20,8 +20,8 @@ fn radius(cells: f64) -> Radius {
     Radius::new(cells).unwrap()
 }
 
-fn still_at(position: DVec2) -> Body {
-    Body { position, velocity: DVec2::ZERO }
+fn still_at(position: DVec2) -> MovingBody {
+    MovingBody { position, velocity: DVec2::ZERO }
 }
 
 fn moved(grid: &Grid, from: DVec2, displacement: DVec2, radius: Radius) -> DVec2 {
@@ -145,7 +145,7 @@ proptest! {
         displacement in displacement(),
     ) {
         let from = moved(&grid, start.center(), detour, radius);
-        let path = Path::new(from, displacement).unwrap();
+        let path = StraightPath::new(from, displacement).unwrap();
         let contact = first_contact(&grid, path, radius);
         let end = contact.map_or(from + displacement, |contact| contact.position);
         for part in 0..=100 {
@@ -167,7 +167,7 @@ proptest! {
         displacement in displacement(),
         velocity in displacement(),
     ) {
-        let body = Body { position: start.center(), velocity };
+        let body = MovingBody { position: start.center(), velocity };
         let after = slide(&mut grid, body, displacement, radius(0.25));
         prop_assert!(after.velocity.length() <= velocity.length() * (1.0 + 1e-12));
     }
@@ -216,7 +216,7 @@ proptest! {
         let from = DVec2::new(from.0, from.1).clamp(DVec2::splat(0.5), DVec2::splat(1.5));
         let push = DVec2::new(push.0, push.1);
         let cornered = moved(&grid, from, push * 1e4, radius);
-        let held = slide(&mut grid, Body { position: cornered, velocity: push }, push, radius);
+        let held = slide(&mut grid, MovingBody { position: cornered, velocity: push }, push, radius);
         prop_assert!(cornered.distance(DVec2::splat(2.0 - radius.0)) < 1e-12);
         prop_assert!(held.position.distance(cornered) < 1e-12);
         prop_assert_eq!(held.velocity, DVec2::ZERO);
@@ -269,7 +269,7 @@ fn a_joint_of_a_wall_is_no_corner() {
     let felt = |rows: &[&str]| {
         let grid = Grid::sketch(rows).unwrap();
         let room = OpenCell { obstacles: &grid, column: 1, row: 1, radius: Radius(0.25) };
-        let path = Path::new(DVec2::new(1.5, 1.5), DVec2::new(-1.0, -1.0)).unwrap();
+        let path = StraightPath::new(DVec2::new(1.5, 1.5), DVec2::new(-1.0, -1.0)).unwrap();
         room.corner_events(path).count()
     };
     assert_eq!(felt(&["#..", "...", "..."]), 1);
@@ -351,7 +351,7 @@ mod shapes {
     const QUARTER: Radius = Radius::new(0.25).unwrap();
 
     fn moved(room: &Room, position: DVec2, displacement: DVec2) -> DVec2 {
-        let body = Body { position, velocity: DVec2::ZERO };
+        let body = MovingBody { position, velocity: DVec2::ZERO };
         slide(&mut room.clone(), body, displacement, QUARTER).position
     }
 
@@ -384,7 +384,7 @@ mod shapes {
             displacement in displacement(),
             velocity in displacement(),
         ) {
-            let body = Body { position: start, velocity };
+            let body = MovingBody { position: start, velocity };
             let after = slide(&mut room.clone(), body, displacement, QUARTER);
             prop_assert!(after.velocity.length() <= velocity.length() * (1.0 + 1e-12));
         }

@@ -5,10 +5,10 @@
 
 use glam::DVec2;
 
-use super::context::{Act, Context, Target};
-use super::guard::{GUESSES, Guard, MAX_PACES, PACE, Phase, Quarry, State, WONDERS};
+use super::context::{Act, Context, PerceivedPlayer};
+use super::guard::{GUESSES, Guard, MAX_PACES, PACE, AttackPhase, KnownPlayer, GuardActivity, WONDERS};
 use super::perception::NOSE;
-use super::walking::Progress;
+use super::walking::WalkProgress;
 use crate::game::sound::{Sound, SoundKind};
 use crate::world::{Cell, Duty, GuardKind};
 
@@ -52,7 +52,7 @@ impl Guard {
         if self.stagger > 0 {
             self.stagger = self.stagger.saturating_sub(steps);
         } else {
-            if !matches!(self.state, State::Asleep | State::Down { .. }) {
+            if !matches!(self.state, GuardActivity::Asleep | GuardActivity::Down { .. }) {
                 self.perceive(context);
             }
             self.think(context);
@@ -62,20 +62,20 @@ impl Guard {
 
     fn think(&mut self, context: &mut Context) {
         match self.state {
-            State::Asleep => {}
-            State::OnDuty => self.do_duty(context),
-            State::Returning => self.return_to_duty(context),
-            State::Wondering { .. } => self.wonder(context),
-            State::Searching { around, next, left } => self.search(context, around, next, left),
-            State::Tracking { target, mark, lost } => self.track(context, target, mark, lost),
-            State::Chasing { fright } => self.chase(context, fright),
-            State::Attacking { phase, left } => self.attack(context, phase, left),
-            State::Down { left } => self.lie(left.saturating_sub(context.stride)),
+            GuardActivity::Asleep => {}
+            GuardActivity::OnDuty => self.do_duty(context),
+            GuardActivity::Returning => self.return_to_duty(context),
+            GuardActivity::Wondering { .. } => self.wonder(context),
+            GuardActivity::Searching { around, next, left } => self.search(context, around, next, left),
+            GuardActivity::Tracking { target, mark, lost } => self.track(context, target, mark, lost),
+            GuardActivity::Chasing { fright } => self.chase(context, fright),
+            GuardActivity::Attacking { phase, left } => self.attack(context, phase, left),
+            GuardActivity::Down { left } => self.stay_down(left.saturating_sub(context.stride)),
         }
     }
 
-    fn lie(&mut self, left: u16) {
-        self.state = State::Down { left };
+    fn stay_down(&mut self, left: u16) {
+        self.state = GuardActivity::Down { left };
         if left == 0 {
             self.get_up();
         }
@@ -139,9 +139,9 @@ impl Guard {
         };
         let speed = self.abilities().walk;
         match self.go_to(context, home, speed) {
-            Progress::OnTheWay => {}
-            Progress::There | Progress::Impossible => {
-                self.state = State::OnDuty;
+            WalkProgress::OnTheWay => {}
+            WalkProgress::There | WalkProgress::Impossible => {
+                self.state = GuardActivity::OnDuty;
                 self.pause = 60;
             }
         }
@@ -150,9 +150,9 @@ impl Guard {
     fn stand(&mut self, context: &mut Context) {
         let (post, speed) = (self.post, self.abilities().walk);
         match self.go_to(context, post, speed) {
-            Progress::OnTheWay => {}
-            Progress::Impossible => self.pause_a_while(120, 240),
-            Progress::There => {
+            WalkProgress::OnTheWay => {}
+            WalkProgress::Impossible => self.pause_a_while(120, 240),
+            WalkProgress::There => {
                 let offset = self.glance;
                 self.look = Some(self.post_heading.turned(offset).direction());
                 self.pause_a_while(100, 240);
@@ -163,12 +163,12 @@ impl Guard {
     fn patrol(&mut self, context: &mut Context, stop: Cell, count: usize) {
         let speed = self.abilities().walk;
         match self.go_to(context, stop, speed) {
-            Progress::OnTheWay => {}
-            Progress::There => {
+            WalkProgress::OnTheWay => {}
+            WalkProgress::There => {
                 self.stop = (self.stop + 1) % count;
                 self.pause_a_while(STOP, STOP);
             }
-            Progress::Impossible => {
+            WalkProgress::Impossible => {
                 self.stop = (self.stop + 1) % count;
                 self.pause_a_while(30, 60);
             }
@@ -184,7 +184,7 @@ impl Guard {
             return;
         };
         let speed = self.abilities().walk;
-        if self.go_to(context, errand, speed) != Progress::OnTheWay {
+        if self.go_to(context, errand, speed) != WalkProgress::OnTheWay {
             self.errand = None;
             self.pause_a_while(90, 240);
         }
@@ -223,13 +223,13 @@ impl Guard {
 /// Wondering, searching and tracking: the behaviour of guards who have noticed something.
 impl Guard {
     pub(crate) fn wonder(&mut self, context: &mut Context) {
-        let State::Wondering { about, looks, goes, hurries, wakes } = self.state else { return };
+        let GuardActivity::Wondering { about, looks, goes, hurries, wakes } = self.state else { return };
         let way = about - self.mover.position();
         if looks > 0 {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
             let looks = looks.saturating_sub(context.stride);
             let goes = goes || self.awareness >= WONDERS;
-            self.state = State::Wondering { about, looks, goes, hurries, wakes };
+            self.state = GuardActivity::Wondering { about, looks, goes, hurries, wakes };
             if looks == 0 && !goes {
                 self.give_up(context);
             }
@@ -239,8 +239,8 @@ impl Guard {
         let abilities = self.abilities();
         let speed = if hurries { abilities.chase } else { abilities.walk * 1.15 };
         match self.go(context, cell, about, speed) {
-            Progress::OnTheWay => {}
-            Progress::There | Progress::Impossible => {
+            WalkProgress::OnTheWay => {}
+            WalkProgress::There | WalkProgress::Impossible => {
                 context.woken.extend(wakes);
                 let left = if hurries || wakes.is_some() { 780 } else { 420 };
                 self.begin_to_search(cell, left);
@@ -260,7 +260,7 @@ impl Guard {
         left: u16,
     ) {
         let left = left.saturating_sub(context.stride);
-        self.state = State::Searching { around, next, left };
+        self.state = GuardActivity::Searching { around, next, left };
         if left == 0 {
             self.give_up(context);
         } else if self.pause > 0 {
@@ -270,14 +270,14 @@ impl Guard {
         } else if let Some(cell) = next {
             let speed = self.abilities().walk * 1.3;
             let progress = self.go_to(context, cell, speed);
-            if progress != Progress::OnTheWay {
-                self.state = State::Searching { around, next: None, left };
-                let pause = if progress == Progress::There { 60 } else { 5 };
+            if progress != WalkProgress::OnTheWay {
+                self.state = GuardActivity::Searching { around, next: None, left };
+                let pause = if progress == WalkProgress::There { 60 } else { 5 };
                 self.pause_a_while(pause, pause + 20);
             }
         } else {
             let next = self.random_cell(context, around, SEARCHED);
-            self.state = State::Searching { around, next, left };
+            self.state = GuardActivity::Searching { around, next, left };
         }
     }
 
@@ -291,16 +291,16 @@ impl Guard {
         let speed = self.abilities().walk * 1.4;
         let is_near = self.mover.position().distance_squared(cell.center()) < 0.5;
         if is_near && newer {
-            self.state = State::Tracking { target, mark: mark + 1, lost: 0 };
+            self.state = GuardActivity::Tracking { target, mark: mark + 1, lost: 0 };
             return;
         }
         match self.go_to(context, cell, speed) {
-            Progress::OnTheWay => self.state = State::Tracking { target, mark, lost: 0 },
-            Progress::There if newer => {
-                self.state = State::Tracking { target, mark: mark + 1, lost: 0 };
+            WalkProgress::OnTheWay => self.state = GuardActivity::Tracking { target, mark, lost: 0 },
+            WalkProgress::There if newer => {
+                self.state = GuardActivity::Tracking { target, mark: mark + 1, lost: 0 };
             }
-            Progress::There | Progress::Impossible => {
-                self.state = State::Tracking { target, mark, lost };
+            WalkProgress::There | WalkProgress::Impossible => {
+                self.state = GuardActivity::Tracking { target, mark, lost };
                 self.stop_tracking(lost, context.stride);
             }
         }
@@ -308,9 +308,9 @@ impl Guard {
 
     /// Sniffs around at the end of a trail, and searches after a while.
     fn stop_tracking(&mut self, lost: u16, stride: u16) {
-        let State::Tracking { target, mark, .. } = self.state else { return };
+        let GuardActivity::Tracking { target, mark, .. } = self.state else { return };
         let lost = lost.saturating_add(stride);
-        self.state = State::Tracking { target, mark, lost };
+        self.state = GuardActivity::Tracking { target, mark, lost };
         let side = if (lost / 20).is_multiple_of(2) { 0.05 } else { -0.05 };
         self.look = Some(self.mover.heading.turned(side).direction());
         if lost > LOST {
@@ -322,8 +322,8 @@ impl Guard {
     /// Goes to a fallen guard if this guard sees one.
     pub(crate) fn look_for_fallen(&mut self, context: &mut Context) {
         let is_busy = match self.state {
-            State::OnDuty | State::Returning | State::Searching { .. } => false,
-            State::Wondering { wakes, hurries, .. } => wakes.is_some() || hurries,
+            GuardActivity::OnDuty | GuardActivity::Returning | GuardActivity::Searching { .. } => false,
+            GuardActivity::Wondering { wakes, hurries, .. } => wakes.is_some() || hurries,
             _ => true,
         };
         let Some(sight) = self.abilities().sight.filter(|_| !is_busy) else { return };
@@ -340,7 +340,7 @@ impl Guard {
             let about = context.others[index].position;
             context.sound(SoundKind::Wonder, self.mover.cell(), 7);
             self.awareness = self.awareness.max(WONDERS);
-            self.state = State::Wondering {
+            self.state = GuardActivity::Wondering {
                 about,
                 looks: 20,
                 goes: true,
@@ -359,11 +359,11 @@ impl Guard {
         let way = quarry.position - self.mover.position();
         if fright > 0 {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
-            self.state = State::Chasing { fright: fright.saturating_sub(context.stride) };
+            self.state = GuardActivity::Chasing { fright: fright.saturating_sub(context.stride) };
         } else if self.can_strike(context, quarry, way) {
             self.begin_to_strike(context);
         } else if quarry.unseen > FORGOTTEN {
-            self.lose(context, quarry);
+            self.lose_track(context, quarry);
         } else if self.keeps_away(context) && quarry.unseen <= GUESSES {
             self.keep_distance(context, quarry, way);
         } else {
@@ -372,21 +372,21 @@ impl Guard {
     }
 
     /// Walks to the position where the player is or was.
-    fn close_in(&mut self, context: &mut Context, quarry: Quarry) {
+    fn close_in(&mut self, context: &mut Context, quarry: KnownPlayer) {
         let Some(cell) = Cell::containing(quarry.position) else { return self.give_up(context) };
         let speed = self.abilities().chase;
         let progress = self.go(context, cell, quarry.position, speed);
         let is_seen = quarry.unseen <= GUESSES;
         match progress {
-            Progress::OnTheWay => {
+            WalkProgress::OnTheWay => {
                 self.baffled = self.baffled.saturating_sub(context.stride);
             }
-            Progress::There if is_seen => {
+            WalkProgress::There if is_seen => {
                 self.look = Some(quarry.position - self.mover.position());
             }
-            Progress::There => self.lose(context, quarry),
-            Progress::Impossible if !is_seen => self.lose(context, quarry),
-            Progress::Impossible => {
+            WalkProgress::There => self.lose_track(context, quarry),
+            WalkProgress::Impossible if !is_seen => self.lose_track(context, quarry),
+            WalkProgress::Impossible => {
                 self.baffled += context.stride;
                 let way = quarry.position - self.mover.position();
                 self.look = Some(way).filter(|way| *way != DVec2::ZERO);
@@ -397,12 +397,12 @@ impl Guard {
         }
         if self.baffled > BAFFLED {
             self.blind = OVERLOOKS;
-            self.lose(context, quarry);
+            self.lose_track(context, quarry);
         }
     }
 
     /// Searches for a player who is no longer there.
-    fn lose(&mut self, context: &mut Context, quarry: Quarry) {
+    fn lose_track(&mut self, context: &mut Context, quarry: KnownPlayer) {
         self.awareness = WONDERS;
         self.baffled = 0;
         let trail = context.trails.get(quarry.target).filter(|_| self.kind == GuardKind::Hound);
@@ -410,7 +410,7 @@ impl Guard {
         let is_near = |place: DVec2| place.distance(position) <= NOSE;
         let mark = trail.and_then(|trail| trail.newest(|cell| is_near(cell.center())));
         if let Some(mark) = mark.filter(|_| self.blind == 0) {
-            self.state = State::Tracking { target: quarry.target, mark, lost: 0 };
+            self.state = GuardActivity::Tracking { target: quarry.target, mark, lost: 0 };
         } else if let Some(cell) = Cell::containing(quarry.position) {
             let left = self.random.whole(600, 900) as u16;
             self.begin_to_search(cell, left);
@@ -430,7 +430,7 @@ impl Guard {
         self.kind != GuardKind::Lantern || context.count_up() <= FEW
     }
 
-    fn keep_distance(&mut self, context: &mut Context, quarry: Quarry, way: DVec2) {
+    fn keep_distance(&mut self, context: &mut Context, quarry: KnownPlayer, way: DVec2) {
         let distance = way.length();
         let speed = self.abilities().chase;
         let (near, far) = KEEPS;
@@ -461,7 +461,7 @@ impl Guard {
     }
 
     /// Whether the player is near enough, ahead and in sight.
-    fn can_strike(&self, context: &Context, quarry: Quarry, way: DVec2) -> bool {
+    fn can_strike(&self, context: &Context, quarry: KnownPlayer, way: DVec2) -> bool {
         let Some(target) = context.target(quarry.target) else { return false };
         let reach = self.abilities().reach;
         let reach = if self.kind == GuardKind::Hound { 1.9 } else { reach * 0.95 };
@@ -482,33 +482,33 @@ impl Guard {
         let kind = if self.kind == GuardKind::Archer { SoundKind::Draw } else { SoundKind::Windup };
         context.sound(kind, self.mover.cell(), 10);
         let left = self.abilities().windup;
-        self.state = State::Attacking { phase: Phase::Windup, left };
+        self.state = GuardActivity::Attacking { phase: AttackPhase::Windup, left };
     }
 }
 
 /// Attacking: blows and shots.
 impl Guard {
-    fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
+    fn attack(&mut self, context: &mut Context, phase: AttackPhase, left: u16) {
         let target = self.quarry.and_then(|quarry| context.target(quarry.target).copied());
         let Some(target) = target else { return self.give_up(context) };
         let left = left.saturating_sub(context.stride);
-        self.state = State::Attacking { phase, left };
+        self.state = GuardActivity::Attacking { phase, left };
         match phase {
-            Phase::Windup => self.wind_up(context, &target, left),
-            Phase::Strike { has_hit } => self.strike(context, &target, has_hit, left),
-            Phase::Recovery => {
+            AttackPhase::Windup => self.wind_up(context, &target, left),
+            AttackPhase::Strike { has_hit } => self.strike(context, &target, has_hit, left),
+            AttackPhase::Recovery => {
                 if left == 0 {
-                    self.state = State::Chasing { fright: 0 };
+                    self.state = GuardActivity::Chasing { fright: 0 };
                 }
             }
         }
     }
 
-    fn wind_up(&mut self, context: &mut Context, target: &Target, left: u16) {
+    fn wind_up(&mut self, context: &mut Context, target: &PerceivedPlayer, left: u16) {
         let is_archer = self.kind == GuardKind::Archer;
         let is_lost = self.quarry.is_some_and(|quarry| quarry.unseen > UNSEEN);
         if is_archer && is_lost && left > LOCKED {
-            self.state = State::Chasing { fright: 0 };
+            self.state = GuardActivity::Chasing { fright: 0 };
             return;
         }
         // A blind guard strikes at the position where they heard the player.
@@ -527,7 +527,7 @@ impl Guard {
         if left > 0 {
             return;
         }
-        self.state = State::Attacking { phase: Phase::Strike { has_hit: false }, left: STRIKE };
+        self.state = GuardActivity::Attacking { phase: AttackPhase::Strike { has_hit: false }, left: STRIKE };
         if is_archer {
             self.shoot(context, target);
         } else {
@@ -535,7 +535,7 @@ impl Guard {
         }
     }
 
-    fn strike(&mut self, context: &mut Context, target: &Target, has_hit: bool, left: u16) {
+    fn strike(&mut self, context: &mut Context, target: &PerceivedPlayer, has_hit: bool, left: u16) {
         let is_archer = self.kind == GuardKind::Archer;
         let has_hit = has_hit || !is_archer && self.hits(context, target);
         self.look = Some(self.mover.facing);
@@ -546,17 +546,17 @@ impl Guard {
                 self.mover.body.velocity = self.wanted;
             }
         }
-        self.state = State::Attacking { phase: Phase::Strike { has_hit }, left };
+        self.state = GuardActivity::Attacking { phase: AttackPhase::Strike { has_hit }, left };
         if left == 0 {
             let left = self.abilities().recovery;
             // An archer keeps their distance between two shots.
             self.rest = if is_archer { 2 * left } else { left };
-            self.state = State::Attacking { phase: Phase::Recovery, left };
+            self.state = GuardActivity::Attacking { phase: AttackPhase::Recovery, left };
         }
     }
 
     /// Hits the player if they are within reach. Returns whether the blow hit.
-    fn hits(&self, context: &mut Context, target: &Target) -> bool {
+    fn hits(&self, context: &mut Context, target: &PerceivedPlayer) -> bool {
         let way = target.position - self.mover.position();
         let distance = way.length();
         let is_level = target.feet < self.head() + 0.3 && self.mover.feet < target.head + 0.3;
@@ -572,7 +572,7 @@ impl Guard {
         is_hit
     }
 
-    fn shoot(&self, context: &mut Context, target: &Target) {
+    fn shoot(&self, context: &mut Context, target: &PerceivedPlayer) {
         let from = self.mover.position();
         let height = self.mover.feet + self.abilities().eye;
         let distance = from.distance(target.position);

@@ -3,9 +3,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::movement::Ground;
+use super::movement::GuardWorld;
 use super::trail::Trail;
-use super::ways::{Gait, Terrain, Ways};
+use super::ways::{Gait, GuardTerrain, GuardPaths};
 use crate::game::rules::Rules;
 use crate::game::sight::Cloud;
 use crate::game::sound::{Sound, SoundKind, Source};
@@ -13,13 +13,13 @@ use crate::world::{Cell, World};
 
 pub(crate) struct Context<'a> {
     pub(crate) world: &'a World,
-    pub(crate) terrain: &'a Terrain,
-    pub(crate) ways: &'a mut Ways,
-    pub(crate) targets: &'a [Target],
+    pub(crate) terrain: &'a GuardTerrain,
+    pub(crate) ways: &'a mut GuardPaths,
+    pub(crate) targets: &'a [PerceivedPlayer],
     pub(crate) clouds: &'a [Cloud],
     pub(crate) trails: &'a [Trail],
     /// All guards, as they were at the end of the last step.
-    pub(crate) others: &'a [Other],
+    pub(crate) others: &'a [PerceivedGuard],
     pub(crate) rules: Rules,
     /// The number of the step.
     pub(crate) now: u64,
@@ -34,7 +34,7 @@ pub(crate) struct Context<'a> {
 
 /// A guard as other guards perceive them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Other {
+pub(crate) struct PerceivedGuard {
     pub(crate) position: DVec2,
     pub(crate) feet: f64,
     pub(crate) is_down: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Other {
 
 /// A player as guards perceive them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Target {
+pub(crate) struct PerceivedPlayer {
     /// The position, in cells.
     pub(crate) position: DVec2,
     /// The height of the feet, in cells.
@@ -57,7 +57,7 @@ pub(crate) struct Target {
     pub(crate) is_alive: bool,
 }
 
-impl Target {
+impl PerceivedPlayer {
     /// The cell that contains the player's centre.
     pub(crate) fn cell(&self) -> Cell {
         Cell::at(self.position)
@@ -86,12 +86,12 @@ pub(crate) enum Act {
 }
 
 impl Context<'_> {
-    pub(crate) fn target(&self, index: usize) -> Option<&Target> {
+    pub(crate) fn target(&self, index: usize) -> Option<&PerceivedPlayer> {
         self.targets.get(index).filter(|target| target.is_alive)
     }
 
-    pub(crate) fn ground(&self, gait: Gait) -> Ground<'_> {
-        Ground { world: self.world, terrain: self.terrain, gait }
+    pub(crate) fn ground(&self, gait: Gait) -> GuardWorld<'_> {
+        GuardWorld { world: self.world, terrain: self.terrain, gait }
     }
 
     /// Makes a sound.

@@ -3,14 +3,14 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::context::{Context, Other, Target};
+use super::context::{Context, PerceivedGuard, PerceivedPlayer};
 use super::kind::{Abilities, abilities};
 use super::movement::Mover;
 use super::ways::Gait;
 use crate::game::sight::{Point, is_in_sight};
 use crate::game::sound::{Sound, SoundKind};
 use crate::game::stored::{OfLevel, Unrestorable, check, check_on_map};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading, World};
 
@@ -52,10 +52,10 @@ pub(crate) struct Guard {
     #[serde(skip)]
     pub(crate) duty: Duty,
     pub(crate) mover: Mover,
-    pub(crate) state: State,
+    pub(crate) state: GuardActivity,
     /// From 0 to [`ALARMED`].
     pub(crate) awareness: u16,
-    pub(crate) quarry: Option<Quarry>,
+    pub(crate) quarry: Option<KnownPlayer>,
     /// Whether the guard has been alarmed before. Set only on the hardest difficulty.
     pub(crate) is_wary: bool,
     /// The index of the next stop of a patrol.
@@ -86,7 +86,7 @@ pub(crate) struct Guard {
 
 /// A guard's activity, as the simulation stores it. Times are in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum State {
+pub(crate) enum GuardActivity {
     Asleep,
     OnDuty,
     /// Looks towards a place for a while, and then walks there if `goes` is true.
@@ -114,7 +114,7 @@ pub(crate) enum State {
         fright: u16,
     },
     Attacking {
-        phase: Phase,
+        phase: AttackPhase,
         left: u16,
     },
     Down {
@@ -125,7 +125,7 @@ pub(crate) enum State {
 
 /// The phases of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Phase {
+pub(crate) enum AttackPhase {
     /// The warning.
     Windup,
     /// The blow itself. `has_hit` is true once it has hit.
@@ -136,7 +136,7 @@ pub(crate) enum Phase {
 
 /// A guard's knowledge of the player that they look for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Quarry {
+pub(crate) struct KnownPlayer {
     /// The index of the player.
     pub(crate) target: usize,
     /// The position at which the player was last perceived.
@@ -222,7 +222,7 @@ impl Guard {
             post_heading: post.heading,
             duty: post.duty.clone(),
             mover: Mover::new(world, post.cell, post.heading),
-            state: if is_asleep { State::Asleep } else { State::OnDuty },
+            state: if is_asleep { GuardActivity::Asleep } else { GuardActivity::OnDuty },
             awareness: 0,
             quarry: None,
             is_wary: false,
@@ -245,14 +245,14 @@ impl Guard {
 
     /// Lays the guard on the floor.
     pub(crate) fn stun(&mut self, steps: u16) {
-        self.state = State::Down { left: steps.max(1) };
+        self.state = GuardActivity::Down { left: steps.max(1) };
         self.mover.body.velocity = DVec2::ZERO;
         (self.awareness, self.quarry, self.stagger) = (0, None, 0);
     }
 
     /// Makes a guard who lies on the floor stand up and look around.
     pub(crate) fn get_up(&mut self) {
-        self.state = State::Searching { around: self.mover.cell(), next: None, left: 600 };
+        self.state = GuardActivity::Searching { around: self.mover.cell(), next: None, left: 600 };
         self.pause = 60;
     }
 
@@ -264,11 +264,11 @@ impl Guard {
         self.stagger = STAGGER;
         self.mover.body.velocity = direction * PUSH;
         match self.state {
-            State::Attacking { .. } => self.state = State::Chasing { fright: 0 },
-            State::Asleep => {
+            GuardActivity::Attacking { .. } => self.state = GuardActivity::Chasing { fright: 0 },
+            GuardActivity::Asleep => {
                 let about = self.mover.position() - direction;
                 self.state =
-                    State::Wondering { about, looks: 30, goes: true, hurries: false, wakes: None };
+                    GuardActivity::Wondering { about, looks: 30, goes: true, hurries: false, wakes: None };
             }
             _ => {}
         }
@@ -276,20 +276,20 @@ impl Guard {
 
     /// Makes a sound and looks towards `about`. If `goes` is true, the guard then walks there.
     pub(crate) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
-        let looks = if self.state == State::Asleep { LOOKS * 2 } else { LOOKS };
-        self.state = State::Wondering { about, looks, goes, hurries: false, wakes: None };
+        let looks = if self.state == GuardActivity::Asleep { LOOKS * 2 } else { LOOKS };
+        self.state = GuardActivity::Wondering { about, looks, goes, hurries: false, wakes: None };
         context.sound(SoundKind::Wonder, self.mover.cell(), 7);
     }
 
     pub(crate) fn begin_to_search(&mut self, around: Cell, left: u16) {
-        self.state = State::Searching { around, next: None, left };
+        self.state = GuardActivity::Searching { around, next: None, left };
         self.pause_a_while(50, 70);
     }
 
     /// Returns to duty, with a sound.
     pub(crate) fn give_up(&mut self, context: &mut Context) {
         context.sound(SoundKind::GiveUp, self.mover.cell(), 7);
-        self.state = State::Returning;
+        self.state = GuardActivity::Returning;
         (self.awareness, self.quarry, self.errand) = (0, None, None);
     }
 
@@ -305,7 +305,7 @@ impl Guard {
         self.baffled = 0;
         self.is_wary |= context.rules.difficulty == Difficulty::Hard;
         let is_ringing = self.kind == GuardKind::Lantern;
-        self.state = State::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
+        self.state = GuardActivity::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
     }
 
     /// Stands still for a random number of steps between `least` and `most`, and looks to a random
@@ -340,7 +340,7 @@ impl Guard {
 
     /// Whether this guard has a clear line of sight to the middle of a player, in any direction and
     /// light.
-    pub(crate) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
+    pub(crate) fn has_line_to(&self, context: &Context, target: &PerceivedPlayer) -> bool {
         self.sees(context, target.position, target.middle())
     }
 
@@ -353,7 +353,7 @@ impl Guard {
     /// it is there.
     pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
         let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
-        let is_awake = !self.state.is_down() && self.state != State::Asleep;
+        let is_awake = !self.state.is_down() && self.state != GuardActivity::Asleep;
         let eye = self.eye();
         is_awake
             && eye.position.distance(point.position) <= range
@@ -367,7 +367,7 @@ impl Guard {
 
     /// Returns true if the guard does nothing until something wakes them.
     pub(crate) fn is_asleep(&self) -> bool {
-        self.state == State::Asleep && self.stagger == 0
+        self.state == GuardActivity::Asleep && self.stagger == 0
     }
 
     pub(crate) fn view(&self) -> GuardView {
@@ -381,22 +381,22 @@ impl Guard {
         }
     }
 
-    pub(crate) fn as_other(&self) -> Other {
+    pub(crate) fn as_other(&self) -> PerceivedGuard {
         let is_down = self.state.is_down();
-        Other { position: self.mover.position(), feet: self.mover.feet, is_down }
+        PerceivedGuard { position: self.mover.position(), feet: self.mover.feet, is_down }
     }
 
     /// The frame of the sprite.
     pub(crate) fn frame(&self) -> u8 {
         let is_walking = self.mover.body.velocity.length_squared() > 0.04;
         match self.state {
-            State::Down { .. } => 6,
-            State::Asleep => 7,
-            State::Attacking { phase: Phase::Windup, .. } => 4,
-            State::Attacking { phase: Phase::Strike { .. }, .. } => 5,
-            State::Chasing { fright } if fright > 0 => 3,
+            GuardActivity::Down { .. } => 6,
+            GuardActivity::Asleep => 7,
+            GuardActivity::Attacking { phase: AttackPhase::Windup, .. } => 4,
+            GuardActivity::Attacking { phase: AttackPhase::Strike { .. }, .. } => 5,
+            GuardActivity::Chasing { fright } if fright > 0 => 3,
             _ if is_walking => 1 + (self.paces as u64 % 2) as u8,
-            State::Wondering { .. } | State::Chasing { .. } => 3,
+            GuardActivity::Wondering { .. } | GuardActivity::Chasing { .. } => 3,
             _ => 0,
         }
     }
@@ -412,7 +412,7 @@ impl Guard {
             Duty::Stand | Duty::Sleep | Duty::Wander(_) => 1,
         };
         let wakes_nobody_else = match self.state {
-            State::Wondering { wakes, .. } => wakes.is_none_or(|index| index < count),
+            GuardActivity::Wondering { wakes, .. } => wakes.is_none_or(|index| index < count),
             _ => true,
         };
         check(wakes_nobody_else, "whom a guard wakes")?;
@@ -421,13 +421,13 @@ impl Guard {
             && self.baffled <= MAX_BAFFLED
             && self.route.still <= STUCK
             && (0.0..MAX_PACES).contains(&self.paces)
-            && self.state != (State::Down { left: 0 });
+            && self.state != (GuardActivity::Down { left: 0 });
         check(counts, "a count of a guard")
     }
 
     /// Moves the guard with the window of a generated level. Returns `false` if the guard is
     /// outside it now. A remembered cell outside the window becomes the guard's own cell.
-    pub(crate) fn shift(&mut self, shift: Shift) -> bool {
+    pub(crate) fn shift(&mut self, shift: WindowShift) -> bool {
         let Some(here) = shift.cell(self.mover.cell()) else { return false };
         let cell = |cell: Cell| shift.cell(cell).unwrap_or(here);
         let place = |place: DVec2| shift.position(place);
@@ -443,17 +443,17 @@ impl Guard {
             quarry.position = place(quarry.position);
         }
         match &mut self.state {
-            State::Wondering { about, wakes, .. } => (*about, *wakes) = (place(*about), None),
-            State::Searching { around, next, .. } => {
+            GuardActivity::Wondering { about, wakes, .. } => (*about, *wakes) = (place(*about), None),
+            GuardActivity::Searching { around, next, .. } => {
                 (*around, *next) = (cell(*around), next.map(cell));
             }
-            State::Tracking { .. } => self.begin_to_search(here, 360),
-            State::Asleep
-            | State::OnDuty
-            | State::Chasing { .. }
-            | State::Attacking { .. }
-            | State::Down { .. }
-            | State::Returning => {}
+            GuardActivity::Tracking { .. } => self.begin_to_search(here, 360),
+            GuardActivity::Asleep
+            | GuardActivity::OnDuty
+            | GuardActivity::Chasing { .. }
+            | GuardActivity::Attacking { .. }
+            | GuardActivity::Down { .. }
+            | GuardActivity::Returning => {}
         }
         self.route = Route::default();
         true
@@ -470,7 +470,7 @@ impl OfLevel for Guard {
     }
 }
 
-impl State {
+impl GuardActivity {
     pub(crate) fn mood(self) -> Mood {
         match self {
             Self::Asleep => Mood::Asleep,

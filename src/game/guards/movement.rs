@@ -7,9 +7,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::ways::{DROP, Footing, Gait, Terrain};
-use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, is_clear, slide};
-use crate::game::fall::Flight;
+use super::ways::{DROP, Footing, Gait, GuardTerrain};
+use crate::game::collision::{MovingBody, Obstacles, WorldObstacles, Radius, Stature, is_clear, slide};
+use crate::game::fall::VerticalMotion;
 use crate::game::player::STEP_HEIGHT;
 use crate::game::rules::STEP;
 use crate::world::{Cell, Heading, Outline, World};
@@ -24,7 +24,7 @@ const ACCELERATION: f64 = 0.6;
 /// The position and the motion of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mover {
-    pub(crate) body: Body,
+    pub(crate) body: MovingBody,
     /// The height of the feet, in cells.
     pub(crate) feet: f64,
     /// Cells per second, upwards.
@@ -38,7 +38,7 @@ pub(crate) struct Mover {
 impl Mover {
     pub(crate) fn new(world: &World, cell: Cell, heading: Heading) -> Self {
         Self {
-            body: Body { position: cell.center(), velocity: DVec2::ZERO },
+            body: MovingBody { position: cell.center(), velocity: DVec2::ZERO },
             feet: world.floor_at(cell),
             rising: 0.0,
             heading,
@@ -85,7 +85,7 @@ impl Mover {
     }
 
     /// Accelerates towards the velocity `wanted`, and moves for `steps` steps.
-    pub(crate) fn walk(&mut self, ground: &Ground, wanted: DVec2, steps: u16) {
+    pub(crate) fn walk(&mut self, ground: &GuardWorld, wanted: DVec2, steps: u16) {
         let change = wanted - self.body.velocity;
         let most = ACCELERATION * f64::from(steps);
         let length = change.length();
@@ -105,28 +105,28 @@ impl Mover {
     /// The guard after a floor has moved under them. If the floor `carries` and they stood on it,
     /// they stay on it. Otherwise they are unchanged if they have room, and lifted if not. `None`
     /// if they have no room after the lift either.
-    pub(crate) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
+    pub(crate) fn after_floor(&self, ground: &GuardWorld, carries: bool) -> Option<Self> {
         let ridden = if carries { self.ridden(ground) } else { None };
         let has_room = |mover: &Self| ground.has_room_for(mover);
         ridden.filter(has_room).or_else(|| Some(*self).filter(has_room)).or_else(|| {
-            let place = Place { step: STEP_HEIGHT, ..ground.place(self) };
+            let place = WorldObstacles { step: STEP_HEIGHT, ..ground.place(self) };
             let feet = place.lifted(self.body.position, RADIUS)?;
             Some(Self { feet, rising: 0.0, ..*self })
         })
     }
 
     /// The guard on the floor, if the floor has moved by at most a step.
-    fn ridden(&self, ground: &Ground) -> Option<Self> {
+    fn ridden(&self, ground: &GuardWorld) -> Option<Self> {
         let feet = ground.highest_floor(self.body.position)?;
         let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
         (self.is_on_floor() && is_a_step).then_some(Self { feet, ..*self })
     }
 
-    fn slide(&mut self, ground: &Ground, displacement: DVec2) {
+    fn slide(&mut self, ground: &GuardWorld, displacement: DVec2) {
         let is_standing = self.rising == 0.0 && self.feet == ground.floor(self);
         let step = if is_standing { STEP_HEIGHT } else { 0.0 };
-        let place = Place { step, ..ground.place(self) };
-        let mut careful = Careful { place, ground, avoids: true };
+        let place = WorldObstacles { step, ..ground.place(self) };
+        let mut careful = GuardObstacles { place, ground, avoids: true };
         careful.avoids = is_standing && careful.is_clear(self.body.position);
         self.body = slide(&mut careful, self.body, displacement, RADIUS);
         let place = careful.place;
@@ -135,24 +135,24 @@ impl Mover {
         if is_standing && feet - room.floor <= STEP_HEIGHT {
             (self.feet, self.rising) = (room.floor, 0.0);
         } else {
-            let Flight { height, speed } =
-                Flight { height: feet, speed: self.rising }.after(STEP, room);
+            let VerticalMotion { height, speed } =
+                VerticalMotion { height: feet, speed: self.rising }.after(STEP, room);
             (self.feet, self.rising) = (height, speed);
         }
     }
 }
 
 /// The world for a guard who walks in it.
-pub(crate) struct Ground<'a> {
+pub(crate) struct GuardWorld<'a> {
     pub(crate) world: &'a World,
-    pub(crate) terrain: &'a Terrain,
+    pub(crate) terrain: &'a GuardTerrain,
     pub(crate) gait: Gait,
 }
 
-impl Ground<'_> {
-    fn place(&self, mover: &Mover) -> Place<'_> {
+impl GuardWorld<'_> {
+    fn place(&self, mover: &Mover) -> WorldObstacles<'_> {
         let stature = Stature { feet: mover.feet, height: self.gait.height };
-        Place {
+        WorldObstacles {
             world: self.world,
             stature,
             step: 0.0,
@@ -256,26 +256,26 @@ impl Ground<'_> {
 
 /// The obstacles for a guard: the place and, if the guard `avoids` hazards, everything that they
 /// avoid.
-struct Careful<'a> {
-    place: Place<'a>,
-    ground: &'a Ground<'a>,
+struct GuardObstacles<'a> {
+    place: WorldObstacles<'a>,
+    ground: &'a GuardWorld<'a>,
     avoids: bool,
 }
 
-impl Careful<'_> {
+impl GuardObstacles<'_> {
     fn is_clear(&self, center: DVec2) -> bool {
         is_clear(self, center, RADIUS)
     }
 
     fn is_avoided(&self, cell: Cell) -> bool {
-        let Ground { world, terrain, .. } = *self.ground;
+        let GuardWorld { world, terrain, .. } = *self.ground;
         let floor = terrain.footing(world, cell).map(|footing| footing.floor);
         floor.is_some_and(|floor| floor < self.place.stature.feet - DROP)
             || terrain.is_hazard(world, cell)
     }
 }
 
-impl Obstacles for Careful<'_> {
+impl Obstacles for GuardObstacles<'_> {
     fn blocks(&self, column: i64, row: i64) -> bool {
         let cell = (u32::try_from(column), u32::try_from(row));
         let (Ok(column_on_map), Ok(row_on_map)) = cell else { return true };

@@ -9,8 +9,8 @@
 
 use glam::DVec2;
 
-use super::context::{Context, Target};
-use super::guard::{ALARMED, GUESSES, Guard, Quarry, State, WONDERS};
+use super::context::{Context, PerceivedPlayer};
+use super::guard::{ALARMED, GUESSES, Guard, KnownPlayer, GuardActivity, WONDERS};
 use crate::game::sound::{Sound, SoundKind, Source, half_cells};
 use crate::world::{Cell, Difficulty, GuardKind};
 
@@ -43,7 +43,7 @@ impl Guard {
         if looks {
             self.look_around(context);
         }
-        self.keep_guessing(context);
+        self.extrapolate_position(context);
     }
 
     fn look_around(&mut self, context: &mut Context) {
@@ -56,7 +56,7 @@ impl Guard {
             }
             let is_quarry = self.quarry.is_some_and(|quarry| quarry.target == index);
             if gain > most || is_quarry && self.state.is_alarmed() {
-                self.quarry = Some(Quarry { target: index, position: target.position, unseen: 0 });
+                self.quarry = Some(KnownPlayer { target: index, position: target.position, unseen: 0 });
             }
             most = most.max(gain);
         }
@@ -73,7 +73,7 @@ impl Guard {
 
     /// The increase of awareness from a look at `target`; [`ALARMED`] if the guard notices it at
     /// once.
-    fn gain(&self, context: &Context, target: &Target) -> u16 {
+    fn gain(&self, context: &Context, target: &PerceivedPlayer) -> u16 {
         let way = target.position - self.mover.position();
         let distance = way.length();
         let overlaps = target.feet < self.head() && self.mover.feet < target.head;
@@ -109,7 +109,7 @@ impl Guard {
     }
 
     /// The light on a player as this guard sees it, at most 255.
-    fn light_on(&self, context: &Context, target: &Target, distance: f64) -> u32 {
+    fn light_on(&self, context: &Context, target: &PerceivedPlayer, distance: f64) -> u32 {
         let is_lit_by_guard = self.kind == GuardKind::Lantern && distance <= LANTERN;
         if target.has_light || is_lit_by_guard {
             return 255;
@@ -120,7 +120,7 @@ impl Guard {
 
     /// The number of parts of a player that this guard sees, of three: the head counts as one, the
     /// body as two.
-    fn visible_parts(&self, context: &Context, target: &Target) -> u32 {
+    fn visible_parts(&self, context: &Context, target: &PerceivedPlayer) -> u32 {
         let sees = |height| u32::from(self.sees(context, target.position, height));
         2 * sees(target.middle()) + sees(target.head - 0.05)
     }
@@ -129,14 +129,14 @@ impl Guard {
     fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
-            State::Asleep
-            | State::Down { .. }
-            | State::Attacking { .. }
-            | State::Chasing { .. } => {}
+            GuardActivity::Asleep
+            | GuardActivity::Down { .. }
+            | GuardActivity::Attacking { .. }
+            | GuardActivity::Chasing { .. } => {}
             _ if self.awareness >= ALARMED => self.raise_alarm(context),
-            State::Wondering { hurries, wakes, looks, goes, .. } => {
+            GuardActivity::Wondering { hurries, wakes, looks, goes, .. } => {
                 self.state =
-                    State::Wondering { about: quarry.position, hurries, wakes, looks, goes };
+                    GuardActivity::Wondering { about: quarry.position, hurries, wakes, looks, goes };
             }
             _ if self.awareness >= WONDERS => self.begin_to_wonder(context, quarry.position, false),
             _ => {}
@@ -144,7 +144,7 @@ impl Guard {
     }
 
     /// Follows a player who was in sight a moment ago around the corner.
-    fn keep_guessing(&mut self, context: &Context) {
+    fn extrapolate_position(&mut self, context: &Context) {
         let Some(quarry) = &mut self.quarry else { return };
         if self.state.is_alarmed()
             && quarry.unseen <= GUESSES
@@ -157,7 +157,7 @@ impl Guard {
 
     /// Makes an idle hound smell the trails of players.
     fn smell(&mut self, context: &mut Context) {
-        let is_busy = matches!(self.state, State::Tracking { .. }) || self.state.is_alarmed();
+        let is_busy = matches!(self.state, GuardActivity::Tracking { .. }) || self.state.is_alarmed();
         if self.kind != GuardKind::Hound || is_busy || self.blind > 0 {
             return;
         }
@@ -168,7 +168,7 @@ impl Guard {
                 place.distance(position) <= NOSE && ground.is_straight(position, place)
             };
             if let Some(mark) = trail.newest(|cell| smells(cell.center())) {
-                self.state = State::Tracking { target, mark, lost: 0 };
+                self.state = GuardActivity::Tracking { target, mark, lost: 0 };
                 context.sound(SoundKind::Wonder, self.mover.cell(), 7);
                 return;
             }
@@ -195,7 +195,7 @@ impl Guard {
             SoundKind::Walking => reach.min(half_cells(3)),
             _ => (reach * self.abilities().hearing / 2).min(half_cells(Sound::FARTHEST)),
         };
-        if self.state == State::Asleep { reach / 2 } else { reach }
+        if self.state == GuardActivity::Asleep { reach / 2 } else { reach }
     }
 
     /// Hears `sound` at `distance`, of at most `earshot`, in half cells. `told` is the quarry of
@@ -205,13 +205,13 @@ impl Guard {
         context: &mut Context,
         sound: &Sound,
         (distance, earshot): (u16, u16),
-        told: Option<Quarry>,
+        told: Option<KnownPlayer>,
     ) {
         let place = sound.cell.center();
         if is_call(sound) {
             if !self.state.is_alarmed() {
                 self.quarry = self.quarry.or(told);
-                self.come(told.map_or(place, |quarry| quarry.position));
+                self.answer_call(told.map_or(place, |quarry| quarry.position));
             }
             return;
         }
@@ -226,7 +226,7 @@ impl Guard {
             return;
         }
         self.awareness = (self.awareness + gain).min(MAX_BY_EAR.max(self.awareness));
-        if self.awareness >= WONDERS || self.state == State::Asleep {
+        if self.awareness >= WONDERS || self.state == GuardActivity::Asleep {
             self.wonder_about(context, place);
         }
     }
@@ -245,7 +245,7 @@ impl Guard {
         self.awareness = (self.awareness + gain).min(ALARMED);
         match sound.by {
             Source::Player(target) => {
-                self.quarry = Some(Quarry { target, position: place, unseen: 0 });
+                self.quarry = Some(KnownPlayer { target, position: place, unseen: 0 });
                 if self.awareness >= ALARMED && !self.state.is_alarmed() {
                     self.raise_alarm(context);
                 } else if !self.state.is_alarmed() {
@@ -264,8 +264,8 @@ impl Guard {
 
     fn wonder_about(&mut self, context: &mut Context, place: DVec2) {
         match &mut self.state {
-            State::Wondering { about, goes, .. } => (*about, *goes) = (place, true),
-            State::Searching { around, next, .. } => {
+            GuardActivity::Wondering { about, goes, .. } => (*about, *goes) = (place, true),
+            GuardActivity::Searching { around, next, .. } => {
                 let cell = Cell::at(place);
                 (*around, *next) = (cell, Some(cell));
             }
@@ -274,10 +274,10 @@ impl Guard {
     }
 
     /// Answers the call of a guard who has seen a player.
-    fn come(&mut self, about: DVec2) {
-        let looks = if self.state == State::Asleep { 60 } else { 20 };
+    fn answer_call(&mut self, about: DVec2) {
+        let looks = if self.state == GuardActivity::Asleep { 60 } else { 20 };
         self.awareness = self.awareness.max(WONDERS);
-        self.state = State::Wondering { about, looks, goes: true, hurries: true, wakes: None };
+        self.state = GuardActivity::Wondering { about, looks, goes: true, hurries: true, wakes: None };
     }
 }
 

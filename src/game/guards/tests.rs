@@ -29,7 +29,7 @@ struct Scene {
     world: World,
     guards: Guards,
     doors: Doors,
-    target: Target,
+    target: PerceivedPlayer,
     clouds: Vec<Cloud>,
     /// The acts of the guards in the last step.
     acts: Vec<Act>,
@@ -51,7 +51,7 @@ impl Scene {
         let guards = Guards::new(&mut world, rules);
         let cell = world.start().cell;
         let feet = world.floor_at(cell);
-        let target = Target {
+        let target = PerceivedPlayer {
             position: cell.center(),
             feet,
             head: feet + 0.7,
@@ -114,7 +114,7 @@ impl Scene {
     fn is_sound(&self) -> bool {
         self.guards.list.iter().all(|guard| {
             let ground =
-                Ground { world: &self.world, terrain: &self.guards.terrain, gait: guard.gait() };
+                GuardWorld { world: &self.world, terrain: &self.guards.terrain, gait: guard.gait() };
             ground.has_room_for(&guard.mover)
         })
     }
@@ -559,9 +559,9 @@ proptest! {
         let things = format!("\"G\" = {{ guard = \"{name}\", heading = 0 }}");
         let mut scene = Scene::new(&rows, &things);
         let goal = scene.target.cell();
-        let quarry = guard::Quarry { target: 0, position: goal.center(), unseen: 0 };
+        let quarry = guard::KnownPlayer { target: 0, position: goal.center(), unseen: 0 };
         scene.guards.list[0].quarry = Some(quarry);
-        scene.guards.list[0].state = State::Chasing { fright: 0 };
+        scene.guards.list[0].state = GuardActivity::Chasing { fright: 0 };
         let gait = scene.guards.list[0].gait();
         let mut best = u16::MAX;
         let mut since = 0;
@@ -643,10 +643,10 @@ fn a_guard_opens_doors_on_the_way_and_a_hound_does_not() {
 fn a_hound_gives_up_the_trail_of_a_player_who_has_left() {
     let hound = r#""H" = { guard = "hound", heading = 180 }"#;
     let mut scene = Scene::new("##########\n#@......H#\n##########", hound);
-    let gone = Target { position: DVec2::new(6.5, 1.5), visibility: 0, ..scene.target };
+    let gone = PerceivedPlayer { position: DVec2::new(6.5, 1.5), visibility: 0, ..scene.target };
     scene.target.is_alive = false;
     scene.guards.step(&scene.world, &[scene.target, gone], &[], &[]);
-    scene.guards.list[0].state = State::Tracking { target: 1, mark: 0, lost: 0 };
+    scene.guards.list[0].state = GuardActivity::Tracking { target: 1, mark: 0, lost: 0 };
     scene.guards.forget_player(1);
     scene.step(&[]);
     assert_eq!(scene.mood(0), Mood::Returning);

@@ -15,13 +15,13 @@ const MAX: usize = 128;
 /// The cells that a player has visited, oldest first. Water keeps no smell.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Trail {
-    marks: VecDeque<Mark>,
+    marks: VecDeque<TrailCell>,
     /// The number of the oldest mark. Marks are numbered from the start of the game.
     first: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Mark {
+struct TrailCell {
     cell: Cell,
     left_at: u64,
 }
@@ -33,7 +33,7 @@ impl Trail {
         match self.marks.back_mut() {
             Some(mark) if mark.cell == cell => mark.left_at = now,
             _ if world.effect_in(cell) == Some(TileEffect::Water) => {}
-            _ => self.marks.push_back(Mark { cell, left_at: now }),
+            _ => self.marks.push_back(TrailCell { cell, left_at: now }),
         }
     }
 
@@ -47,7 +47,7 @@ impl Trail {
 
     /// Removes the cells that no longer smell.
     fn fade(&mut self, now: u64) {
-        let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
+        let is_stale = |mark: &TrailCell| now - mark.left_at > LASTS;
         while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MAX {
             self.marks.pop_front();
             self.first += 1;

@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::context::{Act, Context};
 use super::guard::{Guard, Route, STUCK};
-use super::ways::Way;
+use super::ways::PathResult;
 use crate::world::{Cell, TileKind};
 
 /// At smaller distances from the centre of a cell, a guard has arrived, in cells.
@@ -28,7 +28,7 @@ const APART: f64 = 0.6;
 
 /// The progress of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Progress {
+pub(crate) enum WalkProgress {
     There,
     OnTheWay,
     Impossible,
@@ -36,7 +36,7 @@ pub(crate) enum Progress {
 
 impl Guard {
     /// Wants to walk to the middle of `cell`.
-    pub(crate) fn go_to(&mut self, context: &mut Context, cell: Cell, speed: f64) -> Progress {
+    pub(crate) fn go_to(&mut self, context: &mut Context, cell: Cell, speed: f64) -> WalkProgress {
         self.go(context, cell, cell.center(), speed)
     }
 
@@ -47,11 +47,11 @@ impl Guard {
         goal: Cell,
         place: DVec2,
         speed: f64,
-    ) -> Progress {
+    ) -> WalkProgress {
         let position = self.mover.position();
         if position.distance_squared(place) < ARRIVED * ARRIVED {
             self.route = Route::default();
-            return Progress::There;
+            return WalkProgress::There;
         }
         let cell = self.mover.cell();
         let is_passed =
@@ -62,13 +62,13 @@ impl Guard {
         let is_stale = self.route.fresh == 0 || self.route.from != Some(cell);
         let is_unknown = is_stale || self.route.goal != Some(goal);
         if is_unknown && !self.find_point(context, cell, goal, place) {
-            return Progress::Impossible;
+            return WalkProgress::Impossible;
         }
         self.route.fresh = self.route.fresh.saturating_sub(context.stride);
         if let Some(point) = self.route.point {
             self.walk_to(context, point, speed);
         }
-        Progress::OnTheWay
+        WalkProgress::OnTheWay
     }
 
     /// Finds the point to walk to. Returns whether there may be a path.
@@ -85,16 +85,16 @@ impl Guard {
             return true;
         }
         match context.ways.towards(context.world, context.terrain, gait, cell, goal) {
-            Way::Here => self.route.point = Some(place),
-            Way::Next(next) => {
+            PathResult::Here => self.route.point = Some(place),
+            PathResult::Next(next) => {
                 self.route.point = Some(self.farthest_straight(context, cell, next, goal));
             }
             // The search continues. Until it ends, the old point is as good as any.
-            Way::Unknown => {
+            PathResult::Unknown => {
                 self.route.fresh = 0;
                 return true;
             }
-            Way::Impossible => {
+            PathResult::Impossible => {
                 self.route = Route { fresh: 0, ..Route::default() };
                 return false;
             }

@@ -29,7 +29,7 @@ const DOOR: u16 = 6;
 
 /// The properties of tiles and things that guards need.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Terrain {
+pub(crate) struct GuardTerrain {
     /// One entry for each tile of the world.
     footings: Vec<Footing>,
     /// One bit for each cell, row by row: whether a thing in it blocks or is dangerous. Empty if
@@ -63,7 +63,7 @@ pub(crate) struct Gait {
     pub(crate) height: f64,
 }
 
-impl Terrain {
+impl GuardTerrain {
     pub(crate) fn new(world: &World) -> Self {
         let crumbles = |id: TileId| {
             let by_weight = world.moving_tiles().iter().filter(|it| it.driver == Driver::Weight);
@@ -216,7 +216,7 @@ impl Footing {
 
 /// The costs of a search from a goal back to the guards who walk there.
 pub(crate) struct Backwards<'a> {
-    pub(crate) terrain: &'a Terrain,
+    pub(crate) terrain: &'a GuardTerrain,
     pub(crate) world: &'a World,
     pub(crate) gait: Gait,
 }
@@ -283,16 +283,16 @@ const OLD_IN_VAIN: u64 = 150;
 
 /// The distances to several goals.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Ways {
+pub(crate) struct GuardPaths {
     #[serde(deserialize_with = "at_most::<MAX_FIELDS, _, _>")]
-    fields: Vec<Field>,
+    fields: Vec<GoalDistances>,
     /// The number of the current step.
     now: u64,
     cells_left: usize,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Field {
+struct GoalDistances {
     goal: Cell,
     gait: Gait,
     distances: Distances,
@@ -302,7 +302,7 @@ struct Field {
 
 /// The result of a query for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum PathResult {
     /// The neighbouring cell to go to.
     Next(Cell),
     /// The guard is at the goal.
@@ -313,11 +313,11 @@ pub(crate) enum Way {
     Impossible,
 }
 
-impl Ways {
+impl GuardPaths {
     /// Returns an error if a search is later than the current step, or does not fit a map with
     /// `map` columns and rows.
     pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), Unrestorable> {
-        let is_possible = |it: &Field| {
+        let is_possible = |it: &GoalDistances| {
             it.begun <= self.now && it.used <= self.now && it.distances.is_around(it.goal, map)
         };
         check(self.fields.iter().all(is_possible), "a search")
@@ -346,21 +346,21 @@ impl Ways {
     pub(crate) fn towards(
         &mut self,
         world: &World,
-        terrain: &Terrain,
+        terrain: &GuardTerrain,
         gait: Gait,
         from: Cell,
         goal: Cell,
-    ) -> Way {
+    ) -> PathResult {
         if from == goal {
-            return Way::Here;
+            return PathResult::Here;
         }
-        let Some(index) = self.field(terrain, gait, goal) else { return Way::Unknown };
+        let Some(index) = self.field(terrain, gait, goal) else { return PathResult::Unknown };
         let (now, field) = (self.now, &mut self.fields[index]);
         field.used = now;
         let costs = Backwards { terrain, world, gait };
         while field.distances.distance(from).is_none() && !field.distances.is_over() {
             if self.cells_left == 0 {
-                return Way::Unknown;
+                return PathResult::Unknown;
             }
             self.cells_left -= 1;
             field.distances.advance(&costs);
@@ -370,20 +370,20 @@ impl Ways {
             if age > OLD_IN_VAIN {
                 field.begin(terrain, now);
             }
-            return Way::Impossible;
+            return PathResult::Impossible;
         };
         let next = field.next(&costs, from, distance);
         if next.is_none() || age > OLD {
             field.begin(terrain, now);
         }
-        next.map_or(Way::Unknown, Way::Next)
+        next.map_or(PathResult::Unknown, PathResult::Next)
     }
 
     /// The cell after `from` on a path that has already been found.
     pub(crate) fn after(
         &self,
         world: &World,
-        terrain: &Terrain,
+        terrain: &GuardTerrain,
         gait: Gait,
         from: Cell,
         goal: Cell,
@@ -395,14 +395,14 @@ impl Ways {
 
     /// The index of the field for a goal, which may be a new field. `None` if all fields are in
     /// use.
-    fn field(&mut self, terrain: &Terrain, gait: Gait, goal: Cell) -> Option<usize> {
+    fn field(&mut self, terrain: &GuardTerrain, gait: Gait, goal: Cell) -> Option<usize> {
         let mut fields = self.fields.iter();
         if let Some(index) = fields.position(|it| it.goal == goal && it.gait == gait) {
             return Some(index);
         }
         let (begun, used) = (self.now, self.now);
         if self.fields.len() < MAX_FIELDS {
-            self.fields.push(Field { goal, gait, distances: Distances::default(), begun, used });
+            self.fields.push(GoalDistances { goal, gait, distances: Distances::default(), begun, used });
         } else {
             let oldest = self.fields.iter_mut().min_by_key(|field| field.used)?;
             if oldest.used + 1 >= self.now {
@@ -416,8 +416,8 @@ impl Ways {
     }
 }
 
-impl Field {
-    fn begin(&mut self, terrain: &Terrain, now: u64) {
+impl GoalDistances {
+    fn begin(&mut self, terrain: &GuardTerrain, now: u64) {
         self.distances.begin(self.goal, terrain.size());
         (self.begun, self.used) = (now, now);
     }

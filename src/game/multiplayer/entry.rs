@@ -11,7 +11,7 @@ const MAX_CELLS: usize = 64;
 
 /// A requirement on the cell in which a player begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Demand {
+enum CellRequirement {
     /// The floor is as high as at the start, no guard sees the cell, and the path to it passes
     /// neither doors nor hazards.
     Safe,
@@ -26,7 +26,7 @@ impl Game {
     /// overlap. Only if no cell is free, players share the start. `None` if players may not
     /// overlap, or if nobody fits at the start.
     pub(crate) fn free_place(&self, start: Cell) -> Option<Motion> {
-        let demands = [Demand::Safe, Demand::Level, Demand::Reachable];
+        let demands = [CellRequirement::Safe, CellRequirement::Level, CellRequirement::Reachable];
         let free = demands.into_iter().find_map(|demand| self.nearest_place(start, demand));
         let collides = self.multiplayer_rules().is_some_and(|rules| rules.collides);
         let shared = || self.place_in(start).filter(|_| !collides);
@@ -34,7 +34,7 @@ impl Game {
     }
 
     /// The nearest position that meets `demand`.
-    fn nearest_place(&self, start: Cell, demand: Demand) -> Option<Motion> {
+    fn nearest_place(&self, start: Cell, demand: CellRequirement) -> Option<Motion> {
         let mut cells = [start; MAX_CELLS];
         let (mut next, mut found) = (0, 1);
         let ahead = self.world.start().heading;
@@ -58,18 +58,18 @@ impl Game {
     }
 
     /// Whether a player may begin in a cell other than the start.
-    fn meets(&self, cell: Cell, demand: Demand) -> bool {
-        self.is_plain(cell) && (demand != Demand::Safe || !self.is_seen_by_guards(cell))
+    fn meets(&self, cell: Cell, demand: CellRequirement) -> bool {
+        self.is_plain(cell) && (demand != CellRequirement::Safe || !self.is_seen_by_guards(cell))
     }
 
     /// Whether a player can walk from one cell into the next.
-    fn leads(&self, from: Cell, to: Cell, demand: Demand) -> bool {
+    fn leads(&self, from: Cell, to: Cell, demand: CellRequirement) -> bool {
         let climb = (self.world.floor_at(from) - self.world.floor_at(to)).abs();
         let is_level_and_plain =
             || climb == 0.0 && self.is_plain(to) && self.place_in(to).is_some();
         is_open(&self.world, to)
             && climb <= STEP_HEIGHT
-            && (demand == Demand::Reachable || is_level_and_plain())
+            && (demand == CellRequirement::Reachable || is_level_and_plain())
     }
 
     /// Returns true if a player in the cell is not hurt, reaches nothing, and is not in the way of

@@ -18,11 +18,11 @@ const TOUCH: f64 = 0.25;
 
 /// The positions of a player in the last steps.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Track([Option<Stand>; STEPS]);
+pub(crate) struct Track([Option<PastPosition>; STEPS]);
 
 /// The position of a player in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Stand {
+pub(crate) struct PastPosition {
     pub(crate) position: DVec2,
     /// The unit vector of the heading.
     pub(crate) facing: DVec2,
@@ -34,7 +34,7 @@ impl Track {
     /// Records the position of a player at the end of the step `now`; `None` if they do not play.
     /// Returns the distance that they moved in that step, in cells.
     pub(crate) fn record(&mut self, now: u64, motion: Option<&Motion>) -> f64 {
-        let stand = motion.map(Stand::new);
+        let stand = motion.map(PastPosition::new);
         let before = now.checked_sub(1).and_then(|before| self.at(before).copied());
         self.0[now as usize % STEPS] = stand;
         let way = stand.zip(before).map(|(now, before)| now.position.distance(before.position));
@@ -42,12 +42,12 @@ impl Track {
     }
 
     /// The position of the player in the step `seen`.
-    fn at(&self, seen: u64) -> Option<&Stand> {
+    fn at(&self, seen: u64) -> Option<&PastPosition> {
         self.0[seen as usize % STEPS].as_ref()
     }
 }
 
-impl Stand {
+impl PastPosition {
     fn new(motion: &Motion) -> Self {
         let facing = motion.heading().direction();
         let (feet, head) = (motion.feet(), motion.head());
@@ -77,7 +77,7 @@ impl Game {
     }
 
     /// The position of a player in the step `seen`.
-    pub(crate) fn stood(&self, index: usize, seen: u64) -> Option<&Stand> {
+    pub(crate) fn stood(&self, index: usize, seen: u64) -> Option<&PastPosition> {
         let seen = self.clamp_seen(seen);
         self.members.as_ref()?.member(index)?.track.at(seen)
     }
@@ -148,7 +148,7 @@ impl Game {
     }
 }
 
-fn is_ahead(own: &Stand, other: &Stand, least_cosine: f64) -> bool {
+fn is_ahead(own: &PastPosition, other: &PastPosition, least_cosine: f64) -> bool {
     let way = other.position - own.position;
     own.facing.dot(way) >= least_cosine * way.length()
 }

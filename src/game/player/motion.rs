@@ -3,14 +3,14 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::collision::{Body, Place, Radius, Stature, overlaps, slide};
-use crate::game::fall::{Flight, GRAVITY, Room};
+use crate::game::collision::{MovingBody, WorldObstacles, Radius, Stature, overlaps, slide};
+use crate::game::fall::{VerticalMotion, GRAVITY, VerticalRange};
 use crate::game::intent::{Intent, Intents};
 use crate::game::rules::STEP;
 use crate::game::stance::Stance;
 use crate::game::stored::{Unrestorable, check_on_map};
 use crate::game::turning::{PitchControl, Turning};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
@@ -37,7 +37,7 @@ pub(crate) const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Motion {
-    body: Body,
+    body: MovingBody,
     /// The height of the feet, in cells.
     feet: f64,
     /// Cells per second, upwards.
@@ -54,7 +54,7 @@ impl Motion {
     /// A player who stands still at the start.
     pub(crate) fn new(world: &World) -> Self {
         let start = world.start();
-        let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
+        let body = MovingBody { position: start.cell.center(), velocity: DVec2::ZERO };
         Self {
             body,
             // The start has headroom.
@@ -76,7 +76,7 @@ impl Motion {
             return None;
         }
         let still = Self {
-            body: Body { velocity: DVec2::ZERO, ..self.body },
+            body: MovingBody { velocity: DVec2::ZERO, ..self.body },
             rising: 0.0,
             turning: Turning::default(),
             stance: Stance::default(),
@@ -115,9 +115,9 @@ impl Motion {
 
     /// The same position in a window that has moved.
     #[must_use]
-    pub(crate) fn shifted(self, shift: Shift) -> Self {
+    pub(crate) fn shifted(self, shift: WindowShift) -> Self {
         let position = shift.position(self.body.position);
-        Self { body: Body { position, ..self.body }, ..self }
+        Self { body: MovingBody { position, ..self.body }, ..self }
     }
 
     /// The cell of the player's centre.
@@ -176,8 +176,8 @@ impl Motion {
         let target = wanted_velocity(self.heading, intents) * pace;
         let DampedMotion { velocity, displacement } =
             approach_in_plane(self.body.velocity, target, FRICTION, STEP);
-        let mut place = Place { step, others, ..self.place(world) };
-        let mut body = slide(&mut place, Body { velocity, ..self.body }, displacement, RADIUS);
+        let mut place = WorldObstacles { step, others, ..self.place(world) };
+        let mut body = slide(&mut place, MovingBody { velocity, ..self.body }, displacement, RADIUS);
         if body.velocity.length() < STILL {
             body.velocity = DVec2::ZERO;
         }
@@ -188,7 +188,7 @@ impl Motion {
             walked.standing_on(room.floor)
         } else {
             let speed = if jumps { libm::sqrt(2.0 * GRAVITY * JUMP_HEIGHT) } else { self.rising };
-            walked.flying(Flight { height: feet, speed }, room)
+            walked.flying(VerticalMotion { height: feet, speed }, room)
         }
     }
 
@@ -221,13 +221,13 @@ impl Motion {
         Self { feet: floor, rising: 0.0, stance: self.stance.following(floor - self.feet), ..self }
     }
 
-    fn flying(self, flight: Flight, room: Room) -> Self {
-        let Flight { height, speed } = flight.after(STEP, room);
+    fn flying(self, flight: VerticalMotion, room: VerticalRange) -> Self {
+        let VerticalMotion { height, speed } = flight.after(STEP, room);
         Self { feet: height, rising: speed, stance: self.stance.following(0.0), ..self }
     }
 
     /// The lowest and the highest height of the feet at this position.
-    fn room(&self, world: &World) -> Room {
+    fn room(&self, world: &World) -> VerticalRange {
         self.place(world).room(self.body.position, RADIUS)
     }
 
@@ -236,9 +236,9 @@ impl Motion {
         self.place(world).is_clear(self.body.position, RADIUS)
     }
 
-    fn place<'a>(&self, world: &'a World) -> Place<'a> {
+    fn place<'a>(&self, world: &'a World) -> WorldObstacles<'a> {
         let stature = Stature { feet: self.feet, height: self.stance.height() };
-        Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
+        WorldObstacles { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
     }
 
     /// Returns an error if the position is outside `world`, or if the stance or the turns are out
@@ -275,7 +275,7 @@ impl Motion {
     pub(crate) fn moved_aside(self, world: &World, displacement: DVec2) -> Self {
         let mut place = self.place(world);
         let body = slide(&mut place, self.body, displacement, RADIUS);
-        let moved = Self { body: Body { velocity: self.body.velocity, ..body }, ..self };
+        let moved = Self { body: MovingBody { velocity: self.body.velocity, ..body }, ..self };
         let is_level = self.stands(world) && moved.stands(world) && moved.has_room(world);
         if is_level { moved } else { self }
     }
@@ -293,7 +293,7 @@ impl Motion {
     /// The height to which floors that have risen around the feet lift them. `None` if there are no
     /// such floors, or no room.
     pub(crate) fn lifted(&self, world: &World) -> Option<f64> {
-        let place = Place { step: STEP_HEIGHT, ..self.place(world) };
+        let place = WorldObstacles { step: STEP_HEIGHT, ..self.place(world) };
         place.lifted(self.body.position, RADIUS)
     }
 }

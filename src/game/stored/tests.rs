@@ -10,7 +10,7 @@ use self::crowd::Crowd;
 use super::*;
 use crate::game::tests::missions::EVERYTHING;
 use crate::game::{Game, Intents, MultiplayerRules, Rules, Script, Sees, Strikes};
-use crate::generate::{Extent, Generator, Level};
+use crate::generate::{Extent, Generator, GeneratedLevel};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
 use crate::world::{Difficulty, World};
@@ -143,7 +143,7 @@ proptest! {
 
 #[test]
 fn a_generated_level_is_not_stored() {
-    let level = Level::new(Generator::Maze.terrain(7), Extent::Endless).unwrap();
+    let level = GeneratedLevel::new(Generator::Maze.terrain(7), Extent::Endless).unwrap();
     let start = level.start().unwrap();
     let game = Game::in_level(level, start).unwrap();
     assert_eq!(game.stored(), None);

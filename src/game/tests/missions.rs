@@ -1,7 +1,7 @@
 //! Properties of games with guards, mechanisms, hazards and pickups.
 
 use super::*;
-use crate::game::script::{Recorder, Script};
+use crate::game::script::{ScriptWriter, Script};
 use crate::map;
 use crate::world::{Difficulty, Supply};
 
@@ -174,7 +174,7 @@ proptest! {
     fn a_game_that_was_saved_goes_on_as_if_it_had_not(before in play(), after in play()) {
         let mut game = everything(Difficulty::Normal);
         let mut text = Vec::new();
-        let mut recorder = Recorder::new(&mut text);
+        let mut recorder = ScriptWriter::new(&mut text);
         for (steps, intents) in before {
             recorder.record(intents, steps.into())?;
             (0..steps).for_each(|_| game.step(intents));

@@ -7,13 +7,13 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::collision::{Place, Radius, Stature, fly};
+use crate::game::collision::{WorldObstacles, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
 use crate::game::rules::STEP;
 use crate::game::stored::{Unrestorable, check};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 use crate::world::{Cell, World};
 
 /// The radius of every missile, in cells.
@@ -154,7 +154,7 @@ impl Missile {
     fn step(&mut self, world: &World) -> bool {
         let stature = Stature { feet: self.height, height: 0.0 };
         let place =
-            Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] };
+            WorldObstacles { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] };
         let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);
         self.position = position;
         let room = place.room(position, SIZE);
@@ -226,7 +226,7 @@ impl Missiles {
     }
 
     /// The same missiles in a window that has moved.
-    pub(crate) fn shift(&mut self, shift: Shift) {
+    pub(crate) fn shift(&mut self, shift: WindowShift) {
         let flying = self.flying.iter_mut();
         flying.for_each(|missile| missile.position = shift.position(missile.position));
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::game::sight::Cloud;
 use crate::game::stored::{Unrestorable, check};
-use crate::generate::Shift;
+use crate::generate::WindowShift;
 
 /// The radius of a cloud in cells, and its duration in steps.
 const RADIUS: f64 = 1.5;
@@ -97,7 +97,7 @@ impl Smoke {
     }
 
     /// The same clouds in a window that has moved.
-    pub(crate) fn shift(&mut self, shift: Shift) {
+    pub(crate) fn shift(&mut self, shift: WindowShift) {
         let clouds = self.clouds.iter_mut();
         clouds.for_each(|cloud| cloud.position = shift.position(cloud.position));
     }

@@ -12,7 +12,7 @@ pub(crate) struct Ground {
     /// The map characters, row by row.
     cells: Vec<Vec<u8>>,
     /// The properties of each cell, row by row.
-    kinds: Vec<Kind>,
+    kinds: Vec<CellProperties>,
     start: Cell,
     /// The number of steps from the start to each cell, row by row; `None` if there is no path.
     distances: Vec<Option<u32>>,
@@ -23,7 +23,7 @@ pub(crate) struct Ground {
 /// The properties of a cell that affect paths and visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
-struct Kind {
+struct CellProperties {
     /// `true` if a player can walk there once doors are open.
     is_walkable: bool,
     is_door: bool,
@@ -35,7 +35,7 @@ struct Kind {
 
 impl Ground {
     pub(crate) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
-        let kind = |&character: &u8| Kind {
+        let kind = |&character: &u8| CellProperties {
             is_walkable: tileset.is_walkable(character),
             is_door: tileset.is_walkable(character) && !tileset.is_floor(character),
             is_bare: tileset.is_bare(character),
@@ -149,7 +149,7 @@ impl Ground {
 
     /// The cells within `most` steps of `from` through cells for which `is_open` returns true,
     /// nearest first, with the number of steps to each.
-    fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(Kind) -> bool) -> Vec<(Cell, u32)> {
+    fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(CellProperties) -> bool) -> Vec<(Cell, u32)> {
         let mut flood = Flood::new((self.width().get(), self.cells.len() as u32), from);
         let next = || flood.next(|cell| is_open(self.kind(cell)));
         iter::from_fn(next).take_while(|&(_, distance)| distance <= most).collect()
@@ -162,7 +162,7 @@ impl Ground {
         })
     }
 
-    fn kind(&self, cell: Cell) -> Kind {
+    fn kind(&self, cell: Cell) -> CellProperties {
         self.kinds[self.index(cell)]
     }
 

@@ -12,13 +12,13 @@ fn generator() -> impl Strategy<Value = Generator> {
 
 /// A square of chunks, seen as one grid of cells.
 struct Drawing {
-    level: Level,
+    level: GeneratedLevel,
     chunks: Vec<Chunk>,
     side: usize,
 }
 
 impl Drawing {
-    fn of(level: Level, first: ChunkIndex, side: usize) -> Self {
+    fn of(level: GeneratedLevel, first: ChunkIndex, side: usize) -> Self {
         let places = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
         let chunks = places
             .map(|(column, row)| level.chunk(first.offset(column as i64, row as i64)))

@@ -9,7 +9,7 @@ use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest_or_all, quoted};
 use crate::map::surfaces::{CeilingText, CoveringText};
-use crate::map::textures::Surface;
+use crate::map::textures::SurfaceText;
 use crate::map::values::{
     HEIGHT, LIGHT, Name, OPACITY, PILLAR_RADIUS, SHAPE_HEIGHT, color, is_true,
 };
@@ -42,7 +42,7 @@ const CORNERS: [(&str, Line); 4] = [
 
 /// A wall.
 pub(crate) struct WallText<'a> {
-    pub(crate) surface: Surface<'a>,
+    pub(crate) surface: SurfaceText<'a>,
     /// Its height, if it has one of its own.
     pub(crate) height: Option<f64>,
     /// `true` for a secret wall, which the player opens.
@@ -54,7 +54,7 @@ pub(crate) struct WallText<'a> {
 impl<'a> WallText<'a> {
     pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let is_secret = entry.key == "secret";
-        let surface = Surface::read(entry, &format!("{{ {} = \"brick\" }}", entry.key));
+        let surface = SurfaceText::read(entry, &format!("{{ {} = \"brick\" }}", entry.key));
         let height = wall_height(entry, table);
         let switch = entry.beside(table, "switch").filter(|_| !is_secret).and_then(|switch| {
             Name::read(&switch, "switch", r#"{ wall = "stone", switch = "gate" }"#)
@@ -70,14 +70,14 @@ impl<'a> WallText<'a> {
 
 /// A door.
 pub(crate) struct DoorText<'a> {
-    pub(crate) leaf: Surface<'a>,
+    pub(crate) leaf: SurfaceText<'a>,
     pub(crate) key: Option<Name<'a>>,
     pub(crate) switch: Option<Name<'a>>,
 }
 
 impl<'a> DoorText<'a> {
     pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
-        let leaf = Surface::read(entry, r#"{ door = "oak" }"#);
+        let leaf = SurfaceText::read(entry, r#"{ door = "oak" }"#);
         let (key, switch) = (entry.beside(table, "key"), entry.beside(table, "switch"));
         if let (Some(_), Some(switch)) = (&key, &switch) {
             let message = "a door opens with a key or a switch, not both";
@@ -135,7 +135,7 @@ pub(crate) fn wall_height(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<
 /// A wall that does not fill its cell.
 pub(crate) struct ShapeText<'a> {
     pub(crate) outline: Outline,
-    pub(crate) surface: Surface<'a>,
+    pub(crate) surface: SurfaceText<'a>,
     pub(crate) height: Option<ShapeHeight>,
 }
 
@@ -146,7 +146,7 @@ impl<'a> ShapeText<'a> {
             "diagonal" => ("from", r#"{ diagonal = "brick", from = "north-west" }"#),
             _ => ("at", r#"{ thin = "wood", at = "north" }"#),
         };
-        let surface = Surface::read(entry, example);
+        let surface = SurfaceText::read(entry, example);
         let outline = match (addition, entry.beside(table, addition)) {
             ("radius", None) => Some(Outline::Pillar(DEFAULT_RADIUS)),
             ("radius", Some(radius)) => PILLAR_RADIUS.read(&radius).map(Outline::Pillar),
@@ -200,8 +200,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) floor_height: Option<Height>,
     pub(crate) ceiling_height: Option<Height>,
     pub(crate) roof_height: Option<Height>,
-    pub(crate) riser: Option<Surface<'a>>,
-    pub(crate) lintel: Option<Surface<'a>>,
+    pub(crate) riser: Option<SurfaceText<'a>>,
+    pub(crate) lintel: Option<SurfaceText<'a>>,
     /// The place of the key that makes it water.
     pub(crate) water: Option<Range<usize>>,
     /// The switch of a plate.
@@ -225,8 +225,8 @@ impl<'a> Surroundings<'a> {
             "floor_height" => self.floor_height = Height::read(entry),
             "ceiling_height" => self.ceiling_height = Height::read(entry),
             "roof_height" => self.roof_height = Height::read(entry),
-            "riser" => self.riser = Surface::read(entry, r#"{ riser = "stone" }"#),
-            "lintel" => self.lintel = Surface::read(entry, r#"{ lintel = "brick" }"#),
+            "riser" => self.riser = SurfaceText::read(entry, r#"{ riser = "stone" }"#),
+            "lintel" => self.lintel = SurfaceText::read(entry, r#"{ lintel = "brick" }"#),
             "water" => self.water = is_true(entry).then(|| entry.key_place.clone()),
             "plate" => self.plate = Name::read(entry, "switch", r#"{ plate = "gate" }"#),
             "moves_to" => self.moves_to = Height::read(entry),
@@ -284,9 +284,9 @@ impl<'a> Surroundings<'a> {
 
     /// The floor of a plate or of water if the map names none. It makes a mechanism visible.
     pub(crate) fn usual_floor(&self) -> Option<CoveringText<'static>> {
-        let plate = self.plate.as_ref().map(|_| Surface::built_in("metal"));
+        let plate = self.plate.as_ref().map(|_| SurfaceText::built_in("metal"));
         plate
-            .or_else(|| self.water.as_ref().map(|_| Surface::plain(WATER)))
+            .or_else(|| self.water.as_ref().map(|_| SurfaceText::plain(WATER)))
             .map(CoveringText::plain)
     }
 }

@@ -6,7 +6,7 @@ use super::*;
 use crate::cast::Side;
 use crate::raster::SurfaceBuffer;
 use crate::render::Frame;
-use crate::visibility::{FaceColumn, FrameSize, PixelAspect, Projection, Rows, SideLit, Stats};
+use crate::visibility::{FaceColumn, FrameSize, PixelAspect, Projection, Rows, SideLit, StatsCounter};
 use crate::world::{Camera, FieldOfView, Heading, Texture};
 
 const HEIGHT: u32 = 90;
@@ -41,7 +41,7 @@ proptest! {
         let mut memory = BatchMemory::default();
         let mut surfaces = SurfaceBuffer::default();
         let rows = surfaces.bands(size.height).next().unwrap();
-        let mut target = Target::new(frame.whole(), rows, Stats::default());
+        let mut target = Target::new(frame.whole(), rows, StatsCounter::default());
         let mut batch = ColumnBatch::new(&mut memory, &mut target, false);
         let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
         let down = |t: f64, range: &Range<usize>| {
@@ -92,7 +92,7 @@ proptest! {
         let mut memory = BatchMemory::default();
         let mut surfaces = SurfaceBuffer::default();
         let rows = surfaces.bands(size.height).next().unwrap();
-        let mut target = Target::new(frame.whole(), rows, Stats::default());
+        let mut target = Target::new(frame.whole(), rows, StatsCounter::default());
         let mut batch = ColumnBatch::new(&mut memory, &mut target, are_direct);
         let shown: Vec<_> = faces()
             .map(|(x, rows, (t, u), texels)| {

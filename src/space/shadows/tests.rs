@@ -15,10 +15,10 @@ fn body() -> impl Strategy<Value = Body> {
     let texture = SolidTexture::Plain(Rgb::BLACK);
     let shape = prop_oneof![
         (point(12), 1..6).prop_filter_map("a sphere", |(center, radius)| {
-            Sphere::new(center, f64::from(radius) / 2.0).map(Shape::Sphere)
+            Sphere::new(center, f64::from(radius) / 2.0).map(BodyShape::Sphere)
         }),
         (point(12), point(12)).prop_filter_map("a box", |(corner, opposite)| {
-            Block::new(corner, opposite).map(Shape::Block)
+            Block::new(corner, opposite).map(BodyShape::Block)
         }),
     ];
     shape.prop_map(move |shape| Body { shape, texture })

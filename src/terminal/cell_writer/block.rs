@@ -7,12 +7,12 @@
 //! Two cells of different shapes are compared by the parts of a cell that their colours have in common. If an edge then
 //! moves by a dot within one wall, the cells with near colours can be kept.
 
-use super::style::{Shade, Style};
+use super::style::{PackedColor, Style};
 use crate::tui::canvas::Mosaic;
 
 /// A mosaic without the last dot. Its number is below [`Shape::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shape(u8);
+pub(crate) struct MosaicShape(u8);
 
 /// The number of octant shapes. The sextant shapes follow them.
 const OCTANTS: u8 = 128;
@@ -36,7 +36,7 @@ impl Overlap {
     }
 }
 
-impl Shape {
+impl MosaicShape {
     /// The upper half, in cells of two pixels.
     pub(crate) const HALF: Self = Self(0);
     /// No dot. No cell has this shape.
@@ -125,11 +125,11 @@ impl Shape {
 }
 
 /// The characters of each shape and of its inverse in UTF-8. The last byte is zero if a character has three.
-static ENCODED: [[[u8; 4]; 2]; Shape::COUNT as usize] = {
-    let mut table = [[[0; 4]; 2]; Shape::COUNT as usize];
+static ENCODED: [[[u8; 4]; 2]; MosaicShape::COUNT as usize] = {
+    let mut table = [[[0; 4]; 2]; MosaicShape::COUNT as usize];
     let mut number = 0;
-    while number < Shape::COUNT {
-        let mosaic = Shape::new(number).mosaic();
+    while number < MosaicShape::COUNT {
+        let mosaic = MosaicShape::new(number).mosaic();
         table[number as usize] = [encoded(mosaic), encoded(mosaic.inverse())];
         number += 1;
     }
@@ -143,13 +143,13 @@ const fn encoded(mosaic: Mosaic) -> [u8; 4] {
 }
 
 /// The twenty-fourths of a cell, two by twelve, in which each shape has dots.
-static PARTS: [u32; Shape::COUNT as usize] = {
-    let mut table = [0; Shape::COUNT as usize];
+static PARTS: [u32; MosaicShape::COUNT as usize] = {
+    let mut table = [0; MosaicShape::COUNT as usize];
     let mut number = 0;
-    while number < Shape::COUNT {
+    while number < MosaicShape::COUNT {
         let mut part = 0;
-        while part < Shape::PARTS as u32 {
-            let is_dot = Shape::new(number).mosaic().has(part % 2, part / 2);
+        while part < MosaicShape::PARTS as u32 {
+            let is_dot = MosaicShape::new(number).mosaic().has(part % 2, part / 2);
             table[number as usize] |= (is_dot as u32) << part;
             part += 1;
         }
@@ -227,9 +227,9 @@ impl BlockElement {
     }
 
     /// The block element and style with the fewest bytes after `current` that show these two halves.
-    pub(crate) fn cheapest(halves: [Shade; 2], current: Option<Style>) -> (Self, Style) {
+    pub(crate) fn cheapest(halves: [PackedColor; 2], current: Option<Style>) -> (Self, Style) {
         let [top, bottom] = halves;
-        let plain = |element, [text, ground]: [Shade; 2]| (element, Style::plain(text, ground));
+        let plain = |element, [text, ground]: [PackedColor; 2]| (element, Style::plain(text, ground));
         let Some(current) = current else { return plain(Self::Upper, halves) };
         if top == bottom && !current.has_no_modifiers() {
             let text = current.foreground;
@@ -244,9 +244,9 @@ impl BlockElement {
     /// halves. If the halves are equal, the current style must have no modifiers.
     #[inline]
     pub(crate) fn cheapest_after(
-        [text, ground]: [Shade; 2],
-        [top, bottom]: [Shade; 2],
-    ) -> (Self, [Shade; 2]) {
+        [text, ground]: [PackedColor; 2],
+        [top, bottom]: [PackedColor; 2],
+    ) -> (Self, [PackedColor; 2]) {
         if top == bottom {
             return if text == top && ground != top {
                 (Self::Full, [text, ground])
@@ -273,26 +273,26 @@ mod tests {
         let all = (0..=u8::MAX).map(Mosaic::octants).chain((0..64).map(Mosaic::sextants));
         for mosaic in all {
             let ((shape, is_inverse), (other, is_other_inverse)) =
-                (Shape::of(mosaic), Shape::of(mosaic.inverse()));
+                (MosaicShape::of(mosaic), MosaicShape::of(mosaic.inverse()));
             assert_eq!((shape, is_inverse), (other, !is_other_inverse));
-            assert!(shape.get() < Shape::COUNT);
-            if shape == Shape::NONE {
+            assert!(shape.get() < MosaicShape::COUNT);
+            if shape == MosaicShape::NONE {
                 continue;
             }
             let element = if is_inverse { BlockElement::Lower } else { BlockElement::Upper };
             let (encoded, bytes) = shape.encoded(element);
             assert_eq!(encoded[..bytes], *mosaic.character().to_string().as_bytes());
         }
-        assert_eq!(Shape::of(Mosaic::UPPER_HALF), (Shape::HALF, false));
+        assert_eq!(MosaicShape::of(Mosaic::UPPER_HALF), (MosaicShape::HALF, false));
     }
 
     #[test]
     fn overlaps_are_those_of_the_dots() {
-        let shape = |mask| Shape::of(Mosaic::octants(mask)).0;
+        let shape = |mask| MosaicShape::of(Mosaic::octants(mask)).0;
         let (upper, left) = (shape(0x0F), shape(0x55));
         assert_eq!(upper.overlap(left), Overlap { straight: [6, 6], crossed: [6, 6] });
         assert_eq!(upper.overlap(upper), Overlap { straight: [12, 12], crossed: [0, 0] });
-        let third = Shape::of(Mosaic::sextants(0b11)).0;
+        let third = MosaicShape::of(Mosaic::sextants(0b11)).0;
         assert_eq!(third.overlap(upper), Overlap { straight: [8, 12], crossed: [0, 4] });
         assert_eq!(third.parts(), [8, 16]);
     }

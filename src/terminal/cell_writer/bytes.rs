@@ -225,7 +225,7 @@ static DECIMALS: [Decimal; 256] = {
 };
 
 /// Writes definitions of entries of the terminal's palette (OSC 4), several in each sequence.
-pub(crate) struct Definitions<'a> {
+pub(crate) struct PaletteWriter<'a> {
     bytes: &'a mut Bytes,
     count: usize,
 }
@@ -233,7 +233,7 @@ pub(crate) struct Definitions<'a> {
 /// The maximum number of definitions in one sequence. Some terminals accept at most sixteen parameters.
 const AT_ONCE: usize = 7;
 
-impl<'a> Definitions<'a> {
+impl<'a> PaletteWriter<'a> {
     pub(crate) fn begin(bytes: &'a mut Bytes) -> Self {
         Self { bytes, count: 0 }
     }

@@ -1,7 +1,7 @@
 //! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
-use super::block::Shape;
-use super::style::{Kind, Notation, Shade};
+use super::block::MosaicShape;
+use super::style::{PackedColorKind, Notation, PackedColor};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
 use crate::color::palette;
@@ -14,20 +14,20 @@ use crate::terminal::Fidelity;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ink {
     pub(crate) lab: [f32; 3],
-    pub(crate) shade: Shade,
+    pub(crate) shade: PackedColor,
 }
 
 impl Ink {
     /// The ink of `shade`. An indexed colour counts as xterm's standard colour.
     #[inline(never)]
-    pub(crate) fn new(shade: Shade) -> Self {
+    pub(crate) fn new(shade: PackedColor) -> Self {
         let lab = match shade.kind() {
-            Kind::Rgb(channels) => PackedLab::of(channels).components(),
-            Kind::Indexed(index) => {
+            PackedColorKind::Rgb(channels) => PackedLab::of(channels).components(),
+            PackedColorKind::Indexed(index) => {
                 let [l, a, b] = PackedLab::of(palette::of_256(index).channels()).components();
                 if index < FIRST_FIXED { [l + NAMED, a, b] } else { [l, a, b] }
             }
-            Kind::Default => [OWN; 3],
+            PackedColorKind::Default => [OWN; 3],
         };
         Self { lab, shade }
     }
@@ -92,7 +92,7 @@ impl Inks {
     /// The ink of a colour.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    pub(crate) fn of(&mut self, shade: Shade) -> Ink {
+    pub(crate) fn of(&mut self, shade: PackedColor) -> Ink {
         let known = &mut self.places[shade.hash(PLACE_BITS)];
         if known.shade != shade {
             *known = Ink::new(shade);
@@ -102,7 +102,7 @@ impl Inks {
 
     /// The inks of two colours.
     #[inline]
-    pub(crate) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
+    pub(crate) fn of_both(&mut self, shades: [PackedColor; 2]) -> [Ink; 2] {
         shades.map(|shade| self.of(shade))
     }
 
@@ -118,12 +118,12 @@ impl Inks {
             Rgb::new(red, green, blue)
         };
         self.of(match (one.shade.kind(), other.shade.kind()) {
-            (Kind::Rgb(one), Kind::Rgb(other)) => Shade::rgb(middle(one, other)),
-            (Kind::Indexed(one @ FIRST_FIXED..), Kind::Indexed(other @ FIRST_FIXED..)) => {
-                Shade::indexed(palette::nearest_of_256(of_indices(one, other)))
+            (PackedColorKind::Rgb(one), PackedColorKind::Rgb(other)) => PackedColor::rgb(middle(one, other)),
+            (PackedColorKind::Indexed(one @ FIRST_FIXED..), PackedColorKind::Indexed(other @ FIRST_FIXED..)) => {
+                PackedColor::indexed(palette::nearest_of_256(of_indices(one, other)))
             }
-            (Kind::Indexed(one @ ..FIRST_FIXED), Kind::Indexed(other @ ..FIRST_FIXED)) => {
-                Shade::indexed(palette::nearest_of_16(of_indices(one, other)))
+            (PackedColorKind::Indexed(one @ ..FIRST_FIXED), PackedColorKind::Indexed(other @ ..FIRST_FIXED)) => {
+                PackedColor::indexed(palette::nearest_of_16(of_indices(one, other)))
             }
             _ => one.shade,
         })
@@ -133,7 +133,7 @@ impl Inks {
 impl Default for Inks {
     fn default() -> Self {
         // No requested colour is equal to this one.
-        let nothing = Ink { lab: [0.0; 3], shade: Shade::NONE };
+        let nothing = Ink { lab: [0.0; 3], shade: PackedColor::NONE };
         let places = vec![nothing; 1 << PLACE_BITS].try_into();
         Self { places: places.expect("a place for each hash") }
     }
@@ -141,7 +141,7 @@ impl Default for Inks {
 
 /// A colour that may be sent in place of another.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Telling {
+pub(crate) struct ColorCode {
     pub(crate) ink: Ink,
     /// The number of bytes of its parameters.
     pub(crate) bytes: f32,
@@ -149,7 +149,7 @@ pub(crate) struct Telling {
     pub(crate) error: f32,
 }
 
-impl Telling {
+impl ColorCode {
     /// The sum of the bytes and the price.
     #[inline]
     pub(crate) fn cost(self) -> f32 {
@@ -184,7 +184,7 @@ impl Price {
     /// The price in this number of parts of a cell, as [`Shape`] counts them.
     #[inline]
     pub(crate) fn of_parts(self, parts: u8) -> Self {
-        const HALF: f32 = Shape::PARTS as f32 / 2.0;
+        const HALF: f32 = MosaicShape::PARTS as f32 / 2.0;
         Self { bytes: self.bytes * f32::from(parts) / HALF, ..self }
     }
 

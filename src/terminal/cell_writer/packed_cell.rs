@@ -10,8 +10,8 @@ use std::fmt;
 use ratatui::buffer::{Cell, CellWidth};
 use ratatui::style::{Color, Modifier};
 
-use super::block::{BlockElement, Shape};
-use super::style::{Shade, Style};
+use super::block::{BlockElement, MosaicShape};
+use super::style::{PackedColor, Style};
 use crate::color::Rgb;
 use crate::tui::canvas::Mosaic;
 
@@ -19,7 +19,7 @@ use crate::tui::canvas::Mosaic;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Two colours with any block element, or with a mosaic or its inverse.
-    Block(Shape),
+    Block(MosaicShape),
     /// A glyph without modifiers, in a text and a background colour.
     Glyph(GlyphId),
 }
@@ -38,12 +38,12 @@ impl PackedCell {
     /// whenever its row changes.
     const INTRICATE: Self = Self((Self::SHAPES + 1) << Self::KIND);
     /// A space in the terminal's default colours.
-    pub(crate) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
+    pub(crate) const BLANK: Self = Self::of_text(GlyphId::SPACE, [PackedColor::DEFAULT; 2]);
 
     /// The position of the form. Its values are the shapes of blocks (zero for halves), two special values, and then
     /// the ids of glyphs.
-    const KIND: u32 = 2 * Shade::BITS;
-    const SHAPES: u64 = Shape::COUNT as u64;
+    const KIND: u32 = 2 * PackedColor::BITS;
+    const SHAPES: u64 = MosaicShape::COUNT as u64;
     const FIRST_GLYPH: u64 = Self::SHAPES + 2;
 
     /// Packs `cell`.
@@ -52,7 +52,7 @@ impl PackedCell {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(Symbol::of(symbol, |_| cell.cell_width()), style, glyph_table),
+            None => Self::of_symbol(CellText::of(symbol, |_| cell.cell_width()), style, glyph_table),
         }
     }
 
@@ -64,7 +64,7 @@ impl PackedCell {
     /// A cell of two colours, the first above the second.
     #[inline]
     pub(crate) fn of_colors(colors: [Color; 2]) -> Self {
-        let shades = colors.map(Shade::of);
+        let shades = colors.map(PackedColor::of);
         match halves(BlockElement::Upper, Style::plain(shades[0], shades[1])) {
             Some(halves) => Self::of_halves(halves),
             None => Self::of_text(GlyphId::UPPER_HALF, shades),
@@ -74,7 +74,7 @@ impl PackedCell {
     /// A cell of two pixels, the first above the second.
     #[inline]
     pub(crate) fn of_pixels(pixels: [Rgb; 2]) -> Self {
-        Self::of_halves(pixels.map(Shade::of_pixel))
+        Self::of_halves(pixels.map(PackedColor::of_pixel))
     }
 
     /// A mosaic in the colours of its dots and of the rest.
@@ -84,22 +84,22 @@ impl PackedCell {
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
     ) -> Self {
-        let shades = colors.map(Shade::of);
-        if shades.contains(&Shade::DEFAULT) {
+        let shades = colors.map(PackedColor::of);
+        if shades.contains(&PackedColor::DEFAULT) {
             let [foreground, background] = shades;
             let style = Style::plain(foreground, background);
             return Self::of_glyph(mosaic.character(), style, glyph_table);
         }
-        let (shape, is_inverse) = Shape::of(mosaic);
+        let (shape, is_inverse) = MosaicShape::of(mosaic);
         let [dots, rest] = shades;
         Self::of_shape(shape, if is_inverse { [rest, dots] } else { [dots, rest] })
     }
 
     /// A cell of this shape, in the colours of its dots and of the rest.
     #[inline]
-    fn of_shape(shape: Shape, colors: [Shade; 2]) -> Self {
+    fn of_shape(shape: MosaicShape, colors: [PackedColor; 2]) -> Self {
         let [dots, rest] = colors;
-        if dots == rest || shape == Shape::NONE {
+        if dots == rest || shape == MosaicShape::NONE {
             return Self::of_halves([rest; 2]);
         }
         Self(u64::from(shape.get()) << Self::KIND | Self::of_halves(colors).0)
@@ -107,7 +107,7 @@ impl PackedCell {
 
     /// The mosaic with this character. `None` if another character for it would look different in this style.
     fn mosaic(character: char, style: Style) -> Option<Mosaic> {
-        let has_own = style.colors().contains(&Shade::DEFAULT);
+        let has_own = style.colors().contains(&PackedColor::DEFAULT);
         let is_plain = character >= FIRST_MOSAIC && style.has_no_modifiers() && !has_own;
         Mosaic::of_character(character).filter(|_| is_plain)
     }
@@ -131,9 +131,9 @@ impl PackedCell {
         }
         // This check is first, because finding the width of a character takes ten times as long.
         if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
-            return Self::of_text(id, colors.map(Shade::of));
+            return Self::of_text(id, colors.map(PackedColor::of));
         }
-        Self::of_symbol(Symbol::of(symbol, CellWidth::cell_width), style, glyph_table)
+        Self::of_symbol(CellText::of(symbol, CellWidth::cell_width), style, glyph_table)
     }
 
     #[inline]
@@ -144,18 +144,18 @@ impl PackedCell {
         }
     }
 
-    fn of_symbol(symbol: Symbol, style: Style, glyph_table: &mut GlyphTable) -> Self {
+    fn of_symbol(symbol: CellText, style: Style, glyph_table: &mut GlyphTable) -> Self {
         match symbol {
-            Symbol::Blank => Self::of_element(BlockElement::Space, style, glyph_table),
-            Symbol::Character(character @ FIRST_MOSAIC..) => match Self::mosaic(character, style) {
+            CellText::Blank => Self::of_element(BlockElement::Space, style, glyph_table),
+            CellText::Character(character @ FIRST_MOSAIC..) => match Self::mosaic(character, style) {
                 Some(mosaic) => {
-                    let colors = style.colors().map(Shade::color);
+                    let colors = style.colors().map(PackedColor::color);
                     Self::of_mosaic(mosaic, colors, glyph_table)
                 }
                 None => Self::of_glyph(character, style, glyph_table),
             },
-            Symbol::Character(character) => Self::of_glyph(character, style, glyph_table),
-            Symbol::Intricate => Self::INTRICATE,
+            CellText::Character(character) => Self::of_glyph(character, style, glyph_table),
+            CellText::Intricate => Self::INTRICATE,
         }
     }
 
@@ -169,16 +169,16 @@ impl PackedCell {
 
     /// A cell of this shape as `element` draws it in this style.
     #[inline]
-    pub(crate) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
+    pub(crate) fn of_block(shape: MosaicShape, element: BlockElement, style: Style) -> Self {
         Self::of_shape(shape, element.halves(style.foreground, style.background))
     }
 
     #[inline]
-    const fn of_halves([top, bottom]: [Shade; 2]) -> Self {
-        Self((top.in_bits() as u64) << Shade::BITS | bottom.in_bits() as u64)
+    const fn of_halves([top, bottom]: [PackedColor; 2]) -> Self {
+        Self((top.in_bits() as u64) << PackedColor::BITS | bottom.in_bits() as u64)
     }
 
-    const fn of_text(id: GlyphId, colors: [Shade; 2]) -> Self {
+    const fn of_text(id: GlyphId, colors: [PackedColor; 2]) -> Self {
         let kind = Self::FIRST_GLYPH + id.get() as u64;
         Self(kind << Self::KIND | Self::of_halves(colors).0)
     }
@@ -216,9 +216,9 @@ impl PackedCell {
 
     /// The form and the colours. `None` if the cell may only be shown exactly.
     #[inline]
-    pub(crate) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
+    pub(crate) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [PackedColor; 2])> {
         let form = match self.0 >> Self::KIND {
-            shape @ ..Self::SHAPES => Form::Block(Shape::new(shape as u8)),
+            shape @ ..Self::SHAPES => Form::Block(MosaicShape::new(shape as u8)),
             id => {
                 let id = GlyphId::new(id.checked_sub(Self::FIRST_GLYPH)? as u16);
                 let glyph = glyph_table.glyph(id);
@@ -229,38 +229,38 @@ impl PackedCell {
     }
 
     /// The same form in other colours.
-    pub(crate) fn recolored(self, colors: [Shade; 2]) -> Self {
+    pub(crate) fn recolored(self, colors: [PackedColor; 2]) -> Self {
         Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
 
     /// The colours of the upper and the lower half of a block.
     #[inline]
-    pub(crate) fn halves(self) -> Option<[Shade; 2]> {
+    pub(crate) fn halves(self) -> Option<[PackedColor; 2]> {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
     /// The shape of a block, and the colours of its dots and of the rest.
     #[inline]
-    pub(crate) fn block(self) -> Option<(Shape, [Shade; 2])> {
+    pub(crate) fn block(self) -> Option<(MosaicShape, [PackedColor; 2])> {
         let kind = self.0 >> Self::KIND;
-        (kind < Self::SHAPES).then(|| (Shape::new(kind as u8), self.colors()))
+        (kind < Self::SHAPES).then(|| (MosaicShape::new(kind as u8), self.colors()))
     }
 
     /// The same as [`PackedCell::block`], but only if both colours are pixels.
     #[inline]
-    pub(crate) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
-        const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
-        const PIXELS: u64 = PIXEL << Shade::BITS | PIXEL;
+    pub(crate) fn pixels(self) -> Option<(MosaicShape, [PackedColor; 2])> {
+        const PIXEL: u64 = PackedColor::rgb([0; 3]).in_bits() as u64;
+        const PIXELS: u64 = PIXEL << PackedColor::BITS | PIXEL;
         const BOTH_KINDS: u64 = 3 * (PIXELS / 2);
         const BLOCKS: u64 = PackedCell::SHAPES << PackedCell::KIND;
         let is_of_pixels = self.0 & BOTH_KINDS == PIXELS && self.0 < BLOCKS;
-        is_of_pixels.then(|| (Shape::new((self.0 >> Self::KIND) as u8), self.colors()))
+        is_of_pixels.then(|| (MosaicShape::new((self.0 >> Self::KIND) as u8), self.colors()))
     }
 
     /// The two colours of any cell.
     #[inline]
-    pub(crate) fn colors(self) -> [Shade; 2] {
-        [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
+    pub(crate) fn colors(self) -> [PackedColor; 2] {
+        [self.0 >> PackedColor::BITS, self.0].map(|bits| PackedColor::from_bits(bits as u32))
     }
 }
 
@@ -280,9 +280,9 @@ const FIRST_MOSAIC: char = '\u{2580}';
 /// The colours of the upper and the lower half. `None` if another block element would look different. This is so with
 /// modifiers, and with the terminal's default colours, which differ as text and as background.
 #[inline]
-fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
+fn halves(element: BlockElement, style: Style) -> Option<[PackedColor; 2]> {
     let halves = element.halves(style.foreground, style.background);
-    let has_own = halves.contains(&Shade::DEFAULT);
+    let has_own = halves.contains(&PackedColor::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
 }
 
@@ -396,7 +396,7 @@ impl Default for GlyphTable {
 
 /// The text of a cell, as far as a terminal may receive it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Symbol {
+enum CellText {
     /// Nothing to show: the text is empty, has no width, or contains a control character. A terminal
     /// would obey a control character, and would add a character without a width to the cell before.
     Blank,
@@ -406,7 +406,7 @@ enum Symbol {
     Intricate,
 }
 
-impl Symbol {
+impl CellText {
     /// Classifies `text`. Measures its `width` only if it contains no control character, because ratatui cannot
     /// measure these.
     #[inline]

@@ -30,20 +30,20 @@
 
 use crate::color::oklab::Oklab;
 use crate::color::{Rgb, palette};
-use crate::terminal::cell_writer::bytes::{Bytes, Definitions};
-use crate::terminal::cell_writer::ink::{self, Ink, Price, Telling};
+use crate::terminal::cell_writer::bytes::{Bytes, PaletteWriter};
+use crate::terminal::cell_writer::ink::{self, Ink, Price, ColorCode};
 use crate::terminal::cell_writer::packed_cell::PackedCell;
 use crate::terminal::cell_writer::screen::Screen;
-use crate::terminal::cell_writer::style::{Kind, Shade, Style};
+use crate::terminal::cell_writer::style::{PackedColorKind, PackedColor, Style};
 use crate::terminal::sequence::PALETTE;
 
 /// The known entries of the terminal's palette.
 #[derive(Debug, Default)]
-pub(crate) struct Palette {
+pub(crate) struct TerminalPalette {
     /// Whether entries may be defined.
     is_on: bool,
     /// The colour of each entry. [`Shade::DEFAULT`] for undefined entries.
-    colors: Vec<Shade>,
+    colors: Vec<PackedColor>,
     /// The colours of the entries in L\*a\*b\*, component by component.
     labs: [Vec<f32>; 3],
     /// The entry that may hold a colour, by the colour's hash. Of several colours with the same
@@ -52,7 +52,7 @@ pub(crate) struct Palette {
     /// The numbers of recent uses of colours without an entry, by hash.
     counts: Vec<Count>,
     /// The entry nearest to a colour, by the colour's hash.
-    nearest: Vec<Near>,
+    nearest: Vec<NearestEntry>,
     /// The number of the frame.
     frame: u32,
     /// The number of the frame in which an entry's colour was last used.
@@ -69,15 +69,15 @@ pub(crate) struct Palette {
 /// The number of recent uses of a colour. Older uses count less.
 #[derive(Clone, Copy, Debug)]
 struct Count {
-    shade: Shade,
+    shade: PackedColor,
     count: u16,
 }
 
 /// The entry nearest to a colour, and the number of the frame of the search.
 #[derive(Clone, Copy, Debug)]
-struct Near {
-    shade: Shade,
-    color: Shade,
+struct NearestEntry {
+    shade: PackedColor,
+    color: PackedColor,
     entry: u8,
     found_at: u32,
 }
@@ -91,7 +91,7 @@ const PLACE_BITS: u32 = 11;
 /// The number of frames for which a nearest entry is used without a new search.
 const KNOWN_FOR: u32 = 8;
 
-impl Palette {
+impl TerminalPalette {
     /// Sets whether entries may be defined, and forgets all definitions.
     pub(crate) fn set_on(&mut self, is_on: bool) {
         *self = if is_on { Self::on() } else { Self::default() };
@@ -132,32 +132,32 @@ impl Palette {
 
     /// The entry that holds a colour.
     #[inline]
-    fn entry(&self, shade: Shade) -> Option<u8> {
+    fn entry(&self, shade: PackedColor) -> Option<u8> {
         let entry = self.entries[entry_place(shade)];
-        (self.colors[usize::from(entry)] == shade && shade != Shade::DEFAULT).then_some(entry)
+        (self.colors[usize::from(entry)] == shade && shade != PackedColor::DEFAULT).then_some(entry)
     }
 
     /// The shade to send to the terminal for a colour.
     #[inline]
-    pub(crate) fn told(&self, shade: Shade) -> Shade {
+    pub(crate) fn told(&self, shade: PackedColor) -> PackedColor {
         if self.is_on { self.entry_or_itself(shade) } else { shade }
     }
 
-    fn entry_or_itself(&self, shade: Shade) -> Shade {
+    fn entry_or_itself(&self, shade: PackedColor) -> PackedColor {
         if let Some(quantizer) = &self.quantizer {
-            return quantizer.told(shade).map_or(shade, |(_, entry)| Shade::indexed(entry));
+            return quantizer.told(shade).map_or(shade, |(_, entry)| PackedColor::indexed(entry));
         }
         match shade.kind() {
             // The entry with this index may have been redefined.
-            Kind::Indexed(index @ 16..) => Shade::rgb(palette::of_256(index).channels()),
-            _ => self.entry(shade).map_or(shade, Shade::indexed),
+            PackedColorKind::Indexed(index @ 16..) => PackedColor::rgb(palette::of_256(index).channels()),
+            _ => self.entry(shade).map_or(shade, PackedColor::indexed),
         }
     }
 
     /// The cheapest colour to send for `wanted`, whose own parameters take this number of bytes.
     #[inline]
-    pub(crate) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> Telling {
-        let mut telling = Telling { ink: wanted, bytes, error: 0.0 };
+    pub(crate) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> ColorCode {
+        let mut telling = ColorCode { ink: wanted, bytes, error: 0.0 };
         if self.is_on {
             self.shorten(&mut telling, price);
         }
@@ -166,21 +166,21 @@ impl Palette {
 
     /// Replaces the colour by an entry if that costs less.
     #[inline(never)]
-    fn shorten(&mut self, telling: &mut Telling, price: Price) {
+    fn shorten(&mut self, telling: &mut ColorCode, price: Price) {
         if let Some(quantizer) = &mut self.quantizer {
             return quantizer.telling(telling, price);
         }
         let wanted = telling.ink;
         if let Some(entry) = self.entry(wanted.shade) {
-            telling.bytes = Shade::indexed(entry).bytes() as f32;
+            telling.bytes = PackedColor::indexed(entry).bytes() as f32;
             return;
         }
         let Some(near) = self.nearest(wanted) else { return };
         let ink = self.ink(near);
-        let bytes = Shade::indexed(near).bytes() as f32;
+        let bytes = PackedColor::indexed(near).bytes() as f32;
         let error = price.of(ink, wanted);
         if bytes + error < telling.bytes {
-            *telling = Telling { ink, bytes, error };
+            *telling = ColorCode { ink, bytes, error };
         }
     }
 
@@ -193,25 +193,25 @@ impl Palette {
             && self.frame - known.found_at < KNOWN_FOR
             && self.colors[usize::from(known.entry)] == known.color;
         if is_known {
-            return (known.color != Shade::DEFAULT).then_some(known.entry);
+            return (known.color != PackedColor::DEFAULT).then_some(known.entry);
         }
         let (entry, _) = ink::nearest(&self.labs, wanted.lab);
         let color = self.colors[usize::from(entry)];
-        self.nearest[place] = Near { shade: wanted.shade, color, entry, found_at: self.frame };
-        (color != Shade::DEFAULT).then_some(entry)
+        self.nearest[place] = NearestEntry { shade: wanted.shade, color, entry, found_at: self.frame };
+        (color != PackedColor::DEFAULT).then_some(entry)
     }
 
     /// A palette whose entries may be defined.
     fn on() -> Self {
         let places = 1 << PLACE_BITS;
-        let shade = Shade::DEFAULT;
+        let shade = PackedColor::DEFAULT;
         Self {
             is_on: true,
             colors: vec![shade; ENTRIES],
             labs: std::array::from_fn(|_| vec![1e9; ENTRIES]),
             entries: vec![0; 1 << ENTRY_PLACE_BITS],
             counts: vec![Count { shade, count: 0 }; places],
-            nearest: vec![Near { shade, color: shade, entry: 0, found_at: 0 }; places],
+            nearest: vec![NearestEntry { shade, color: shade, entry: 0, found_at: 0 }; places],
             frame: KNOWN_FOR,
             wanted_at: vec![0; ENTRIES],
             is_shown: vec![false; ENTRIES],
@@ -232,7 +232,7 @@ impl Palette {
 
 /// The place of a colour's entry.
 #[inline]
-fn entry_place(shade: Shade) -> usize {
+fn entry_place(shade: PackedColor) -> usize {
     shade.hash(ENTRY_PLACE_BITS)
 }
 
@@ -244,7 +244,7 @@ const SPARED: f32 = 8.0;
 const MIN_USES: f32 = 2.0;
 const MIN_USES_INEXACT: f32 = 4.0;
 
-impl Palette {
+impl TerminalPalette {
     /// Begins a frame, on a terminal with this `style`: counts the shown colours and the targets'
     /// colours, row by row, and defines the frequent ones.
     ///
@@ -294,14 +294,14 @@ impl Palette {
     }
 
     #[inline]
-    fn note_shown(&mut self, shade: Shade) {
+    fn note_shown(&mut self, shade: PackedColor) {
         if let Some(entry) = self.entry(shade) {
             self.is_shown[usize::from(entry)] = true;
         }
     }
 
     #[inline]
-    fn note_wanted(&mut self, shade: Shade) {
+    fn note_wanted(&mut self, shade: PackedColor) {
         if let Some(entry) = self.entry(shade) {
             self.wanted_at[usize::from(entry)] = self.frame;
             return;
@@ -359,27 +359,27 @@ impl Palette {
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
         let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
         // Each place refers to one entry, which must not be replaced while it is shown.
-        let is_told_of = |shade: Shade| {
+        let is_told_of = |shade: PackedColor| {
             let entry = usize::from(entries[entry_place(shade)]);
-            is_shown[entry] && colors[entry] != Shade::DEFAULT
+            is_shown[entry] && colors[entry] != PackedColor::DEFAULT
         };
         self.frequent.retain(|count| !is_told_of(count.shade));
         let definitions = self.free.len().min(self.frequent.len());
-        let mut sent = Definitions::begin(bytes);
+        let mut sent = PaletteWriter::begin(bytes);
         for at in 0..definitions {
             let (entry, Count { shade, .. }) = (self.free[at], self.frequent[at]);
-            let Kind::Rgb(channels) = shade.kind() else { continue };
+            let PackedColorKind::Rgb(channels) = shade.kind() else { continue };
             sent.push(entry, channels);
             self.define(entry, shade);
         }
         sent.end();
     }
 
-    fn define(&mut self, entry: u8, shade: Shade) {
+    fn define(&mut self, entry: u8, shade: PackedColor) {
         // The previous entry at this place can no longer be found.
         let forgotten = usize::from(self.entries[entry_place(shade)]);
         if entry_place(self.colors[forgotten]) == entry_place(shade) {
-            self.colors[forgotten] = Shade::DEFAULT;
+            self.colors[forgotten] = PackedColor::DEFAULT;
             self.labs.iter_mut().for_each(|labs| labs[forgotten] = 1e9);
         }
         let index = usize::from(entry);
@@ -389,7 +389,7 @@ impl Palette {
         }
         self.entries[entry_place(shade)] = entry;
         self.wanted_at[index] = self.frame;
-        self.counts[shade.hash(PLACE_BITS)] = Count { shade: Shade::DEFAULT, count: 0 };
+        self.counts[shade.hash(PLACE_BITS)] = Count { shade: PackedColor::DEFAULT, count: 0 };
     }
 }
 
@@ -398,7 +398,7 @@ impl Palette {
 struct Quantizer {
     clusters: Clusters,
     /// The colour of each entry. [`Shade::NONE`] for undefined entries.
-    shades: Vec<Shade>,
+    shades: Vec<PackedColor>,
     /// The entries, sorted by the bits of their colours.
     by_shade: Vec<(u32, u8)>,
     /// Recent colours with their nearest entries, by hash.
@@ -413,7 +413,7 @@ struct Quantizer {
 /// The nearest entry of a colour, and its distance in Oklab.
 #[derive(Clone, Copy, Debug)]
 struct NearCluster {
-    shade: Shade,
+    shade: PackedColor,
     place: u8,
     distance: f32,
 }
@@ -431,10 +431,10 @@ const WAYS: usize = 4;
 
 impl Quantizer {
     pub(crate) fn new() -> Self {
-        let nothing = NearCluster { shade: Shade::NONE, place: 0, distance: 0.0 };
+        let nothing = NearCluster { shade: PackedColor::NONE, place: 0, distance: 0.0 };
         Self {
             clusters: Clusters::new(PALETTE.count()),
-            shades: vec![Shade::NONE; PALETTE.count()],
+            shades: vec![PackedColor::NONE; PALETTE.count()],
             by_shade: Vec::new(),
             known: vec![nothing; WAYS << PLACE_BITS],
             frame: 0,
@@ -460,9 +460,9 @@ impl Quantizer {
 
     /// The colour of the entry that is shown for `shade`, and the entry. `None` for named colours
     /// and the terminal's default colours.
-    pub(crate) fn told(&self, shade: Shade) -> Option<(Shade, u8)> {
+    pub(crate) fn told(&self, shade: PackedColor) -> Option<(PackedColor, u8)> {
         let channels = channels(shade)?;
-        let place = match self.place_of(Shade::rgb(channels)) {
+        let place = match self.place_of(PackedColor::rgb(channels)) {
             Some(place) => place,
             None => self.clusters.nearest(lab(channels)).0,
         };
@@ -470,10 +470,10 @@ impl Quantizer {
     }
 
     /// Replaces the colour by its nearest entry.
-    pub(crate) fn telling(&mut self, telling: &mut Telling, price: Price) {
+    pub(crate) fn telling(&mut self, telling: &mut ColorCode, price: Price) {
         let wanted = telling.ink;
         let Some((shade, entry)) = self.nearest(wanted.shade) else { return };
-        telling.bytes = Shade::indexed(entry).bytes() as f32;
+        telling.bytes = PackedColor::indexed(entry).bytes() as f32;
         if shade != wanted.shade {
             telling.ink = Ink::new(shade);
             telling.error = price.of(telling.ink, wanted);
@@ -481,12 +481,12 @@ impl Quantizer {
     }
 
     /// Returns the same as [`Quantizer::told`], and caches it.
-    fn nearest(&mut self, shade: Shade) -> Option<(Shade, u8)> {
+    fn nearest(&mut self, shade: PackedColor) -> Option<(PackedColor, u8)> {
         let near = self.near(shade)?;
         self.at(near.place)
     }
 
-    fn near(&mut self, shade: Shade) -> Option<NearCluster> {
+    fn near(&mut self, shade: PackedColor) -> Option<NearCluster> {
         let channels = channels(shade)?;
         let way = (shade.in_bits() & (WAYS as u32 - 1)) as usize;
         let known = shade.hash(PLACE_BITS) * WAYS + way;
@@ -497,12 +497,12 @@ impl Quantizer {
         Some(self.known[known])
     }
 
-    fn at(&self, place: u8) -> Option<(Shade, u8)> {
+    fn at(&self, place: u8) -> Option<(PackedColor, u8)> {
         let shade = self.shades[usize::from(place)];
-        (shade != Shade::NONE).then_some((shade, place + PALETTE.start()))
+        (shade != PackedColor::NONE).then_some((shade, place + PALETTE.start()))
     }
 
-    fn place_of(&self, shade: Shade) -> Option<u8> {
+    fn place_of(&self, shade: PackedColor) -> Option<u8> {
         let found = self.by_shade.binary_search_by_key(&shade.in_bits(), |(bits, _)| *bits);
         found.ok().map(|index| self.by_shade[index].1)
     }
@@ -542,10 +542,10 @@ impl Quantizer {
         let samples = samples(screen);
         let wanted = self.clusters.fit(&samples, &self.shades);
         let mut changes = Vec::new();
-        let mut definitions = Definitions::begin(bytes);
+        let mut definitions = PaletteWriter::begin(bytes);
         for (place, (shade, wanted)) in (0_u8..).zip(self.shades.iter_mut().zip(wanted)) {
             let before = std::mem::replace(shade, wanted);
-            if let (true, Kind::Rgb(channels)) = (before != wanted, wanted.kind()) {
+            if let (true, PackedColorKind::Rgb(channels)) = (before != wanted, wanted.kind()) {
                 definitions.push(place + PALETTE.start(), channels);
             }
             if before != wanted {
@@ -558,11 +558,11 @@ impl Quantizer {
             let found = changes.binary_search_by_key(&shade.in_bits(), |(before, _)| *before);
             found.map_or(shade, |index| changes[index].1)
         });
-        let shades = self.shades.iter().zip(0_u8..).filter(|(shade, _)| **shade != Shade::NONE);
+        let shades = self.shades.iter().zip(0_u8..).filter(|(shade, _)| **shade != PackedColor::NONE);
         self.by_shade.clear();
         self.by_shade.extend(shades.map(|(shade, place)| (shade.in_bits(), place)));
         self.by_shade.sort_unstable();
-        self.known.fill(NearCluster { shade: Shade::NONE, place: 0, distance: 0.0 });
+        self.known.fill(NearCluster { shade: PackedColor::NONE, place: 0, distance: 0.0 });
     }
 }
 
@@ -571,11 +571,11 @@ impl Quantizer {
 const MAX_SAMPLES: usize = 4096;
 
 /// The colours of the targets, in the order of their bits.
-fn samples(screen: &Screen) -> Vec<Sample> {
+fn samples(screen: &Screen) -> Vec<FrameColor> {
     let shades = screen.targets().flat_map(|target| target.colors());
     let mut colors: Vec<[u8; 3]> = shades.filter_map(channels).collect();
     colors.sort_unstable();
-    let mut samples: Vec<Sample> = Vec::new();
+    let mut samples: Vec<FrameColor> = Vec::new();
     for dropped in 0..u8::BITS {
         samples.clear();
         let key = |color: [u8; 3]| color.map(|channel| channel >> dropped);
@@ -583,8 +583,8 @@ fn samples(screen: &Screen) -> Vec<Sample> {
             colors.sort_unstable_by_key(|color| (key(*color), *color));
         }
         for group in colors.chunk_by(|one, other| key(*one) == key(*other)) {
-            let shade = Shade::rgb(group[group.len() / 2]);
-            samples.push(Sample { shade, lab: [0.0; 3], count: group.len() as f32 });
+            let shade = PackedColor::rgb(group[group.len() / 2]);
+            samples.push(FrameColor { shade, lab: [0.0; 3], count: group.len() as f32 });
         }
         if samples.len() <= MAX_SAMPLES {
             break;
@@ -598,11 +598,11 @@ fn samples(screen: &Screen) -> Vec<Sample> {
 
 /// Red, green and blue of a colour. `None` for named colours, which users can redefine, and for the
 /// terminal's default colours.
-fn channels(shade: Shade) -> Option<[u8; 3]> {
+fn channels(shade: PackedColor) -> Option<[u8; 3]> {
     match shade.kind() {
-        Kind::Rgb(channels) => Some(channels),
-        Kind::Indexed(index @ 16..) => Some(palette::of_256(index).channels()),
-        Kind::Indexed(_) | Kind::Default => None,
+        PackedColorKind::Rgb(channels) => Some(channels),
+        PackedColorKind::Indexed(index @ 16..) => Some(palette::of_256(index).channels()),
+        PackedColorKind::Indexed(_) | PackedColorKind::Default => None,
     }
 }
 
@@ -612,8 +612,8 @@ fn lab([red, green, blue]: [u8; 3]) -> [f32; 3] {
 
 /// A colour of a frame.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
-    shade: Shade,
+struct FrameColor {
+    shade: PackedColor,
     lab: [f32; 3],
     /// The number of half cells with this colour.
     count: f32,
@@ -675,7 +675,7 @@ impl Clusters {
     }
 
     /// Fits the entries, which have the colours `shades`, to `samples`. Returns their new colours.
-    fn fit(&mut self, samples: &[Sample], shades: &[Shade]) -> Vec<Shade> {
+    fn fit(&mut self, samples: &[FrameColor], shades: &[PackedColor]) -> Vec<PackedColor> {
         let before = self.centers.clone();
         for _ in 0..ROUNDS {
             let (sums, error) = self.sums(samples);
@@ -690,7 +690,7 @@ impl Clusters {
     }
 
     /// The sums of each cluster, and the mean distance of all samples.
-    fn sums(&self, samples: &[Sample]) -> (Vec<Sums>, f32) {
+    fn sums(&self, samples: &[FrameColor]) -> (Vec<Sums>, f32) {
         let mut all = vec![Sums::default(); self.used_at.len()];
         let (mut distances, mut count) = (0.0, 0.0);
         for (index, sample) in samples.iter().enumerate() {
@@ -713,7 +713,7 @@ impl Clusters {
 
     /// Moves entries without colours to the places with the largest errors. Returns true if any
     /// entry was moved.
-    fn split(&mut self, sums: &[Sums], samples: &[Sample]) -> bool {
+    fn split(&mut self, sums: &[Sums], samples: &[FrameColor]) -> bool {
         let mut spare: Vec<usize> =
             (0..sums.len()).filter(|&place| sums[place].count == 0.0).collect();
         spare.sort_by_key(|&place| self.used_at[place]);
@@ -729,10 +729,10 @@ impl Clusters {
     /// near enough. Returns the colours.
     fn settle(
         &mut self,
-        samples: &[Sample],
-        shades: &[Shade],
+        samples: &[FrameColor],
+        shades: &[PackedColor],
         before: &[Vec<f32>; 3],
-    ) -> Vec<Shade> {
+    ) -> Vec<PackedColor> {
         let mut nearest = vec![(f32::INFINITY, 0); shades.len()];
         for (index, sample) in samples.iter().enumerate() {
             let (place, distance) = self.nearest(sample.lab);
@@ -741,7 +741,7 @@ impl Clusters {
                 *known = (distance, index);
             }
         }
-        let mut settled: Vec<Shade> = Vec::with_capacity(shades.len());
+        let mut settled: Vec<PackedColor> = Vec::with_capacity(shades.len());
         for (place, (&shade, &(distance, index))) in shades.iter().zip(&nearest).enumerate() {
             let old = before.each_ref().map(|components| components[place]);
             let has_colors = distance.is_finite();
@@ -749,9 +749,9 @@ impl Clusters {
             let (lab, chosen) =
                 if is_kept { (old, shade) } else { (samples[index].lab, samples[index].shade) };
             // Two entries with the same colour could not be told apart.
-            let is_new = chosen != Shade::NONE && !settled.contains(&chosen);
+            let is_new = chosen != PackedColor::NONE && !settled.contains(&chosen);
             self.move_to(place, if is_new { lab } else { [UNDEFINED; 3] });
-            settled.push(if is_new { chosen } else { Shade::NONE });
+            settled.push(if is_new { chosen } else { PackedColor::NONE });
         }
         settled
     }

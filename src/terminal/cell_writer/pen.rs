@@ -8,14 +8,14 @@ use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
 use ratatui::layout::{Position, Size};
 
-use crate::terminal::cell_writer::block::{BlockElement, Shape};
+use crate::terminal::cell_writer::block::{BlockElement, MosaicShape};
 use crate::terminal::cell_writer::bytes::{Bytes, ControlSequence, Piece};
 use crate::terminal::cell_writer::ink::Price;
 use crate::terminal::cell_writer::packed_cell::PackedCell;
-use crate::terminal::cell_writer::palette::Palette;
+use crate::terminal::cell_writer::palette::TerminalPalette;
 use crate::terminal::cell_writer::screen::Screen;
-use crate::terminal::cell_writer::shift::{Shift, Way};
-use crate::terminal::cell_writer::style::{Shade, Style};
+use crate::terminal::cell_writer::shift::{Shift, ShiftDirection};
+use crate::terminal::cell_writer::style::{PackedColor, Style};
 
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
@@ -31,10 +31,10 @@ pub(crate) struct Pen {
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
     /// The last block drawn, unless other bytes were written since.
-    last: Option<(Shape, BlockElement)>,
+    last: Option<(MosaicShape, BlockElement)>,
     /// The number of repetitions of that block that are drawn but not written yet.
     repeated: u16,
-    palette: Palette,
+    palette: TerminalPalette,
 }
 
 /// The state of the terminal between cells of pixels.
@@ -45,7 +45,7 @@ pub(crate) struct Pen {
 #[derive(Clone, Copy)]
 struct PixelState {
     /// The text colour and the background, in true colour. There are no modifiers.
-    colors: [Shade; 2],
+    colors: [PackedColor; 2],
     /// The column of the cursor in the row.
     column: usize,
 }
@@ -67,7 +67,7 @@ impl Pen {
             repeats: false,
             last: None,
             repeated: 0,
-            palette: Palette::default(),
+            palette: TerminalPalette::default(),
         }
     }
 
@@ -77,7 +77,7 @@ impl Pen {
     }
 
     /// The terminal's palette.
-    pub(crate) fn palette(&mut self) -> &mut Palette {
+    pub(crate) fn palette(&mut self) -> &mut TerminalPalette {
         &mut self.palette
     }
 
@@ -191,7 +191,7 @@ impl Pen {
     pub(crate) fn draw_block(
         &mut self,
         position: Position,
-        (shape, element): (Shape, BlockElement),
+        (shape, element): (MosaicShape, BlockElement),
         style: Style,
     ) {
         let current = self.style;
@@ -284,13 +284,13 @@ impl Pen {
         let is_whole = end == self.size.width;
         let (start, end) = (Position { x: start, y }, Position { x: end - by, y });
         match shift.way {
-            Way::Left => {
+            ShiftDirection::Left => {
                 self.edit_row(start, by, DELETE);
                 if !is_whole {
                     self.edit_row(end, by, INSERT);
                 }
             }
-            Way::Right => {
+            ShiftDirection::Right => {
                 if !is_whole {
                     self.edit_row(end, by, DELETE);
                 }
@@ -341,7 +341,7 @@ impl Pen {
     fn pixel_state(&self, y: u16) -> Option<PixelState> {
         let Position { x, y: row } = self.cursor()?;
         let colors = self.style?.plain_colors()?;
-        let is_sound = colors.into_iter().all(Shade::is_rgb)
+        let is_sound = colors.into_iter().all(PackedColor::is_rgb)
             && row == y
             && !self.repeats
             && self.repeated == 0
@@ -361,16 +361,16 @@ impl Pen {
 
     /// Adds a cell of pixels at the cursor, and returns the colours after it.
     #[inline]
-    fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
+    fn push_pixels(&mut self, shape: MosaicShape, pixels: [PackedColor; 2], current: [PackedColor; 2]) -> [PackedColor; 2] {
         let (element, colors) = BlockElement::cheapest_after(current, pixels);
         let mut piece = self.frame.piece();
         if colors != current {
             let mut rendition = ControlSequence::begin(&mut piece);
-            Shade::push_change(colors, current, |shade| shade, &mut rendition);
+            PackedColor::push_change(colors, current, |shade| shade, &mut rendition);
             rendition.end(b'm');
         }
         let (encoded, count) =
-            if shape == Shape::HALF { element.encoded() } else { shape.encoded(element) };
+            if shape == MosaicShape::HALF { element.encoded() } else { shape.encoded(element) };
         piece.push(encoded, count);
         piece.finish();
         colors

@@ -19,18 +19,18 @@ use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
 use crate::terminal::Fidelity;
-use crate::terminal::cell_writer::block::{BlockElement, Shape};
+use crate::terminal::cell_writer::block::{BlockElement, MosaicShape};
 use crate::terminal::cell_writer::ink::{self, Ink, Inks, Price};
 use crate::terminal::cell_writer::packed_cell::{Form, GlyphId, GlyphTable, PackedCell};
 use crate::terminal::cell_writer::pen::Pen;
-use crate::terminal::cell_writer::screen::{Row, Screen};
+use crate::terminal::cell_writer::screen::{ScreenRow, Screen};
 use crate::terminal::cell_writer::shift::{BYTE, CELL, Loss, Shift, Shifts};
-use crate::terminal::cell_writer::style::{Notation, Shade, Style};
-use crate::terminal::cell_writer::trellis::{Action, Store, Terms, Trellis, Wanted};
+use crate::terminal::cell_writer::style::{Notation, PackedColor, Style};
+use crate::terminal::cell_writer::trellis::{DrawAction, ColorTables, RowParameters, Trellis, CellTarget};
 use crate::tui::canvas::SHADES;
 
 /// Makes a row look like its target.
-pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
+pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: ScreenRow) {
     if row.state.intricate {
         draw_intricate_row(pen, &mut row);
     } else {
@@ -44,7 +44,7 @@ pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
 }
 
 /// Draws a row whose characters may cover more than their cells.
-fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
+fn draw_intricate_row(pen: &mut Pen, row: &mut ScreenRow) {
     let mut covered = 0;
     for column in 0..row.width() {
         if covered > 0 {
@@ -65,7 +65,7 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
 
 /// Draws one cell of a row.
 #[inline(never)]
-fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
+fn draw_cell(pen: &mut Pen, row: &mut ScreenRow, column: usize) {
     let target = row.targets[column];
     draw_target(pen, row, column, target);
     row.shown[column] = target;
@@ -73,7 +73,7 @@ fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 
 /// Draws the target of a cell of a row.
 #[inline(never)]
-fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
+fn draw_target(pen: &mut Pen, row: &ScreenRow, column: usize, target: PackedCell) {
     let position = Position { x: column as u16, y: row.y };
     if let Some((shape, colors)) = target.block() {
         let (element, style) = BlockElement::cheapest(colors, pen.style());
@@ -85,7 +85,7 @@ fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
 
 /// Draws a cell that is not a block.
 #[inline(never)]
-fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
+fn draw_text(pen: &mut Pen, row: &ScreenRow, position: Position, target: PackedCell) {
     let mut character = [0; 4];
     let (text, style) = if let Some((text, style)) = target.text(row.glyph_table) {
         (&*text.encode_utf8(&mut character), style)
@@ -97,8 +97,8 @@ fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
 }
 
 /// Shifts the stretches of a row that have moved sideways.
-fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
-    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
+fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut ScreenRow) {
+    let lose = |row: &ScreenRow, from: usize, to: usize, losses: &mut Vec<Loss>| {
         let targets = row.shown[from..].iter().zip(&row.targets[to..]);
         losses.extend(targets.map(|(shown, target)| if shown == target { 0 } else { CELL }));
     };
@@ -133,7 +133,7 @@ pub(crate) struct RowEncoder {
 struct Colors {
     components: [Vec<[f32; 2]>; 3],
     /// The shapes of all cells, or nothing if all are halves and characters.
-    shapes: Vec<Shape>,
+    shapes: Vec<MosaicShape>,
 }
 
 thread_local! {
@@ -145,7 +145,7 @@ impl RowEncoder {
     pub(crate) fn draw_rows<'a>(
         pen: &mut Pen,
         shifts: &mut Shifts,
-        rows: impl Iterator<Item = Row<'a>>,
+        rows: impl Iterator<Item = ScreenRow<'a>>,
         fidelity: Fidelity,
     ) {
         let mut encoder = ENCODER.take().unwrap_or_default();
@@ -154,7 +154,7 @@ impl RowEncoder {
     }
 
     /// Makes a row look like its target within `fidelity`.
-    fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: Row, fidelity: Fidelity) {
+    fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: ScreenRow, fidelity: Fidelity) {
         if row.state.intricate {
             // The extent of an intricate character is unknown.
             return draw_row(pen, shifts, row);
@@ -165,22 +165,22 @@ impl RowEncoder {
         self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
         self.shift(pen, shifts, &mut row, price);
         self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
-        let terms = Terms { price, style: pen.style(), repeats: pen.repeats() };
-        let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
+        let terms = RowParameters { price, style: pen.style(), repeats: pen.repeats() };
+        let mut store = ColorTables { inks: &mut self.inks, palette: pen.palette() };
         let wanted =
             |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
         let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
         for &(column, action) in actions {
             match action {
-                Action::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
-                Action::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
+                DrawAction::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
+                DrawAction::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
             }
         }
         row.state.exact = row.shown == row.targets;
     }
 
     /// Shifts the stretches of a row that have moved sideways, at least approximately.
-    fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
+    fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut ScreenRow, price: Price) {
         let (wanted, moved) = (&self.wanted, &mut self.moved);
         let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
             shown.costs(wanted, places, price, moved);
@@ -202,10 +202,10 @@ impl RowEncoder {
 /// The notation of the longest colour in a row of cells. `has_palette` tells whether palette entries may be defined.
 fn notation(targets: &[PackedCell], has_palette: bool) -> Notation {
     let all = targets.iter().fold([0; 2], |all, target| {
-        let colors = target.colors().map(Shade::in_bits);
+        let colors = target.colors().map(PackedColor::in_bits);
         [all[0] | colors[0], all[1] | colors[1]]
     });
-    match Shade::longest_of(all[0] | all[1]) {
+    match PackedColor::longest_of(all[0] | all[1]) {
         Notation::Rgb if has_palette => Notation::Entry,
         notation => notation,
     }
@@ -235,7 +235,7 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
             let glyph = glyph_table.glyph(id).character();
             let inks = inks.of_both(colors);
             if let Some(share) = share_of_text(glyph)
-                && !colors.contains(&Shade::DEFAULT)
+                && !colors.contains(&PackedColor::DEFAULT)
             {
                 return components([mixed(inks, share); 2]);
             }
@@ -261,25 +261,25 @@ fn mixed([text, ground]: [Ink; 2], share: f32) -> Ink {
 
 /// The target of a cell for the search. `None` if the cell may only be drawn exactly.
 #[inline]
-fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
+fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<CellTarget> {
     let (form, colors) = target.recolorable(glyph_table)?;
     let (shape, character) = match form {
         Form::Block(shape) => (shape, None),
-        Form::Glyph(id) => (Shape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
+        Form::Glyph(id) => (MosaicShape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
     };
-    Some(Wanted { inks: inks.of_both(colors), shape, character })
+    Some(CellTarget { inks: inks.of_both(colors), shape, character })
 }
 
 /// Draws a cell in these colours, as a block or as its own character.
 #[inline]
-fn draw_near(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
+fn draw_near(pen: &mut Pen, row: &mut ScreenRow, column: u16, element: BlockElement, style: Style) {
     let position = Position { x: column, y: row.y };
     let column = usize::from(column);
     let target = row.targets[column];
     row.shown[column] = match target.text(row.glyph_table) {
         None => {
-            let shape = target.block().map_or(Shape::HALF, |(shape, _)| shape);
-            let drawn = if element.is_flat() { Shape::HALF } else { shape };
+            let shape = target.block().map_or(MosaicShape::HALF, |(shape, _)| shape);
+            let drawn = if element.is_flat() { MosaicShape::HALF } else { shape };
             pen.draw_block(position, (drawn, element), style);
             PackedCell::of_block(drawn, element, style)
         }
@@ -326,7 +326,7 @@ impl Colors {
         }
         if has_shapes {
             let shape =
-                |target: &PackedCell| target.block().map_or(Shape::HALF, |(shape, _)| shape);
+                |target: &PackedCell| target.block().map_or(MosaicShape::HALF, |(shape, _)| shape);
             self.shapes.extend(targets.iter().map(shape));
         }
     }
@@ -337,7 +337,7 @@ impl Colors {
             shift.apply(components, [-FAR; 2]);
         }
         if !self.shapes.is_empty() {
-            shift.apply(&mut self.shapes, Shape::HALF);
+            shift.apply(&mut self.shapes, MosaicShape::HALF);
         }
     }
 
@@ -395,8 +395,8 @@ impl Colors {
         [cost(0, 0, both) + cost(0, 1, dots), cost(1, 0, rest) + cost(1, 1, neither)]
     }
 
-    fn shape(&self, place: usize) -> Shape {
-        self.shapes.get(place).copied().unwrap_or(Shape::HALF)
+    fn shape(&self, place: usize) -> MosaicShape {
+        self.shapes.get(place).copied().unwrap_or(MosaicShape::HALF)
     }
 }
 
@@ -498,7 +498,7 @@ impl Refinement {
 
 impl Inexact {
     /// Adds the inexact cells of a row.
-    fn add(&mut self, row: &Row) {
+    fn add(&mut self, row: &ScreenRow) {
         self.cells.extend(errors(row, &mut self.inks));
     }
 
@@ -515,7 +515,7 @@ impl Inexact {
 }
 
 /// The errors of the inexact cells of a row.
-fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = InexactCell> + 'a {
+fn errors<'a>(row: &'a ScreenRow, inks: &'a mut Inks) -> impl Iterator<Item = InexactCell> + 'a {
     let targets = row.shown.iter().zip(row.targets);
     (0..).zip(targets).filter(|(_, (shown, target))| shown != target).map(
         |(column, (&shown, &target))| {
@@ -531,7 +531,7 @@ fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: 
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
     let pairs = match (shown_form, form) {
         (Form::Block(one), Form::Block(other)) => one.overlap(other).pairs(),
-        _ if shown_form == form => Shape::HALF.overlap(Shape::HALF).pairs(),
+        _ if shown_form == form => MosaicShape::HALF.overlap(MosaicShape::HALF).pairs(),
         _ => return f32::INFINITY,
     };
     let distances = pairs.into_iter().filter(|&(_, parts)| parts > 0);

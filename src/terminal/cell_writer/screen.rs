@@ -9,8 +9,8 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::packed_cell::{Form, GlyphTable, PackedCell, ascii_substitute};
-use super::shift::Mark;
-use super::style::{Shade, Style};
+use super::shift::CellHash;
+use super::style::{PackedColor, Style};
 use crate::color::Rgb;
 use crate::tui::canvas::{Canvas, Mosaic, true_color};
 
@@ -28,7 +28,7 @@ pub struct Screen {
     /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
     /// The landmarks of each row's targets when the row was last drawn.
-    marks: Vec<Mark>,
+    marks: Vec<CellHash>,
     /// The intricate targets, which packed cells do not describe in full. Empty until there is one.
     wanted: Vec<Cell>,
     rows: Vec<RowState>,
@@ -48,13 +48,13 @@ pub(crate) struct RowState {
 }
 
 /// A row of the screen.
-pub(crate) struct Row<'a> {
+pub(crate) struct ScreenRow<'a> {
     pub(crate) y: u16,
     pub(crate) glyph_table: &'a GlyphTable,
     pub(crate) shown: &'a mut [PackedCell],
     pub(crate) targets: &'a [PackedCell],
     /// The landmarks of its targets in the last frame.
-    pub(crate) marks: &'a mut [Mark],
+    pub(crate) marks: &'a mut [CellHash],
     pub(crate) wanted: &'a [Cell],
     pub(crate) state: &'a mut RowState,
 }
@@ -87,7 +87,7 @@ impl Screen {
             targets.resize(width * height, PackedCell::BLANK);
         }
         self.marks.clear();
-        self.marks.resize(width * height, Mark::NONE);
+        self.marks.resize(width * height, CellHash::NONE);
         self.wanted = Vec::new();
         self.rows.clear();
         self.rows.resize(height, RowState::default());
@@ -229,7 +229,7 @@ impl Screen {
     }
 
     /// The two colours of a shown cell. `None` if they are unknown or the cell is off the screen.
-    pub(crate) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
+    pub(crate) fn shown_colors(&self, x: u16, y: u16) -> Option<[PackedColor; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
         let (_, colors) = self.shown.get(place)?.recolorable(&self.glyph_table)?;
@@ -255,12 +255,12 @@ impl Screen {
     }
 
     /// Replaces the colours of all targets.
-    pub(crate) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_targets(&mut self, color: impl FnMut(PackedColor) -> PackedColor) {
         recolor(&mut self.targets, color);
     }
 
     /// Records that the terminal shows other colours than before. All rows must then be compared with their targets.
-    pub(crate) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_shown(&mut self, color: impl FnMut(PackedColor) -> PackedColor) {
         recolor(&mut self.shown, color);
         self.rows.iter_mut().for_each(|row| row.changed = true);
     }
@@ -272,7 +272,7 @@ impl Screen {
     }
 
     /// Returns the changed rows, from the top, and marks them as unchanged.
-    pub(crate) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn changed_rows(&mut self) -> impl Iterator<Item = ScreenRow<'_>> {
         self.rows_where(|row| std::mem::take(&mut row.changed))
     }
 
@@ -284,14 +284,14 @@ impl Screen {
     }
 
     /// The rows that do not show their targets exactly.
-    pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = ScreenRow<'_>> {
         self.rows_where(|row| !row.exact)
     }
 
     fn rows_where(
         &mut self,
         mut is_asked: impl FnMut(&mut RowState) -> bool,
-    ) -> impl Iterator<Item = Row<'_>> {
+    ) -> impl Iterator<Item = ScreenRow<'_>> {
         let width = self.width.max(1);
         let (glyph_table, wanted) = (&self.glyph_table, &self.wanted);
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
@@ -300,25 +300,25 @@ impl Screen {
         rows.filter_map(move |(y, (((shown, marks), targets), state))| {
             let place = usize::from(y) * width;
             let wanted = wanted.get(place..place + targets.len()).unwrap_or_default();
-            is_asked(state).then_some(Row { y, glyph_table, shown, targets, marks, wanted, state })
+            is_asked(state).then_some(ScreenRow { y, glyph_table, shown, targets, marks, wanted, state })
         })
     }
 }
 
 /// Replaces the colours of `cells`. A cell becomes unknown if one of its colours becomes [`Shade::NONE`].
-fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
+fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(PackedColor) -> PackedColor) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {
         if *cell != last[0] {
             let colors = cell.colors().map(&mut color);
-            let is_known = !colors.contains(&Shade::NONE);
+            let is_known = !colors.contains(&PackedColor::NONE);
             last = [*cell, if is_known { cell.recolored(colors) } else { PackedCell::UNKNOWN }];
         }
         *cell = last[1];
     }
 }
 
-impl Row<'_> {
+impl ScreenRow<'_> {
     /// The number of cells in the row.
     pub(crate) fn width(&self) -> usize {
         self.targets.len()

@@ -23,13 +23,13 @@ pub(crate) struct Shift {
     /// The distance, in columns.
     pub(crate) by: usize,
     /// The direction.
-    pub(crate) way: Way,
+    pub(crate) way: ShiftDirection,
 }
 
 /// A direction and a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Move {
-    way: Way,
+    way: ShiftDirection,
     by: usize,
 }
 
@@ -37,14 +37,14 @@ impl Move {
     /// The first cell that can move, and its destination.
     fn places(self) -> (usize, usize) {
         match self.way {
-            Way::Left => (self.by, 0),
-            Way::Right => (0, self.by),
+            ShiftDirection::Left => (self.by, 0),
+            ShiftDirection::Right => (0, self.by),
         }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum ShiftDirection {
     Left,
     Right,
 }
@@ -76,7 +76,7 @@ impl Shifts {
     pub(crate) fn begin(
         &mut self,
         targets: &[PackedCell],
-        marks: &[Mark],
+        marks: &[CellHash],
         mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
     ) {
         self.landmarks.find(targets, marks);
@@ -122,7 +122,7 @@ impl Shifts {
     }
 
     /// Ends the row. The marks of its current targets become the previous marks for the next frame.
-    pub(crate) fn end(&self, marks: &mut [Mark]) {
+    pub(crate) fn end(&self, marks: &mut [CellHash]) {
         marks.copy_from_slice(&self.landmarks.now);
     }
 }
@@ -146,8 +146,8 @@ impl Shift {
     fn uncovered(&self) -> Range<usize> {
         let Range { start, end } = self.columns;
         match self.way {
-            Way::Left => end - self.by..end,
-            Way::Right => start..start + self.by,
+            ShiftDirection::Left => end - self.by..end,
+            ShiftDirection::Right => start..start + self.by,
         }
     }
 
@@ -155,8 +155,8 @@ impl Shift {
     fn covered(&self) -> Range<usize> {
         let Range { start, end } = self.columns;
         match self.way {
-            Way::Left => start..end - self.by,
-            Way::Right => start + self.by..end,
+            ShiftDirection::Left => start..end - self.by,
+            ShiftDirection::Right => start + self.by..end,
         }
     }
 
@@ -164,8 +164,8 @@ impl Shift {
     pub(crate) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         match self.way {
-            Way::Left => stretch.rotate_left(self.by),
-            Way::Right => stretch.rotate_right(self.by),
+            ShiftDirection::Left => stretch.rotate_left(self.by),
+            ShiftDirection::Right => stretch.rotate_right(self.by),
         }
         row[self.uncovered()].fill(unknown);
     }
@@ -179,9 +179,9 @@ fn sum(losses: &[Loss]) -> i32 {
 #[derive(Debug, Default)]
 struct Landmarks {
     hashes: Vec<u32>,
-    now: Vec<Mark>,
+    now: Vec<CellHash>,
     /// With [`FARTHEST`] empty marks on either side.
-    before: Vec<Mark>,
+    before: Vec<CellHash>,
 }
 
 /// The farthest detected move. Content that moves faster has usually changed in other ways, too.
@@ -195,12 +195,12 @@ const CHANCE: u16 = 2;
 
 impl Landmarks {
     /// Finds the landmarks of a row with these targets and these previous marks.
-    fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
+    fn find(&mut self, targets: &[PackedCell], before: &[CellHash]) {
         self.hashes.clear();
         self.hashes.extend(targets.iter().map(|target| target.hash()));
         self.now.clear();
-        self.now.extend(Mark::all(&self.hashes));
-        let nothing = Mark::NONE.before();
+        self.now.extend(CellHash::all(&self.hashes));
+        let nothing = CellHash::NONE.before();
         self.before.clear();
         self.before.resize(FARTHEST, nothing);
         self.before.extend(before.iter().map(|mark| mark.before()));
@@ -213,7 +213,7 @@ impl Landmarks {
         let mut likely = [None; MAX_TRIED];
         let mut most = [CHANCE; MAX_TRIED];
         for by in 1..=FARTHEST {
-            for (way, count) in [(Way::Left, votes.left(by)), (Way::Right, votes.right(by))] {
+            for (way, count) in [(ShiftDirection::Left, votes.left(by)), (ShiftDirection::Right, votes.right(by))] {
                 if let Some(rank) = most.iter().position(|&most| count > most) {
                     likely[rank..].rotate_right(1);
                     most[rank..].rotate_right(1);
@@ -228,7 +228,7 @@ impl Landmarks {
     fn votes(&self) -> Votes {
         let mut votes = Votes([0; PLACES]);
         let around = self.before.windows(PLACES);
-        let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
+        let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != CellHash::NONE);
         for _ in 0..self.now.len().div_ceil(MAX_AT_ONCE) {
             votes.add(places.by_ref().take(MAX_AT_ONCE));
         }
@@ -238,7 +238,7 @@ impl Landmarks {
     /// Moves the previous marks, after a shift.
     fn shift(&mut self, shift: &Shift) {
         let row = &mut self.before[FARTHEST..][..self.now.len()];
-        shift.apply(row, Mark::NONE.before());
+        shift.apply(row, CellHash::NONE.before());
     }
 }
 
@@ -252,7 +252,7 @@ const MAX_AT_ONCE: usize = u8::MAX as usize;
 impl Votes {
     /// Adds the votes of at most [`MAX_AT_ONCE`] landmarks, each with the previous marks around
     /// it.
-    fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
+    fn add<'a>(&mut self, places: impl Iterator<Item = (CellHash, &'a [CellHash])>) {
         // One loop serves both sides. The compiler would unroll a shorter loop instead of counting sixteen places at
         // once.
         let mut votes = [0_u8; PLACES];
@@ -288,9 +288,9 @@ fn widen(sums: &mut [u16; PLACES], votes: &[u8; PLACES]) {
 /// The mark of a landmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
-pub(crate) struct Mark(u8);
+pub(crate) struct CellHash(u8);
 
-impl Mark {
+impl CellHash {
     /// The mark of a cell that is equal to the one before it.
     pub(crate) const NONE: Self = Self(0);
 
@@ -390,9 +390,9 @@ mod tests {
         shifts.next(lose)
     }
 
-    fn marks(targets: &[PackedCell]) -> Vec<Mark> {
+    fn marks(targets: &[PackedCell]) -> Vec<CellHash> {
         let hashes: Vec<_> = targets.iter().map(|target| target.hash()).collect();
-        Mark::all(&hashes).collect()
+        CellHash::all(&hashes).collect()
     }
 
     fn row(text: &str) -> Vec<PackedCell> {
@@ -407,15 +407,15 @@ mod tests {
     fn a_moved_row_is_detected() {
         let shown = row("abcdefghijklmnop");
         let shift = best(&shown, &row("defghijklmnopqrs")).unwrap();
-        assert_eq!(shift, Shift { columns: 0..16, by: 3, way: Way::Left });
+        assert_eq!(shift, Shift { columns: 0..16, by: 3, way: ShiftDirection::Left });
         let shift = best(&shown, &row("xxabcdefghijklmn")).unwrap();
-        assert_eq!(shift, Shift { columns: 0..16, by: 2, way: Way::Right });
+        assert_eq!(shift, Shift { columns: 0..16, by: 2, way: ShiftDirection::Right });
     }
 
     #[test]
     fn cells_that_stand_still_are_not_moved() {
         let shift = best(&row("abcdefghij|MAP|"), &row("bcdefghijk|MAP|")).unwrap();
-        assert_eq!(shift, Shift { columns: 0..10, by: 1, way: Way::Left });
+        assert_eq!(shift, Shift { columns: 0..10, by: 1, way: ShiftDirection::Left });
     }
 
     #[test]
@@ -431,7 +431,7 @@ mod tests {
     #[test]
     fn a_shift_uncovers_unknown_cells() {
         let mut shown = row("abcdef");
-        Shift { columns: 1..5, by: 2, way: Way::Left }.apply(&mut shown, PackedCell::UNKNOWN);
+        Shift { columns: 1..5, by: 2, way: ShiftDirection::Left }.apply(&mut shown, PackedCell::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));
         assert_eq!((shown[3], shown[4]), (PackedCell::UNKNOWN, PackedCell::UNKNOWN));
         assert_eq!(shown[5..], row("f"));

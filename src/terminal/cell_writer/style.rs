@@ -14,25 +14,25 @@ use crate::terminal::sequence;
 /// The colours and modifiers of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Style {
-    pub(crate) foreground: Shade,
-    pub(crate) background: Shade,
+    pub(crate) foreground: PackedColor,
+    pub(crate) background: PackedColor,
     pub(crate) modifier: Modifier,
 }
 
 /// A modifier, and the parameters that turn it on and off.
-struct Switch {
+struct ModifierCodes {
     modifier: Modifier,
     on: u8,
     off: u8,
 }
 
 /// Bold and dim share the parameter that turns them off.
-const SWITCHES: [Switch; 5] = [
-    Switch { modifier: Modifier::BOLD, on: 1, off: 22 },
-    Switch { modifier: Modifier::DIM, on: 2, off: 22 },
-    Switch { modifier: Modifier::ITALIC, on: 3, off: 23 },
-    Switch { modifier: Modifier::UNDERLINED, on: 4, off: 24 },
-    Switch { modifier: Modifier::REVERSED, on: 7, off: 27 },
+const SWITCHES: [ModifierCodes; 5] = [
+    ModifierCodes { modifier: Modifier::BOLD, on: 1, off: 22 },
+    ModifierCodes { modifier: Modifier::DIM, on: 2, off: 22 },
+    ModifierCodes { modifier: Modifier::ITALIC, on: 3, off: 23 },
+    ModifierCodes { modifier: Modifier::UNDERLINED, on: 4, off: 24 },
+    ModifierCodes { modifier: Modifier::REVERSED, on: 7, off: 27 },
 ];
 
 const INTENSITIES: Modifier = Modifier::BOLD.union(Modifier::DIM);
@@ -43,8 +43,8 @@ const SUPPORTED: Modifier =
 impl Style {
     /// The terminal's default colours, without modifiers.
     pub(crate) const RESET: Self = Self {
-        foreground: Shade::DEFAULT,
-        background: Shade::DEFAULT,
+        foreground: PackedColor::DEFAULT,
+        background: PackedColor::DEFAULT,
         modifier: Modifier::empty(),
     };
 
@@ -52,20 +52,20 @@ impl Style {
     #[inline]
     pub(crate) fn of(cell: &Cell) -> Self {
         Self {
-            foreground: Shade::of(cell.fg),
-            background: Shade::of(cell.bg),
+            foreground: PackedColor::of(cell.fg),
+            background: PackedColor::of(cell.bg),
             modifier: cell.modifier.intersection(SUPPORTED),
         }
     }
 
     /// A style of these two colours, without modifiers.
-    pub(crate) fn plain(foreground: Shade, background: Shade) -> Self {
+    pub(crate) fn plain(foreground: PackedColor, background: PackedColor) -> Self {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
     /// A style of these two colours in ratatui's type, without modifiers.
     pub(crate) fn in_colors(colors: [Color; 2]) -> Self {
-        let [foreground, background] = colors.map(Shade::of);
+        let [foreground, background] = colors.map(PackedColor::of);
         Self::plain(foreground, background)
     }
 
@@ -74,12 +74,12 @@ impl Style {
     }
 
     /// The text colour and the background.
-    pub(crate) fn colors(self) -> [Shade; 2] {
+    pub(crate) fn colors(self) -> [PackedColor; 2] {
         [self.foreground, self.background]
     }
 
     /// The text colour and the background. `None` if there are modifiers.
-    pub(crate) fn plain_colors(self) -> Option<[Shade; 2]> {
+    pub(crate) fn plain_colors(self) -> Option<[PackedColor; 2]> {
         self.has_no_modifiers().then_some(self.colors())
     }
 
@@ -98,7 +98,7 @@ impl Style {
     pub(crate) fn push_from(
         self,
         current: Option<Self>,
-        told: impl Fn(Shade) -> Shade,
+        told: impl Fn(PackedColor) -> PackedColor,
         piece: &mut Piece,
     ) {
         let known = match current {
@@ -116,7 +116,7 @@ impl Style {
             let (numbers, count) = self.switches_from(known.modifier);
             rendition.parameters(numbers.into_iter().take(count));
         }
-        Shade::push_change(self.colors(), known.colors(), told, &mut rendition);
+        PackedColor::push_change(self.colors(), known.colors(), told, &mut rendition);
         rendition.end(b'm');
     }
 
@@ -146,11 +146,11 @@ impl Style {
 /// A colour in the form that SGR writes, in few bits, because most operations on colours are comparisons. Each colour
 /// has one value, while ratatui has several names for some colours.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Shade(u32);
+pub(crate) struct PackedColor(u32);
 
 /// The kind of a [`Shade`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum PackedColorKind {
     Default,
     Indexed(u8),
     Rgb([u8; 3]),
@@ -171,12 +171,12 @@ pub(crate) enum Notation {
 
 /// One of the two colours of a cell.
 #[derive(Clone, Copy)]
-enum Ground {
+enum CellColor {
     Fore,
     Back,
 }
 
-impl Shade {
+impl PackedColor {
     /// The terminal's default colour.
     pub(crate) const DEFAULT: Self = Self(0);
     /// A value that no colour has.
@@ -253,12 +253,12 @@ impl Shade {
     }
 
     #[inline]
-    pub(crate) fn kind(self) -> Kind {
+    pub(crate) fn kind(self) -> PackedColorKind {
         let [kind, red, green, blue] = self.0.to_be_bytes();
         if self.is_rgb() {
-            return Kind::Rgb([red, green, blue]);
+            return PackedColorKind::Rgb([red, green, blue]);
         }
-        if kind == 0 { Kind::Default } else { Kind::Indexed(blue) }
+        if kind == 0 { PackedColorKind::Default } else { PackedColorKind::Indexed(blue) }
     }
 
     #[inline]
@@ -269,9 +269,9 @@ impl Shade {
     /// The colour in ratatui's type.
     pub(crate) fn color(self) -> Color {
         match self.kind() {
-            Kind::Default => Color::Reset,
-            Kind::Indexed(index) => Color::Indexed(index),
-            Kind::Rgb([red, green, blue]) => Color::Rgb(red, green, blue),
+            PackedColorKind::Default => Color::Reset,
+            PackedColorKind::Indexed(index) => Color::Indexed(index),
+            PackedColorKind::Rgb([red, green, blue]) => Color::Rgb(red, green, blue),
         }
     }
 
@@ -292,9 +292,9 @@ impl Shade {
     #[inline]
     pub(crate) fn bytes(self) -> usize {
         match self.kind() {
-            Kind::Default | Kind::Indexed(..16) => 2,
-            Kind::Indexed(index) => 5 + bytes::digits(index),
-            Kind::Rgb([red, green, blue]) => {
+            PackedColorKind::Default | PackedColorKind::Indexed(..16) => 2,
+            PackedColorKind::Indexed(index) => 5 + bytes::digits(index),
+            PackedColorKind::Rgb([red, green, blue]) => {
                 7 + bytes::digits(red) + bytes::digits(green) + bytes::digits(blue)
             }
         }
@@ -309,7 +309,7 @@ impl Shade {
         told: impl Fn(Self) -> Self,
         rendition: &mut ControlSequence,
     ) {
-        for (place, ground) in [Ground::Fore, Ground::Back].into_iter().enumerate() {
+        for (place, ground) in [CellColor::Fore, CellColor::Back].into_iter().enumerate() {
             rendition.add_if(new[place] != current[place], |rendition| {
                 told(new[place]).write(ground, rendition);
             });
@@ -318,20 +318,20 @@ impl Shade {
 
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    fn write(self, ground: Ground, rendition: &mut ControlSequence) {
+    fn write(self, ground: CellColor, rendition: &mut ControlSequence) {
         let (dark, bright, default, rgb, indexed) = match ground {
-            Ground::Fore => (30, 90, 39, *b";38;2\0\0\0", *b";38;5\0\0\0"),
-            Ground::Back => (40, 100, 49, *b";48;2\0\0\0", *b";48;5\0\0\0"),
+            CellColor::Fore => (30, 90, 39, *b";38;2\0\0\0", *b";38;5\0\0\0"),
+            CellColor::Back => (40, 100, 49, *b";48;2\0\0\0", *b";48;5\0\0\0"),
         };
         match self.kind() {
-            Kind::Rgb(channels) => {
+            PackedColorKind::Rgb(channels) => {
                 rendition.literal(rgb, 5);
                 rendition.parameters(channels);
             }
-            Kind::Default => rendition.parameter(default),
-            Kind::Indexed(index @ 0..=7) => rendition.parameter(dark + index),
-            Kind::Indexed(index @ 8..=15) => rendition.parameter(bright + (index - 8)),
-            Kind::Indexed(index) => {
+            PackedColorKind::Default => rendition.parameter(default),
+            PackedColorKind::Indexed(index @ 0..=7) => rendition.parameter(dark + index),
+            PackedColorKind::Indexed(index @ 8..=15) => rendition.parameter(bright + (index - 8)),
+            PackedColorKind::Indexed(index) => {
                 rendition.literal(indexed, 5);
                 rendition.parameter(index);
             }
@@ -339,7 +339,7 @@ impl Shade {
     }
 }
 
-impl fmt::Debug for Shade {
+impl fmt::Debug for PackedColor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.kind().fmt(f)
     }

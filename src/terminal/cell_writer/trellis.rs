@@ -14,24 +14,24 @@
 //! Rejected: a greedy pass, which keeps each cell within a threshold and draws the others in the current colours if
 //! these are within it. It took 1.7 times the bytes at the same mean error at high fidelity, and 2.3 times at low.
 
-use super::block::{BlockElement, Shape};
-use super::ink::{Ink, Inks, Price, Telling};
-use super::palette::Palette;
-use super::style::{Shade, Style};
+use super::block::{BlockElement, MosaicShape};
+use super::ink::{Ink, Inks, Price, ColorCode};
+use super::palette::TerminalPalette;
+use super::style::{PackedColor, Style};
 
 /// The target of a cell: the colours of its halves, or of its character and its background.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wanted {
+pub(crate) struct CellTarget {
     pub(crate) inks: [Ink; 2],
     /// The shape of a block; [`Shape::HALF`] for a character.
-    pub(crate) shape: Shape,
+    pub(crate) shape: MosaicShape,
     /// The number of bytes of its only glyph. `None` if any block element will do.
     pub(crate) character: Option<u8>,
 }
 
 /// The action on a cell that is not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Action {
+pub(crate) enum DrawAction {
     /// Draw it exactly.
     DrawExactly,
     /// Draw it as this block element or, if it is a character, as its own glyph, in this style.
@@ -43,14 +43,14 @@ pub(crate) enum Action {
 const KEPT: usize = 4;
 
 /// The tables in which colours are looked up.
-pub(crate) struct Store<'a> {
+pub(crate) struct ColorTables<'a> {
     pub(crate) inks: &'a mut Inks,
-    pub(crate) palette: &'a mut Palette,
+    pub(crate) palette: &'a mut TerminalPalette,
 }
 
 /// The parameters that apply to a whole row.
 #[derive(Clone, Copy)]
-pub(crate) struct Terms {
+pub(crate) struct RowParameters {
     pub(crate) price: Price,
     /// The terminal's style before the row.
     pub(crate) style: Option<Style>,
@@ -62,15 +62,15 @@ pub(crate) struct Terms {
 #[derive(Debug, Default)]
 pub(crate) struct Trellis {
     /// The cells that at least one path draws.
-    steps: Vec<Step>,
-    actions: Vec<(u16, Action)>,
+    steps: Vec<PathTurns>,
+    actions: Vec<(u16, DrawAction)>,
 }
 
 /// The turns of the paths at one cell.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct PathTurns {
     column: u16,
-    turns: [Turn; KEPT],
+    turns: [PathAction; KEPT],
     /// The state of the terminal after each turn.
     keys: [u64; KEPT],
 }
@@ -86,24 +86,24 @@ enum StepKind {
 #[derive(Clone, Copy, Debug)]
 struct Paths {
     /// In bytes, without the costs that all paths share.
-    cost: Lanes,
+    cost: PathValues,
     /// The terminal's text and background colours and its cursor column.
     keys: [u64; KEPT],
     /// L*, a* and b* of the text and background colours; far from all others if they are unknown.
     labs: [Labs; 2],
     /// The column of the cursor; [`NOWHERE`] if it is unknown.
-    cursor: Lanes,
+    cursor: PathValues,
     /// The block element drawn last.
     last: [Option<BlockElement>; KEPT],
     /// The shape of the cell that was drawn last by any path.
-    last_shape: Shape,
+    last_shape: MosaicShape,
 }
 
 /// The assumed column of a cursor with unknown position, far to the left.
 const NOWHERE: f32 = -1e6;
 
 /// An unknown colour, which is far from all others.
-const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: Shade::DEFAULT };
+const UNKNOWN: Ink = Ink { lab: [1e9; 3], shade: PackedColor::DEFAULT };
 
 /// A cell that costs less than this to keep, in bytes, is drawn only if a path has its cursor there.
 const NEGLIGIBLE: f32 = 4.0;
@@ -115,13 +115,13 @@ impl Trellis {
     pub(crate) fn search(
         &mut self,
         keep: &[[f32; 2]],
-        wanted: impl Fn(usize, &mut Inks) -> Option<Wanted>,
-        terms: Terms,
-        store: &mut Store,
-    ) -> &[(u16, Action)] {
+        wanted: impl Fn(usize, &mut Inks) -> Option<CellTarget>,
+        terms: RowParameters,
+        store: &mut ColorTables,
+    ) -> &[(u16, DrawAction)] {
         self.steps.clear();
         let mut paths = Paths::from_start(terms.style, store.inks);
-        let mut survivors = Survivors::of(&paths);
+        let mut survivors = SurvivorPaths::of(&paths);
         // True if a path has drawn the cell before, so that its cursor is at this cell.
         let mut is_drawn = false;
         for (x, [one, other]) in keep.iter().enumerate() {
@@ -136,8 +136,8 @@ impl Trellis {
                 is_drawn = survivors.is_changed();
                 if is_drawn {
                     paths.go_on(&survivors, column, wanted.shape);
-                    let Survivors { turns, keys, .. } = survivors;
-                    self.steps.push(Step { column, turns, keys });
+                    let SurvivorPaths { turns, keys, .. } = survivors;
+                    self.steps.push(PathTurns { column, turns, keys });
                 }
             } else {
                 is_drawn = keep > 0.0;
@@ -150,17 +150,17 @@ impl Trellis {
     }
 
     /// Returns the actions of `path`.
-    fn trace_back(&mut self, path: usize) -> &[(u16, Action)] {
+    fn trace_back(&mut self, path: usize) -> &[(u16, DrawAction)] {
         self.actions.clear();
         let mut at = path;
-        for Step { column, turns, keys } in self.steps.iter().rev() {
-            let Turn { kind, before, .. } = turns[at];
+        for PathTurns { column, turns, keys } in self.steps.iter().rev() {
+            let PathAction { kind, before, .. } = turns[at];
             match kind {
                 StepKind::Keep => {}
-                StepKind::DrawExactly => self.actions.push((*column, Action::DrawExactly)),
+                StepKind::DrawExactly => self.actions.push((*column, DrawAction::DrawExactly)),
                 StepKind::Draw(element) => {
                     let [text, ground] = colors_of(keys[at]);
-                    self.actions.push((*column, Action::Draw(element, Style::plain(text, ground))));
+                    self.actions.push((*column, DrawAction::Draw(element, Style::plain(text, ground))));
                 }
             }
             at = usize::from(before);
@@ -186,7 +186,7 @@ impl Paths {
             labs: inks.map(|ink| ink.lab.map(|component| [component; KEPT])),
             cursor: [cursor.map_or(NOWHERE, f32::from); KEPT],
             last: [None; KEPT],
-            last_shape: Shape::HALF,
+            last_shape: MosaicShape::HALF,
         }
     }
 
@@ -195,15 +195,15 @@ impl Paths {
     }
 
     /// Continues past a cell that is drawn exactly, in colours that no other cell depends on.
-    fn past_fixed(&mut self, x: u16) -> Step {
+    fn past_fixed(&mut self, x: u16) -> PathTurns {
         let before = self.cheapest();
         *self = Self::one(self.cost[before], [UNKNOWN; 2], Some(x + 1));
-        let turn = Turn { kind: StepKind::DrawExactly, before: before as u8, sources: [0; 2] };
-        Step { column: x, turns: [turn; KEPT], keys: self.keys }
+        let turn = PathAction { kind: StepKind::DrawExactly, before: before as u8, sources: [0; 2] };
+        PathTurns { column: x, turns: [turn; KEPT], keys: self.keys }
     }
 
     /// Continues with the survivors past the cell in column `x`.
-    fn go_on(&mut self, survivors: &Survivors, x: u16, shape: Shape) {
+    fn go_on(&mut self, survivors: &SurvivorPaths, x: u16, shape: MosaicShape) {
         let before = self.labs;
         self.last_shape = shape;
         self.cost = survivors.cost;
@@ -233,7 +233,7 @@ const FRESH: usize = KEPT;
 
 /// A cell to draw.
 struct Branches<'a> {
-    wanted: &'a Wanted,
+    wanted: &'a CellTarget,
     price: Price,
     /// The prices of errors in the upper half and in the lower, or in the dots and the rest.
     prices: [Price; 2],
@@ -243,7 +243,7 @@ struct Branches<'a> {
     x: u16,
     repeats: bool,
     /// The cost of each path to this cell. The next field is the least of these costs.
-    start: Lanes,
+    start: PathValues,
     least: f32,
 }
 
@@ -264,14 +264,14 @@ const REPETITION: f32 = 0.5;
 
 impl<'a> Branches<'a> {
     #[inline]
-    fn new(wanted: &'a Wanted, terms: Terms, paths: &'a Paths, x: u16) -> Self {
-        let Terms { price, repeats, .. } = terms;
+    fn new(wanted: &'a CellTarget, terms: RowParameters, paths: &'a Paths, x: u16) -> Self {
+        let RowParameters { price, repeats, .. } = terms;
         let mut start = [0.0; KEPT];
         add_motions(paths, x, &mut start);
         let least = least(&start);
         let (prices, bytes) = match wanted.character {
             Some(bytes) => ([price; 2], f32::from(bytes)),
-            None if wanted.shape == Shape::HALF => ([price; 2], HALF_BLOCK),
+            None if wanted.shape == MosaicShape::HALF => ([price; 2], HALF_BLOCK),
             None => (wanted.shape.parts().map(|parts| price.of_parts(parts)), wanted.shape.bytes()),
         };
         Self { wanted, price, prices, bytes, paths, x, repeats, start, least }
@@ -280,7 +280,7 @@ impl<'a> Branches<'a> {
     /// Draws in the terminal's current colours, in one new colour and in two. A cell that is already right is drawn
     /// again only if that is a shorter way to the next cell.
     #[inline]
-    fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
+    fn draw(&mut self, survivors: &mut SurvivorPaths, store: &mut ColorTables) {
         let is_right = survivors.is_right();
         if is_right {
             for (start, &cursor) in self.start.iter_mut().zip(&self.paths.cursor) {
@@ -306,13 +306,13 @@ impl<'a> Branches<'a> {
 
     /// Draws the character in the old colours.
     #[inline]
-    fn draw_character(&self, errors: &Errors, survivors: &mut Survivors) {
+    fn draw_character(&self, errors: &Errors, survivors: &mut SurvivorPaths) {
         let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
-        self.offer(survivors, &plus(&costs, self.bytes), BlockElement::Upper, Told::NOTHING);
+        self.offer(survivors, &plus(&costs, self.bytes), BlockElement::Upper, ColorChange::NOTHING);
     }
 
     #[inline]
-    fn draw_in_old_colors(&self, blocks: &mut Blocks, survivors: &mut Survivors) {
+    fn draw_in_old_colors(&self, blocks: &mut Blocks, survivors: &mut SurvivorPaths) {
         if self.repeats {
             self.repeat(blocks);
         }
@@ -335,7 +335,7 @@ impl<'a> Branches<'a> {
                     (upper[path], BlockElement::Upper)
                 };
                 let element = if split < flat { split_glyph } else { flat_glyph };
-                self.add(survivors, costs[path], path, element, Told::NOTHING);
+                self.add(survivors, costs[path], path, element, ColorChange::NOTHING);
             }
         }
     }
@@ -358,7 +358,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut Survivors, store: &mut Store) {
+    fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut SurvivorPaths, store: &mut ColorTables) {
         let [upper, lower] = self.wanted.inks;
         let (bytes_above, bytes_below) = (upper.bytes(), lower.bytes());
         let shortest = shortest(min(bytes_above, bytes_below), store.palette);
@@ -382,23 +382,23 @@ impl<'a> Branches<'a> {
     fn draw_in_one_color(
         &self,
         errors: &Errors,
-        survivors: &mut Survivors,
-        [upper, lower]: &[Telling; 2],
+        survivors: &mut SurvivorPaths,
+        [upper, lower]: &[ColorCode; 2],
     ) {
         let half = ONE_COLOR + self.bytes;
         let (above, below) = (half + upper.cost(), half + lower.cost());
         let (upper, lower) = (upper.ink.shade, lower.ink.shade);
         let Errors { text_above, text_below, ground_above, ground_below } = errors;
-        let mut offer = |element, cost: f32, errors: &Lanes, told| {
+        let mut offer = |element, cost: f32, errors: &PathValues, told| {
             if survivors.would_keep(self.least + cost) {
                 self.offer(survivors, &plus(&sum(&self.start, errors), cost), element, told);
             }
         };
-        offer(BlockElement::Upper, above, ground_below, Told::NOTHING.text(upper, UPPER));
-        offer(BlockElement::Upper, below, text_above, Told::NOTHING.ground(lower, LOWER));
+        offer(BlockElement::Upper, above, ground_below, ColorChange::NOTHING.text(upper, UPPER));
+        offer(BlockElement::Upper, below, text_above, ColorChange::NOTHING.ground(lower, LOWER));
         if self.wanted.character.is_none() {
-            offer(BlockElement::Lower, above, text_below, Told::NOTHING.ground(upper, UPPER));
-            offer(BlockElement::Lower, below, ground_above, Told::NOTHING.text(lower, LOWER));
+            offer(BlockElement::Lower, above, text_below, ColorChange::NOTHING.ground(upper, UPPER));
+            offer(BlockElement::Lower, below, ground_above, ColorChange::NOTHING.text(lower, LOWER));
         }
     }
 
@@ -406,9 +406,9 @@ impl<'a> Branches<'a> {
     #[inline]
     fn draw_in_one_for_both(
         &self,
-        survivors: &mut Survivors,
-        [above, below]: &[Telling; 2],
-        store: &mut Store,
+        survivors: &mut SurvivorPaths,
+        [above, below]: &[ColorCode; 2],
+        store: &mut ColorTables,
     ) {
         let [upper, lower] = self.wanted.inks;
         self.offer_for_both(survivors, above, UPPER);
@@ -430,37 +430,37 @@ impl<'a> Branches<'a> {
     }
 
     #[inline]
-    fn offer_for_both(&self, survivors: &mut Survivors, telling: &Telling, source: u8) {
-        let Telling { ink, bytes, .. } = *telling;
+    fn offer_for_both(&self, survivors: &mut SurvivorPaths, telling: &ColorCode, source: u8) {
+        let ColorCode { ink, bytes, .. } = *telling;
         let [upper, lower] = self.wanted.inks;
         let error = self.prices[0].of(ink, upper) + self.prices[1].of(ink, lower);
         let cost = ONE_COLOR + SPACE + bytes + error;
         if survivors.would_keep(self.least + cost) {
-            let told = Told::NOTHING.ground(ink.shade, source);
+            let told = ColorChange::NOTHING.ground(ink.shade, source);
             self.offer(survivors, &plus(&self.start, cost), BlockElement::Space, told);
         }
     }
 
     /// Draws in two new colours. All paths then lead to the same state, so only the cheapest is added.
     #[inline]
-    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
+    fn draw_in_two_colors(&self, survivors: &mut SurvivorPaths, [upper, lower]: &[ColorCode; 2]) {
         let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes;
         if !survivors.would_keep(cost) {
             return;
         }
         let (upper, lower) = (upper.ink.shade, lower.ink.shade);
         let path = (0..KEPT).find(|&path| self.start[path] == self.least).unwrap_or(0);
-        let told = Told::NOTHING.text(upper, UPPER).ground(lower, LOWER);
+        let told = ColorChange::NOTHING.text(upper, UPPER).ground(lower, LOWER);
         self.add(survivors, cost, path, BlockElement::Upper, told);
         if self.wanted.character.is_none() && survivors.would_keep(cost) {
-            let told = Told::NOTHING.text(lower, LOWER).ground(upper, UPPER);
+            let told = ColorChange::NOTHING.text(lower, LOWER).ground(upper, UPPER);
             self.add(survivors, cost, path, BlockElement::Lower, told);
         }
     }
 
     /// Adds the paths that would survive if they draw `element` at these costs.
     #[inline]
-    fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+    fn offer(&self, survivors: &mut SurvivorPaths, costs: &PathValues, element: BlockElement, told: ColorChange) {
         if survivors.would_keep(least(costs)) {
             self.add_all(survivors, costs, element, told);
         }
@@ -468,7 +468,7 @@ impl<'a> Branches<'a> {
 
     /// Adds the paths if at least one would survive. Not inlined, so that the check before the call can be.
     #[inline(never)]
-    fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+    fn add_all(&self, survivors: &mut SurvivorPaths, costs: &PathValues, element: BlockElement, told: ColorChange) {
         for (path, &cost) in costs.iter().enumerate() {
             if survivors.would_keep(cost) {
                 self.add(survivors, cost, path, element, told);
@@ -481,22 +481,22 @@ impl<'a> Branches<'a> {
     #[inline(always)]
     fn add(
         &self,
-        survivors: &mut Survivors,
+        survivors: &mut SurvivorPaths,
         cost: f32,
         path: usize,
         element: BlockElement,
-        told: Told,
+        told: ColorChange,
     ) {
         let key = told.key(self.paths.keys[path], self.x + 1);
         let sources = told.sources(path);
-        let turn = Turn { kind: StepKind::Draw(element), before: path as u8, sources };
+        let turn = PathAction { kind: StepKind::Draw(element), before: path as u8, sources };
         survivors.add(cost, key, turn);
     }
 }
 
 /// The smallest number of parameter bytes of a colour that takes `bytes` itself, or of an entry in its place.
 #[inline]
-fn shortest(bytes: f32, palette: &Palette) -> f32 {
+fn shortest(bytes: f32, palette: &TerminalPalette) -> f32 {
     if palette.is_on() { min(bytes, MIN_ENTRY) } else { bytes }
 }
 
@@ -504,10 +504,10 @@ fn shortest(bytes: f32, palette: &Palette) -> f32 {
 // at a time. When they were inlined, the compiler split the paths, and a cell took three times the instructions.
 
 /// A number for each path.
-type Lanes = [f32; KEPT];
+type PathValues = [f32; KEPT];
 
 /// L*, a* and b* of a colour for each path.
-type Labs = [Lanes; 3];
+type Labs = [PathValues; 3];
 
 /// The numbers of bytes of a glyph of one colour, and of two.
 const SPACE: f32 = 1.0;
@@ -516,24 +516,24 @@ const HALF_BLOCK: f32 = 3.0;
 /// The costs, path by path, of showing the text or the background colour in each half.
 #[derive(Default)]
 struct Errors {
-    text_above: Lanes,
-    text_below: Lanes,
-    ground_above: Lanes,
-    ground_below: Lanes,
+    text_above: PathValues,
+    text_below: PathValues,
+    ground_above: PathValues,
+    ground_below: PathValues,
 }
 
 /// The costs, path by path, of drawing each block in the old colours.
 #[derive(Default)]
 struct Blocks {
-    space: Lanes,
-    full: Lanes,
-    upper: Lanes,
-    lower: Lanes,
+    space: PathValues,
+    full: PathValues,
+    upper: PathValues,
+    lower: PathValues,
 }
 
 /// The costs of the paths, plus the approximate number of bytes that move their cursors to column `x`.
 #[inline(never)]
-fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
+fn add_motions(paths: &Paths, x: u16, start: &mut PathValues) {
     let x = f32::from(x);
     let is_above = |distance: f32, least: f32| if distance > least { 1.0 } else { 0.0 };
     for (path, start) in start.iter_mut().enumerate() {
@@ -577,7 +577,7 @@ fn measure(
 
 /// The cost of the cheapest block.
 #[inline(never)]
-fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
+fn choose(blocks: &Blocks, start: &PathValues, costs: &mut PathValues) {
     let Blocks { space, full, upper, lower } = blocks;
     for path in 0..KEPT {
         let (flat, split) = (min(space[path], full[path]), min(upper[path], lower[path]));
@@ -586,18 +586,18 @@ fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
 }
 
 #[inline]
-fn sum(one: &Lanes, other: &Lanes) -> Lanes {
+fn sum(one: &PathValues, other: &PathValues) -> PathValues {
     std::array::from_fn(|path| one[path] + other[path])
 }
 
 #[inline]
-fn plus(one: &Lanes, other: f32) -> Lanes {
+fn plus(one: &PathValues, other: f32) -> PathValues {
     one.map(|one| one + other)
 }
 
 /// The least of all costs.
 #[inline]
-fn least(costs: &Lanes) -> f32 {
+fn least(costs: &PathValues) -> f32 {
     min(min(costs[0], costs[1]), min(costs[2], costs[3]))
 }
 
@@ -608,9 +608,9 @@ fn min(one: f32, other: f32) -> f32 {
 }
 
 /// The cheapest known paths past a cell. No two lead to the same colours and cursor column.
-struct Survivors {
-    cost: Lanes,
-    turns: [Turn; KEPT],
+struct SurvivorPaths {
+    cost: PathValues,
+    turns: [PathAction; KEPT],
     /// The states to which the paths lead.
     keys: [u64; KEPT],
     /// L*, a* and b* of the new colours.
@@ -626,7 +626,7 @@ struct Survivors {
 
 /// The action of a path on a cell.
 #[derive(Clone, Copy, Debug)]
-struct Turn {
+struct PathAction {
     kind: StepKind,
     before: u8,
     /// The sources of the text and background colours. Values below [`KEPT`] are the paths before, and higher values
@@ -635,8 +635,8 @@ struct Turn {
 }
 
 /// The turns of paths that all keep the cell.
-const KEEP: [Turn; KEPT] = {
-    let mut turns = [Turn { kind: StepKind::Keep, before: 0, sources: [0; 2] }; KEPT];
+const KEEP: [PathAction; KEPT] = {
+    let mut turns = [PathAction { kind: StepKind::Keep, before: 0, sources: [0; 2] }; KEPT];
     let mut path = 0;
     while path < KEPT {
         turns[path].before = path as u8;
@@ -646,7 +646,7 @@ const KEEP: [Turn; KEPT] = {
     turns
 };
 
-impl Survivors {
+impl SurvivorPaths {
     /// The paths themselves, before any cell.
     fn of(paths: &Paths) -> Self {
         Self {
@@ -695,7 +695,7 @@ impl Survivors {
     /// Adds a path that is cheaper than the most expensive survivor. It replaces the path to the same state or, if
     /// there is none, that survivor.
     #[inline]
-    fn add(&mut self, cost: f32, key: u64, turn: Turn) {
+    fn add(&mut self, cost: f32, key: u64, turn: PathAction) {
         let mut place = self.worst;
         for path in 0..KEPT {
             place = if self.keys[path] == key { path } else { place };
@@ -724,7 +724,7 @@ const BEAM: f32 = 24.0;
 
 /// The key of a state: the text and background colours, and the cursor column.
 #[inline]
-fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
+fn key([text, ground]: [PackedColor; 2], cursor: u16) -> u64 {
     u64::from(text.in_bits()) << TEXT
         | u64::from(ground.in_bits()) << GROUND
         | u64::from(cursor) & CURSOR
@@ -732,19 +732,19 @@ fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
 
 /// The text and background colours of a key.
 #[inline]
-fn colors_of(key: u64) -> [Shade; 2] {
-    [TEXT, GROUND].map(|place| Shade::from_bits((key >> place) as u32))
+fn colors_of(key: u64) -> [PackedColor; 2] {
+    [TEXT, GROUND].map(|place| PackedColor::from_bits((key >> place) as u32))
 }
 
 /// The places of the colours in a key, and the bits of the cursor.
-const TEXT: u32 = GROUND + Shade::BITS;
+const TEXT: u32 = GROUND + PackedColor::BITS;
 const GROUND: u32 = 12;
 const CURSOR: u64 = (1 << GROUND) - 1;
 
 /// The colours that a branch sets: the bits of a key that they change, and the indices of fresh
 /// colours.
 #[derive(Clone, Copy)]
-struct Told {
+struct ColorChange {
     kept: u64,
     set: u64,
     /// For the text and the background: the bits of a path's index to keep, and the bits to set.
@@ -752,25 +752,25 @@ struct Told {
     set_sources: [u8; 2],
 }
 
-impl Told {
+impl ColorChange {
     const NOTHING: Self =
         Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
 
     /// Adds this text colour.
     #[inline]
-    fn text(self, shade: Shade, source: u8) -> Self {
+    fn text(self, shade: PackedColor, source: u8) -> Self {
         self.with(shade, TEXT, 0, source)
     }
 
     /// Adds this background colour.
     #[inline]
-    fn ground(self, shade: Shade, source: u8) -> Self {
+    fn ground(self, shade: PackedColor, source: u8) -> Self {
         self.with(shade, GROUND, 1, source)
     }
 
     #[inline]
-    fn with(self, shade: Shade, place: u32, which: usize, source: u8) -> Self {
-        const SHADE: u64 = (1 << Shade::BITS) - 1;
+    fn with(self, shade: PackedColor, place: u32, which: usize, source: u8) -> Self {
+        const SHADE: u64 = (1 << PackedColor::BITS) - 1;
         let Self { mut kept_sources, mut set_sources, .. } = self;
         (kept_sources[which], set_sources[which]) = (0, KEPT as u8 + source);
         let kept = self.kept & !(SHADE << place);

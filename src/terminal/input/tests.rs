@@ -12,27 +12,27 @@ const SHIFT: Modifiers = Modifiers { shift: true, ..PLAIN };
 const CONTROL: Modifiers = Modifiers { control: true, ..PLAIN };
 const ALT: Modifiers = Modifiers { alt: true, ..PLAIN };
 
-fn key(key: Key, modifiers: Modifiers, phase: Phase) -> Input {
-    Input::Key(KeyEvent { key, base: None, modifiers, phase })
+fn key(key: Key, modifiers: Modifiers, phase: Phase) -> TerminalInput {
+    TerminalInput::Key(KeyEvent { key, base: None, modifiers, phase })
 }
 
 /// A key of a non-Latin layout, at the place of `base`.
-fn elsewhere(name: char, base: char, modifiers: Modifiers, phase: Phase) -> Input {
+fn elsewhere(name: char, base: char, modifiers: Modifiers, phase: Phase) -> TerminalInput {
     let (key, base) = (Key::Char(name), Some(Key::Char(base)));
-    Input::Key(KeyEvent { key, base, modifiers, phase })
+    TerminalInput::Key(KeyEvent { key, base, modifiers, phase })
 }
 
-fn press(name: Key, modifiers: Modifiers) -> Input {
+fn press(name: Key, modifiers: Modifiers) -> TerminalInput {
     key(name, modifiers, Phase::Press)
 }
 
-fn mouse(kind: MouseEventKind, place: [u32; 2]) -> Input {
-    Input::Mouse(MouseReport { kind, place })
+fn mouse(kind: MouseEventKind, place: [u32; 2]) -> TerminalInput {
+    TerminalInput::Mouse(MouseReport { kind, place })
 }
 
 /// Complete units that terminals send, with their meanings.
-fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
-    let answer = Input::Answer;
+fn vocabulary() -> Vec<(&'static str, Option<TerminalInput>)> {
+    let answer = TerminalInput::Answer;
     let meaningful = [
         ("w", press(Key::Char('w'), PLAIN)),
         ("W", press(Key::Char('w'), SHIFT)),
@@ -89,8 +89,8 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         ("\x1b[M #$", mouse(MouseEventKind::Pressed(MouseButton::Left), [3, 4])),
         ("\x1b[MC#$", mouse(MouseEventKind::Moved, [3, 4])),
         ("\x1b[M##$", mouse(MouseEventKind::Released, [3, 4])),
-        ("\x1b[I", Input::Focus(true)),
-        ("\x1b[O", Input::Focus(false)),
+        ("\x1b[I", TerminalInput::Focus(true)),
+        ("\x1b[O", TerminalInput::Focus(false)),
         ("\x1b[0n", answer(Answer::Status)),
         ("\x1b[3n", answer(Answer::Status)),
         ("\x1bP1+r524742=382F382F38\x1b\\", answer(Answer::TrueColor)),
@@ -124,7 +124,7 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         .collect()
 }
 
-fn decode<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> Vec<Input> {
+fn decode<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> Vec<TerminalInput> {
     let mut decoder = Decoder::default();
     let mut inputs = Vec::new();
     for piece in pieces {
@@ -134,7 +134,7 @@ fn decode<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> Vec<Input> {
     inputs
 }
 
-fn settle(decoder: &mut Decoder) -> Vec<Input> {
+fn settle(decoder: &mut Decoder) -> Vec<TerminalInput> {
     let mut inputs = Vec::new();
     decoder.give_up(|input| inputs.push(input));
     inputs
@@ -149,7 +149,7 @@ fn every_unit_has_its_meaning() {
 
 #[test]
 fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
-    let entry = |color| vec![Input::Answer(Answer::PaletteEntry(color))];
+    let entry = |color| vec![TerminalInput::Answer(Answer::PaletteEntry(color))];
     for (text, expected) in [
         ("\x1b]4;255;rgb:1212/abab/5656\x1b\\", entry([0x1212, 0xabab, 0x5656])),
         ("\x1b]4;255;rgb:12/ab/56\x07", entry([0x1212, 0xabab, 0x5656])),
@@ -187,7 +187,7 @@ fn alt_with_a_character_that_starts_sequences_is_a_key_after_the_wait() {
     for (text, character) in [("\x1b[", '['), ("\x1bO", 'o'), ("\x1bP", 'p'), ("\x1b]", ']')] {
         let mut decoder = Decoder::default();
         decoder.feed(text.as_bytes(), |input| panic!("{input:?} came too early"));
-        let [Input::Key(event)] = settle(&mut decoder)[..] else { panic!("{text:?} is a key") };
+        let [TerminalInput::Key(event)] = settle(&mut decoder)[..] else { panic!("{text:?} is a key") };
         assert_eq!(event.key, Key::Char(character));
         assert!(event.modifiers.alt);
     }

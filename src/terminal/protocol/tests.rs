@@ -5,8 +5,8 @@ use ratatui::style::Color;
 
 const ENTERED: &str = "\x1b[?1049h";
 
-fn options(term: &str) -> Options {
-    Options::from_environment(|name| (name == "TERM").then(|| term.to_owned()))
+fn options(term: &str) -> SessionOptions {
+    SessionOptions::from_environment(|name| (name == "TERM").then(|| term.to_owned()))
 }
 
 fn begun(term: &str) -> Protocol {
@@ -87,7 +87,7 @@ fn keyboard_flags_are_popped_after_a_loss_only_if_they_were_received() {
     // The terminal may have received a part of the sequences that end the session, including the
     // pop.
     let mut changes = protocol.changes();
-    changes.doubt_key_flags();
+    changes.mark_key_flags_uncertain();
     assert!(!changes.end_after_loss().contains(sequence::POP_KEY_FLAGS));
 }
 

@@ -30,14 +30,14 @@ use crate::color::Rgb;
 const CELLS: usize = 40;
 
 /// A value for each of several cells.
-type Lanes<T> = [T; CELLS];
+type CellValues<T> = [T; CELLS];
 
 /// The splits of several cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Splits {
     /// The dots with the first colour: the lowest bit is the first pixel. The last pixel is never among them.
-    masks: Lanes<u8>,
-    colors: [Lanes<Rgb>; 2],
+    masks: CellValues<u8>,
+    colors: [CellValues<Rgb>; 2],
 }
 
 /// The split of one cell.
@@ -78,7 +78,7 @@ const SHIFTS: [[u32; 2]; 3] = [[4, 7], [4, 4], [5, 6]];
 impl Splits {
     /// The splits of cells, given their pixels: two to eight in each cell.
     #[inline(never)]
-    fn of<const N: usize>(pixels: &[Lanes<Rgb>; N]) -> Self {
+    fn of<const N: usize>(pixels: &[CellValues<Rgb>; N]) -> Self {
         if let [first, last] = pixels.as_slice() {
             let masks = array::from_fn(|cell| u8::from(first[cell] != last[cell]));
             return Self { masks, colors: [*first, *last] };
@@ -112,7 +112,7 @@ impl Splits {
 /// Calls `act` with each value, its place and its cell.
 #[inline(always)]
 fn for_each<T, const N: usize>(
-    values: &mut [Lanes<T>; N],
+    values: &mut [CellValues<T>; N],
     mut act: impl FnMut(&mut T, usize, usize),
 ) {
     for place in 0..N {
@@ -130,7 +130,7 @@ fn to_mask(is_set: bool) -> i16 {
 
 /// The light of the pixels as points around the mean of their cell, channel by channel.
 #[inline(always)]
-fn points<const N: usize>(channels: &[[Lanes<u16>; N]; 3]) -> [[Lanes<i16>; N]; 3] {
+fn points<const N: usize>(channels: &[[CellValues<u16>; N]; 3]) -> [[CellValues<i16>; N]; 3] {
     let mut points = [[[0; CELLS]; N]; 3];
     for channel in 0..3 {
         let mut sums = [0_u16; CELLS];
@@ -153,7 +153,7 @@ fn points<const N: usize>(channels: &[[Lanes<u16>; N]; 3]) -> [[Lanes<i16>; N]; 
 /// channel that varies most. The second is the line between the means of that channel's lower half and upper
 /// half.
 #[inline(always)]
-fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
+fn distances<const N: usize>(points: &[[CellValues<i16>; N]; 3]) -> [CellValues<i16>; N] {
     let mut spread = [[0_i16; CELLS]; 3];
     for channel in 0..3 {
         for place in 0..N {
@@ -182,9 +182,9 @@ fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
 /// The sum of the points whose distance is positive. It is scaled so that the largest component is about 32,000.
 #[inline(always)]
 fn axis<const N: usize>(
-    points: &[[Lanes<i16>; N]; 3],
-    distances: &[Lanes<i16>; N],
-) -> [Lanes<i16>; 3] {
+    points: &[[CellValues<i16>; N]; 3],
+    distances: &[CellValues<i16>; N],
+) -> [CellValues<i16>; 3] {
     let mut axis = [[0_i16; CELLS]; 3];
     for channel in 0..3 {
         for place in 0..N {
@@ -217,7 +217,7 @@ fn rounded(value: f32) -> u32 {
 
 /// The distance of each point along an axis.
 #[inline(always)]
-fn along<const N: usize>(points: &[[Lanes<i16>; N]; 3], axis: &[Lanes<i16>; 3]) -> [Lanes<i16>; N] {
+fn along<const N: usize>(points: &[[CellValues<i16>; N]; 3], axis: &[CellValues<i16>; 3]) -> [CellValues<i16>; N] {
     let mut distances = [[0_i16; CELLS]; N];
     for channel in 0..3 {
         for_each(&mut distances, |distance, place, cell| {
@@ -231,7 +231,7 @@ fn along<const N: usize>(points: &[[Lanes<i16>; N]; 3], axis: &[Lanes<i16>; 3]) 
 
 /// The largest distance in the lower part of the split with the least squared error.
 #[inline(always)]
-fn threshold<const N: usize>(mut distances: [Lanes<i16>; N]) -> Lanes<i16> {
+fn threshold<const N: usize>(mut distances: [CellValues<i16>; N]) -> CellValues<i16> {
     sort(&mut distances);
     let mut best = [0_i16; CELLS];
     let mut most = [-1.0_f32; CELLS];
@@ -254,9 +254,9 @@ fn threshold<const N: usize>(mut distances: [Lanes<i16>; N]) -> Lanes<i16> {
 /// The mean light of the pixels that are in a part, and of the other pixels.
 #[inline(always)]
 fn means<const N: usize>(
-    channels: &[[Lanes<u16>; N]; 3],
-    is_in: &[Lanes<i16>; N],
-) -> [Lanes<Rgb>; 2] {
+    channels: &[[CellValues<u16>; N]; 3],
+    is_in: &[CellValues<i16>; N],
+) -> [CellValues<Rgb>; 2] {
     let mut counts = [0_i16; CELLS];
     for place in 0..N {
         for cell in 0..CELLS {
@@ -307,7 +307,7 @@ macro_rules! exchange {
 
 /// Sorts four, six or eight numbers of each cell, with Batcher's networks (1968).
 #[inline(always)]
-fn sort<const N: usize>(values: &mut [Lanes<i16>; N]) {
+fn sort<const N: usize>(values: &mut [CellValues<i16>; N]) {
     match N {
         4 => exchange!(values: 0 1, 2 3, 0 2, 1 3, 1 2),
         6 => exchange!(values: 0 5, 1 3, 2 4, 1 2, 3 4, 0 3, 2 5, 0 1, 2 3, 4 5, 1 2, 3 4),

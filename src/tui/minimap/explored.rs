@@ -204,7 +204,7 @@ struct Observer<'a> {
     /// The gap around the eye in the observer's cell.
     own_gap: Gap,
     /// For each tile, its effect on a ray that has only been in cells with that gap.
-    passages: [Passage; TileId::MAX],
+    passages: [RayEffect; TileId::MAX],
 }
 
 /// The range of slopes that is still visible along a ray, in height per distance.
@@ -238,7 +238,7 @@ impl<'a> Observer<'a> {
         let tile = world.grid().tile(place.x as i64, place.y as i64);
         let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
         let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(MIN_CLEARNESS));
-        let passages = [Passage::Other; TileId::MAX];
+        let passages = [RayEffect::Other; TileId::MAX];
         let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
         observer.find_passages();
         observer
@@ -256,7 +256,7 @@ impl Observer<'_> {
         }
         let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
         let (mut gap, mut line) = if let Some((walk, cell, tile)) = walk
-            && self.passage(tile) == Passage::Same
+            && self.passage(tile) == RayEffect::Same
         {
             let start = (cell, tile);
             let Some(line) = self.follow_through_own_gap(walk, ray, start, &mut see) else {
@@ -265,12 +265,12 @@ impl Observer<'_> {
             visible = self.slopes(self.own_gap, line.from);
             (self.own_gap, line)
         } else {
-            let line = Line { walk: RayWalk::new(grid, ray), position, from: 0.0 };
+            let line = SightRay { walk: RayWalk::new(grid, ray), position, from: 0.0 };
             (self.gap_around_eye(position), line)
         };
         let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {
-            let Line { walk, position, from } = &mut line;
+            let SightRay { walk, position, from } = &mut line;
             let t = walk.distance(&crossed);
             let through_gap = self.slopes_through(gap, t);
             if let Some((cell, tile)) = *position {
@@ -307,7 +307,7 @@ impl Observer<'_> {
     /// Passes the thing that stands in the current cell, if any, and crosses the next line.
     fn cross(
         &self,
-        line: &mut Line,
+        line: &mut SightRay,
         visible: &mut SlopeRange,
         see: &mut impl FnMut(Cell, bool),
     ) -> Crossed {
@@ -377,7 +377,7 @@ fn is_opaque_inside(tile: &Tile) -> bool {
 }
 
 /// A line of sight as far as it has been followed.
-struct Line {
+struct SightRay {
     walk: RayWalk,
     /// The cell in which the line is. `None` off the map.
     position: Option<(Cell, TileId)>,
@@ -387,7 +387,7 @@ struct Line {
 
 /// The effect of a tile on a ray that has only been in cells with the observer's own gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Passage {
+enum RayEffect {
     /// The tile has the same gap, and nothing opaque stands in it. The ray sees the cell.
     Same,
     /// The tile is a block that ends the ray. The ray sees its face.
@@ -401,14 +401,14 @@ const NEAR: f64 = 1e-9;
 const FARTHER: f64 = 1.0 + 1e-9;
 
 /// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
-struct Certain {
+struct CertainBounds {
     /// A lower bound of the distance up to which fog hides nothing.
     clear_to: f64,
     /// An upper bound of [`NEAR`].
     near: f64,
 }
 
-impl Certain {
+impl CertainBounds {
     fn new(unit: f64, clear_to: f64) -> Self {
         // More than enough for the errors of both distances.
         const MARGIN: f64 = 1.0 + 1e-9;
@@ -432,7 +432,7 @@ impl Observer<'_> {
     /// Makes rays take the general path in all cells.
     #[cfg(test)]
     fn forget_passages(&mut self) {
-        self.passages.fill(Passage::Other);
+        self.passages.fill(RayEffect::Other);
     }
 
     fn find_passages(&mut self) {
@@ -446,9 +446,9 @@ impl Observer<'_> {
             let Some(lowest) = tile.gaps().next() else { continue };
             let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
             if own_gap.top <= lowest.bottom || hides_all {
-                *passage = Passage::Block;
+                *passage = RayEffect::Block;
             } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
-                *passage = Passage::Same;
+                *passage = RayEffect::Same;
             }
         }
     }
@@ -462,8 +462,8 @@ impl Observer<'_> {
         ray: &Ray,
         mut position: (Cell, TileId),
         see: &mut impl FnMut(Cell, bool),
-    ) -> Option<Line> {
-        let certain = Certain::new(walk.unit(), self.clear_to);
+    ) -> Option<SightRay> {
+        let certain = CertainBounds::new(walk.unit(), self.clear_to);
         let (mut from, mut entered) = (0.0, None);
         let distance = |cell, entered: Option<Side>| {
             entered.map_or(0.0, |side| distance_on_entry(ray, cell, side))
@@ -471,7 +471,7 @@ impl Observer<'_> {
         for (Crossing { cell: next, tile, side }, to) in walk {
             let passage = self.passage(tile);
             let is_clear = to < certain.clear_to || distance(next, Some(side)) <= self.clear_to;
-            if passage == Passage::Other || !is_clear {
+            if passage == RayEffect::Other || !is_clear {
                 break;
             }
             if certain.rises(from, to)
@@ -479,7 +479,7 @@ impl Observer<'_> {
             {
                 see(position.0, true);
             }
-            if passage == Passage::Block {
+            if passage == RayEffect::Block {
                 see(next, self.is_open(tile));
                 return None;
             }
@@ -496,13 +496,13 @@ impl Observer<'_> {
         position: (Cell, TileId),
         from: f64,
         entered: Option<Side>,
-    ) -> Line {
+    ) -> SightRay {
         let grid = self.world.grid();
         let walk = match entered {
             Some(side) => RayWalk::entering(grid, ray, (position.0, side)),
             None => RayWalk::new(grid, ray),
         };
-        Line { walk, position: Some(position), from }
+        SightRay { walk, position: Some(position), from }
     }
 
     /// Returns true if the floor of the observer's own gap has a lower slope at `from` than at `t`. The slopes are
@@ -514,7 +514,7 @@ impl Observer<'_> {
     }
 
     #[inline]
-    fn passage(&self, tile: TileId) -> Passage {
+    fn passage(&self, tile: TileId) -> RayEffect {
         self.passages[usize::from(tile.0)]
     }
 }

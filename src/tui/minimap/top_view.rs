@@ -60,9 +60,9 @@ impl<'a> TopView<'a> {
     }
 
     /// The row of points at the distance `y` from the map's northern edge.
-    pub(crate) fn row(&self, y: f64) -> Row<'_> {
+    pub(crate) fn row(&self, y: f64) -> MapRow<'_> {
         let row = u32::try_from(floor_short(y)).ok();
-        Row {
+        MapRow {
             view: self,
             seen: self.explored.map(|explored| explored.row(row.unwrap_or(u32::MAX))),
             tiles: row
@@ -89,7 +89,7 @@ impl<'a> TopView<'a> {
 }
 
 /// The points on a line from west to east.
-pub(crate) struct Row<'a> {
+pub(crate) struct MapRow<'a> {
     view: &'a TopView<'a>,
     tiles: &'a [TileId],
     /// The cells that are not hidden. `None` if no cell is hidden.
@@ -100,7 +100,7 @@ pub(crate) struct Row<'a> {
     number: u32,
 }
 
-impl Row<'_> {
+impl MapRow<'_> {
     /// The map point at the distance `x` from the map's western edge, which is the middle of a
     /// pixel.
     #[inline]

@@ -26,22 +26,22 @@ fn with_fan<T>(
     world: &World,
     camera: &Camera,
     width: u32,
-    test: impl FnOnce(&Fan<'_>, View<'_>) -> T,
+    test: impl FnOnce(&Fan<'_>, RayStarts<'_>) -> T,
 ) -> T {
     let size = FrameSize::new(width, 10).unwrap();
     let projection = &Projection::new(camera, size, PixelAspect::SQUARE);
     let plan = &FramePlan::new(world, Filter::Mip);
-    let scene = Scene { world, camera, seconds: 0.0, projection, plan };
+    let scene = FrameContext { world, camera, seconds: 0.0, projection, plan };
     let (mut sectors, mut directions) = (Sectors::default(), Directions::default());
     sectors.begin(scene);
     directions.begin(projection);
     let fan = Fan::new(scene, &sectors, &directions, None, 0);
     let place = [camera.position().x as i64, camera.position().y as i64];
     let tile = world.grid().tile(place[0], place[1]);
-    let view = View {
+    let view = RayStarts {
         sector: sectors.of_eye(tile, projection.eye()),
         image: MirrorTransform::default(),
-        entries: &[Entry { column: 0, place }],
+        entries: &[SectorEntry { column: 0, place }],
         is_at_camera: true,
     };
     test(&fan, view)
@@ -49,7 +49,7 @@ fn with_fan<T>(
 
 /// Returns true if the fan of `view` finds the face that each ray hits when it is cast alone, and if the same
 /// is true for the fans behind these faces, up to this depth.
-fn finds_all(fan: &Fan<'_>, view: View<'_>, columns: Range<u32>, depth: u32) -> bool {
+fn finds_all(fan: &Fan<'_>, view: RayStarts<'_>, columns: Range<u32>, depth: u32) -> bool {
     let (mut memory, mut borders, mut of_each) = (FanMemory::new(), Vec::new(), Vec::new());
     fan.find(view, columns.clone(), &mut memory, &mut borders);
     for column in columns {
@@ -61,9 +61,9 @@ fn finds_all(fan: &Fan<'_>, view: View<'_>, columns: Range<u32>, depth: u32) -> 
     };
     let behind = |border: &Border| {
         let Some((_, tile)) = border.into else { return true };
-        let entries = &[Entry { column: border.columns.start, place: border.face.place }];
+        let entries = &[SectorEntry { column: border.columns.start, place: border.face.place }];
         let sector = fan.sectors.of(tile).lower;
-        let view = View { sector, entries, is_at_camera: false, ..view };
+        let view = RayStarts { sector, entries, is_at_camera: false, ..view };
         depth == 0 || finds_all(fan, view, border.columns.clone(), depth - 1)
     };
     faces(&borders) == faces(&of_each) && borders.iter().all(behind)
@@ -94,7 +94,7 @@ proptest! {
         let heading = Heading::from_degrees(degrees).unwrap();
         let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
         let camera = Camera::new(position, heading, field_of_view).unwrap();
-        let test = |fan: &Fan<'_>, view: View<'_>| finds_all(fan, view, 0..width, 3);
+        let test = |fan: &Fan<'_>, view: RayStarts<'_>| finds_all(fan, view, 0..width, 3);
         prop_assert!(with_fan(&world, &camera, width, test));
     }
 }

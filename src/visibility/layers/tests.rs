@@ -43,7 +43,7 @@ proptest! {
         let size = FrameSize::new(30, 20).unwrap();
         let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
         let plan = &FramePlan::new(world, Filter::Mip);
-        let scene = Scene { world, camera: &camera, seconds: 0.0, projection, plan };
+        let scene = FrameContext { world, camera: &camera, seconds: 0.0, projection, plan };
         let (mut list, mut walked) = (DrawList::default(), WalkMemory::default());
         list.begin(projection.columns());
         walked.make_room(projection.columns());

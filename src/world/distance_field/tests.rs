@@ -14,8 +14,8 @@ fn of<Row: AsRef<str>>(rows: &[Row]) -> DistanceField {
 
 /// The distances of the cells of the map, without the border.
 fn inner(distance_field: &DistanceField) -> Vec<Vec<u16>> {
-    let rows: Vec<&[Coded]> = distance_field.cells.chunks_exact(distance_field.width).collect();
-    let lines = |row: &&[Coded]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
+    let rows: Vec<&[CodedDistance]> = distance_field.cells.chunks_exact(distance_field.width).collect();
+    let lines = |row: &&[CodedDistance]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
     rows[1..rows.len() - 1].iter().map(lines).collect()
 }
 
@@ -23,7 +23,7 @@ fn inner(distance_field: &DistanceField) -> Vec<Vec<u16>> {
 fn around_the_map_nothing_is_clear() {
     let distance_field = of(&["....", "...#"]);
     assert_eq!(inner(&distance_field), [[1, 1, 1, 1], [1, 1, 1, 0]]);
-    assert_eq!(distance_field.cells.iter().filter(|&&cell| cell != Coded::NONE).count(), 7);
+    assert_eq!(distance_field.cells.iter().filter(|&&cell| cell != CodedDistance::NONE).count(), 7);
     assert_eq!(inner(&of(&[".....", ".....", "....."]).measured())[1], [1, 2, 2, 2, 1]);
     assert!(!distance_field.is_clear(-1));
 }
@@ -31,9 +31,9 @@ fn around_the_map_nothing_is_clear() {
 #[test]
 fn far_is_rounded_down() {
     for (lines, coded) in [(0, 0), (1, 1), (128, 128), (159, 128), (160, 160), (4096, 4096)] {
-        assert_eq!(Coded::new(lines).lines(), coded);
+        assert_eq!(CodedDistance::new(lines).lines(), coded);
     }
-    assert_eq!(Coded::new(u16::MAX).lines(), Coded::MAX);
+    assert_eq!(CodedDistance::new(u16::MAX).lines(), CodedDistance::MAX);
     let wide = of(&vec![".".repeat(600); 600]).measured();
     assert_eq!((inner(&wide)[300][100], inner(&wide)[300][254]), (101, 224));
 }

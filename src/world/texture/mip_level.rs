@@ -183,7 +183,7 @@ fn texel_index(coordinate: f64, count: u32) -> usize {
 pub(crate) fn smaller(level: &MipLevel) -> Vec<MipLevel> {
     let &MipLevel { width, height, ref texels, ref alpha, .. } = level;
     let texels = texels.iter().copied().map(linear_16).collect();
-    let mut light = Light { width, height, texels, alpha: alpha.clone() };
+    let mut light = LinearPicture { width, height, texels, alpha: alpha.clone() };
     let mut levels = Vec::new();
     while light.texels.len() > 1 {
         light = light.halved();
@@ -194,7 +194,7 @@ pub(crate) fn smaller(level: &MipLevel) -> Vec<MipLevel> {
 }
 
 /// A picture in linear light: 16 bits for each of red, green and blue.
-pub(crate) struct Light {
+pub(crate) struct LinearPicture {
     pub(crate) width: NonZeroU32,
     pub(crate) height: NonZeroU32,
     pub(crate) texels: Vec<[u16; 3]>,
@@ -202,7 +202,7 @@ pub(crate) struct Light {
     pub(crate) alpha: Vec<u8>,
 }
 
-impl Light {
+impl LinearPicture {
     /// A picture of half the width and height.
     pub(crate) fn halved(&self) -> Self {
         let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
@@ -360,7 +360,7 @@ mod tests {
             let texels = seed[..4 * (width * height) as usize].to_vec();
             let [half_width, half_height, width, height] =
                 [width, height, 2 * width, 2 * height].map(|side| NonZeroU32::new(side).unwrap());
-            let whole = Light { width, height, texels, alpha: vec![] };
+            let whole = LinearPicture { width, height, texels, alpha: vec![] };
             let expected = whole.resized(half_width, half_height).texels;
             prop_assert_eq!(whole.halved().texels, expected);
         }
@@ -375,9 +375,9 @@ mod tests {
             let count = (width * height) as usize;
             let [width, height] = [width, height].map(|side| NonZeroU32::new(side).unwrap());
             let texels = seed[..count].iter().map(|&light| [light; 3]).collect();
-            let whole = Light { width, height, texels, alpha: vec![] };
+            let whole = LinearPicture { width, height, texels, alpha: vec![] };
             let half = whole.halved();
-            let mean = |light: &Light| {
+            let mean = |light: &LinearPicture| {
                 let sum: f64 = light.texels.iter().map(|texel| f64::from(texel[0])).sum();
                 sum / light.texels.len() as f64
             };

@@ -14,9 +14,9 @@ const BITS: u32 = 512;
 
 /// A number in fixed point.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Fixed(BigInt);
+pub(crate) struct FixedPoint(BigInt);
 
-impl Fixed {
+impl FixedPoint {
     /// Converts a finite double. Digits below 2⁻⁵¹² are cut off.
     pub(crate) fn new(value: f64) -> Self {
         let (integer, exponent) = integer(value);
@@ -75,43 +75,43 @@ impl Fixed {
     }
 }
 
-impl Add for &Fixed {
-    type Output = Fixed;
+impl Add for &FixedPoint {
+    type Output = FixedPoint;
 
-    fn add(self, other: Self) -> Fixed {
-        Fixed(&self.0 + &other.0)
+    fn add(self, other: Self) -> FixedPoint {
+        FixedPoint(&self.0 + &other.0)
     }
 }
 
-impl Sub for &Fixed {
-    type Output = Fixed;
+impl Sub for &FixedPoint {
+    type Output = FixedPoint;
 
-    fn sub(self, other: Self) -> Fixed {
-        Fixed(&self.0 - &other.0)
+    fn sub(self, other: Self) -> FixedPoint {
+        FixedPoint(&self.0 - &other.0)
     }
 }
 
-impl Mul for &Fixed {
-    type Output = Fixed;
+impl Mul for &FixedPoint {
+    type Output = FixedPoint;
 
-    fn mul(self, other: Self) -> Fixed {
-        Fixed((&self.0 * &other.0) >> BITS)
+    fn mul(self, other: Self) -> FixedPoint {
+        FixedPoint((&self.0 * &other.0) >> BITS)
     }
 }
 
-impl Div for &Fixed {
-    type Output = Fixed;
+impl Div for &FixedPoint {
+    type Output = FixedPoint;
 
-    fn div(self, other: Self) -> Fixed {
-        Fixed((&self.0 << BITS) / &other.0)
+    fn div(self, other: Self) -> FixedPoint {
+        FixedPoint((&self.0 << BITS) / &other.0)
     }
 }
 
-impl Neg for &Fixed {
-    type Output = Fixed;
+impl Neg for &FixedPoint {
+    type Output = FixedPoint;
 
-    fn neg(self) -> Fixed {
-        Fixed(-&self.0)
+    fn neg(self) -> FixedPoint {
+        FixedPoint(-&self.0)
     }
 }
 
@@ -121,19 +121,19 @@ mod tests {
 
     #[test]
     fn arithmetic_is_that_of_doubles_where_those_are_exact() {
-        let [a, b] = [-1.75, 0.375].map(Fixed::new);
+        let [a, b] = [-1.75, 0.375].map(FixedPoint::new);
         let results = [&a + &b, &a - &b, &a * &b, &a / &b, -&a].map(|number| number.to_f64());
         assert_eq!(results[..3], [-1.375, -2.125, -0.65625]);
         assert!((results[3] + 14.0 / 3.0).abs() < 1e-15 && results[4] == 1.75);
-        assert_eq!(Fixed::new(2.25).square_root().to_f64(), 1.5);
-        assert!(a.is_negative() && !b.is_negative() && Fixed::new(-0.0).is_zero());
-        assert_eq!((b.relative_error(0.75), Fixed::new(0.0).relative_error(-0.5)), (1.0, 0.5));
+        assert_eq!(FixedPoint::new(2.25).square_root().to_f64(), 1.5);
+        assert!(a.is_negative() && !b.is_negative() && FixedPoint::new(-0.0).is_zero());
+        assert_eq!((b.relative_error(0.75), FixedPoint::new(0.0).relative_error(-0.5)), (1.0, 0.5));
     }
 
     #[test]
     fn the_series_is_the_exponential() {
         for x in [0.0, 1e-9, 0.5, 1.0, 12.0, 40.0, 300.0] {
-            let series = Fixed::new(x).exponential_of_minus().to_f64();
+            let series = FixedPoint::new(x).exponential_of_minus().to_f64();
             let expected = libm::exp(-x);
             assert!((series - expected).abs() <= 4e-16 * expected, "{x}: {series}");
         }
@@ -143,8 +143,8 @@ mod tests {
     /// half; the exponents differ by 2.319e-17.
     #[test]
     fn the_exponential_is_more_than_a_double() {
-        let half = Fixed::new(std::f64::consts::LN_2).exponential_of_minus();
-        let difference = (&half - &Fixed::new(0.5)).to_f64();
+        let half = FixedPoint::new(std::f64::consts::LN_2).exponential_of_minus();
+        let difference = (&half - &FixedPoint::new(0.5)).to_f64();
         assert!((difference - 0.5 * 2.319_046_813_846_3e-17).abs() < 1e-28, "{difference}");
     }
 }

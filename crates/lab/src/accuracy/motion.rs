@@ -13,7 +13,7 @@
 
 use std::hint::black_box;
 
-use super::fixed_point::Fixed;
+use super::fixed_point::FixedPoint;
 use crate::report::{Diagram, Row, Table, Value, headings, seconds, time_in_rounds};
 use cellcaster::numeric::damped_motion::approach;
 
@@ -103,7 +103,7 @@ fn errors(integrator: Integrator, motion: &Motion) -> [f64; 2] {
     for step in 1..=last {
         state = integrator.step(motion, state);
         if step.is_power_of_two() || step == last {
-            let [velocity, place] = Truth::new(motion, step).errors(state);
+            let [velocity, place] = ExactState::new(motion, step).errors(state);
             let way = SPEED * motion.step * step as f64;
             for (worst, error) in errors.iter_mut().zip([velocity / SPEED, place / way]) {
                 *worst = if error.is_finite() { worst.max(error) } else { f64::INFINITY };
@@ -262,18 +262,18 @@ impl Integrator {
 // The analytic solution of a damped motion in fixed point.
 
 /// The exact state of a motion.
-struct Truth {
-    velocity: Fixed,
-    place: Fixed,
+struct ExactState {
+    velocity: FixedPoint,
+    place: FixedPoint,
 }
 
-impl Truth {
+impl ExactState {
     /// The state after `steps` steps: `v = w·(1 − e^(−rate·t))`, and
     /// `x = w·(t − (1 − e^(−rate·t)) / rate)`.
     fn new(motion: &Motion, steps: u64) -> Self {
-        let [rate, step, target] = [motion.rate, motion.step, motion.target].map(Fixed::new);
-        let time = &step * &Fixed::new(steps as f64);
-        let approached = &Fixed::new(1.0) - &(&rate * &time).exponential_of_minus();
+        let [rate, step, target] = [motion.rate, motion.step, motion.target].map(FixedPoint::new);
+        let time = &step * &FixedPoint::new(steps as f64);
+        let approached = &FixedPoint::new(1.0) - &(&rate * &time).exponential_of_minus();
         let lag = &approached / &rate;
         Self { velocity: &target * &approached, place: &target * &(&time - &lag) }
     }
@@ -282,7 +282,7 @@ impl Truth {
     fn errors(&self, (velocity, place): (f64, f64)) -> [f64; 2] {
         [(velocity, &self.velocity), (place, &self.place)].map(|(value, truth)| {
             if value.is_finite() {
-                (&Fixed::new(value) - truth).to_f64().abs()
+                (&FixedPoint::new(value) - truth).to_f64().abs()
             } else {
                 f64::INFINITY
             }
@@ -340,8 +340,8 @@ mod tests {
     #[test]
     fn a_motion_ends_at_its_target() {
         let motion = Motion { rate: 1e9, step: 0.5, target: 3.0 };
-        let [velocity, place] = Truth::new(&motion, 4).errors((3.0, 6.0));
+        let [velocity, place] = ExactState::new(&motion, 4).errors((3.0, 6.0));
         assert!(velocity == 0.0 && (place - 3e-9).abs() < 1e-20, "{velocity} {place}");
-        assert_eq!(Truth::new(&motion, 4).errors((f64::NAN, 0.0))[0], f64::INFINITY);
+        assert_eq!(ExactState::new(&motion, 4).errors((f64::NAN, 0.0))[0], f64::INFINITY);
     }
 }

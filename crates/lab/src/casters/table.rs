@@ -20,7 +20,7 @@ use cellcaster::world::{Cell, Grid};
 
 /// Casts along the nearest angle of a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct AngleTable {
     angles: Box<[Angle]>,
 }
 
@@ -32,7 +32,7 @@ struct Angle {
     tangent: f64,
 }
 
-impl Table {
+impl AngleTable {
     /// A caster with `count` angles in the circle, from 8 to 65536.
     pub(crate) fn new(count: u32) -> Self {
         Self { angles: (0..count).map(|index| Angle::new(index, count)).collect() }
@@ -66,7 +66,7 @@ impl Angle {
     }
 }
 
-impl Caster for Table {
+impl Caster for AngleTable {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
         let clipped = ClippedRay::new(grid, ray)?;
         let (origin, direction) = (clipped.ray.origin(), clipped.ray.direction());

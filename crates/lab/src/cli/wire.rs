@@ -8,7 +8,7 @@ use clap::{Args, ValueHint};
 use ratatui::layout::Size;
 
 use crate::report::{Format, Report, Table};
-use crate::wire::{Plan, report, report_glyphs, report_palettes};
+use crate::wire::{WirePlan, report, report_glyphs, report_palettes};
 use cellcaster::app::parts::Choice;
 use cellcaster::app::{Replay, Settings};
 use cellcaster::cli::options::{choice, fidelity, frames, window};
@@ -111,7 +111,7 @@ fn encoders(options: &Wire, glyphs: GlyphSet) -> Result<Table, Error> {
         Some(path) => (load(path)?, options.map.as_deref()),
         None => (SHOWCASE.script()?, options.map.as_deref().or(Some(OsStr::new(SHOWCASE.level)))),
     };
-    let plan = Plan {
+    let plan = WirePlan {
         script: &script,
         size: options.size,
         depth: options.depth,

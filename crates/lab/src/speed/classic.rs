@@ -28,14 +28,14 @@ pub(crate) enum ClassicFloor {
 pub(crate) struct Classic {
     /// 0 for floor, otherwise the wall's texture plus 1.
     map: [[u8; MAP]; MAP],
-    textures: Vec<Picture>,
-    floor: Picture,
-    ceiling: Picture,
+    textures: Vec<WallTexture>,
+    floor: WallTexture,
+    ceiling: WallTexture,
 }
 
 /// A row-major texture.
 #[derive(Clone, Debug)]
-struct Picture(Box<[u32; TEXELS * TEXELS]>);
+struct WallTexture(Box<[u32; TEXELS * TEXELS]>);
 
 /// A camera with precomputed sine and cosine of its heading.
 struct View {
@@ -58,7 +58,7 @@ impl Classic {
     pub(crate) fn new(world: &World) -> Self {
         let mut textures = Vec::new();
         let mut wall = |paint: Paint| {
-            textures.push(Picture::of(world, paint));
+            textures.push(WallTexture::of(world, paint));
             textures.len() as u8
         };
         let kinds: Vec<u8> = world
@@ -75,7 +75,7 @@ impl Classic {
                 map[row][column] = kinds[usize::from(tile)];
             }
         }
-        let covering = |covering: Covering| Picture::of(world, covering.pattern.first_paint());
+        let covering = |covering: Covering| WallTexture::of(world, covering.pattern.first_paint());
         let floor = covering(world.floor());
         let ceiling = match world.ceiling() {
             Ceiling::Covered(ceiling) => covering(ceiling),
@@ -229,7 +229,7 @@ impl Classic {
     }
 }
 
-impl Picture {
+impl WallTexture {
     fn of(world: &World, paint: Paint) -> Self {
         const OF_BOTH: u64 = 2 * TEXELS as u64;
         let color = |x: u32, y: u32| match paint {

@@ -135,7 +135,7 @@ pub(crate) struct EncoderRun {
     /// For each section of the script, its index in `parts`.
     places: Vec<usize>,
     /// A part for each name of a section, and then one for all sections.
-    parts: Vec<Sums>,
+    parts: Vec<PartTotals>,
     first_frame: usize,
     /// The bytes of the last frame.
     bytes: Vec<u8>,
@@ -143,16 +143,16 @@ pub(crate) struct EncoderRun {
 
 impl EncoderRun {
     pub(crate) fn new(name: String, encoder: Encoder, script: &Script) -> Self {
-        let mut parts: Vec<Sums> = Vec::new();
+        let mut parts: Vec<PartTotals> = Vec::new();
         let places = script.sections().iter().map(|section| {
             let known = parts.iter().position(|sums| sums.name == section.name);
             known.unwrap_or_else(|| {
-                parts.push(Sums::new(&section.name));
+                parts.push(PartTotals::new(&section.name));
                 parts.len() - 1
             })
         });
         let places = places.collect();
-        parts.push(Sums::new("all"));
+        parts.push(PartTotals::new("all"));
         let streams = LEVELS.map(Stream::new);
         Self { name, encoder, streams, places, parts, first_frame: 0, bytes: Vec::new() }
     }
@@ -198,7 +198,7 @@ impl EncoderRun {
 
     /// The figures of a part. Ratatui's own encoder writes `stock` bytes per frame.
     pub(crate) fn row(&self, part: usize, stock: f64) -> Row {
-        let Sums { name, bytes, compressed, time, difference } = &self.parts[part];
+        let PartTotals { name, bytes, compressed, time, difference } = &self.parts[part];
         let mut bytes = bytes.clone();
         bytes.sort_unstable();
         let count = bytes.len().max(1) as f64;
@@ -226,7 +226,7 @@ impl EncoderRun {
 }
 
 /// The totals over the frames of a part.
-struct Sums {
+struct PartTotals {
     name: String,
     bytes: Vec<usize>,
     compressed: [(usize, Duration); 2],
@@ -234,7 +234,7 @@ struct Sums {
     difference: Difference,
 }
 
-impl Sums {
+impl PartTotals {
     fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),

@@ -10,7 +10,7 @@ use cellcaster::terminal::Fidelity;
 use cellcaster::tui::GlyphSet;
 use cellcaster::world::World;
 use cellcaster_lab::report::Table;
-use cellcaster_lab::wire::{self, Plan};
+use cellcaster_lab::wire::{self, WirePlan};
 use ratatui::layout::Size;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -35,7 +35,7 @@ fn report_of(script: &Script, level: &str, settings: Settings) -> Table {
     let frames_per_second = NonZeroU32::new(30).unwrap();
     let fidelities = &[Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
     let depth = settings.depth.unwrap_or_default();
-    let plan = Plan { script, size, depth, frames_per_second, fidelities };
+    let plan = WirePlan { script, size, depth, frames_per_second, fidelities };
     wire::report(&plan, &mut Replay::new(levels, settings, size))
 }
 

@@ -20,7 +20,7 @@ pub enum StoreFailure {
 
 /// The reason why an account was not created or renamed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Refusal {
+pub enum AccountRefusal {
     /// Another account has this name, or one that looks like it.
     #[error("Somebody has this name, or one that looks like it.")]
     NameTaken,

@@ -77,12 +77,12 @@ const CLOCK_AND_VERSION: &str = "CREATE VIEW clock AS SELECT (extract(epoch FROM
      CREATE TABLE cellcaster (version BIGINT NOT NULL)";
 
 /// A database on a server. It connects when a connection is needed.
-pub(crate) struct Server {
+pub(crate) struct PostgresDatabase {
     address: Address,
     is_to_read: bool,
     /// `None` only at the end.
     runtime: Option<Runtime>,
-    session: Option<Session>,
+    session: Option<PostgresConnection>,
     /// The time and the failure of the last attempt to connect, if it failed.
     refused: Option<(Instant, StoreFailure)>,
 }
@@ -97,24 +97,24 @@ struct Address {
 }
 
 /// A connection.
-struct Session {
+struct PostgresConnection {
     client: Client,
     /// The statements that the server has prepared. A store has about thirty.
     prepared: RefCell<HashMap<String, Statement>>,
 }
 
 /// Runs statements over a connection, up to a deadline.
-struct Call<'a> {
+struct StatementRunner<'a> {
     runtime: &'a Runtime,
-    session: &'a Session,
+    session: &'a PostgresConnection,
     deadline: tokio::time::Instant,
     shown: &'a str,
-    fault: Cell<Option<Fault>>,
+    fault: Cell<Option<StatementFault>>,
 }
 
 /// The reason why a statement failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Fault {
+enum StatementFault {
     /// The connection is lost, and the changes of a transaction are not kept.
     Lost,
     /// It is unknown what the server has done: the time was over, or the connection was lost during a commit.
@@ -127,7 +127,7 @@ enum Fault {
     Refused,
 }
 
-impl Server {
+impl PostgresDatabase {
     /// Opens the database at an address. Creates the tables if there are none.
     pub(crate) fn open(address: &str) -> Result<Self, StoreFailure> {
         let mut server = Self::new(address, false)?;
@@ -171,20 +171,20 @@ impl Server {
                 Err(failure) => failure,
             };
             match call.fault.get() {
-                Some(Fault::Lost) if !was_lost => {
+                Some(StatementFault::Lost) if !was_lost => {
                     self.session = None;
                     was_lost = true;
                 }
-                Some(Fault::Lost | Fault::Unknown) => {
+                Some(StatementFault::Lost | StatementFault::Unknown) => {
                     self.session = None;
                     return Err(failure);
                 }
-                Some(Fault::Conflict) if conflicts < MAX_CONFLICTS => {
+                Some(StatementFault::Conflict) if conflicts < MAX_CONFLICTS => {
                     self.undo(isolation);
                     thread::sleep(wait(conflicts));
                     conflicts += 1;
                 }
-                Some(Fault::Conflict | Fault::Full | Fault::Refused) | None => {
+                Some(StatementFault::Conflict | StatementFault::Full | StatementFault::Refused) | None => {
                     self.undo(isolation);
                     return Err(failure);
                 }
@@ -204,7 +204,7 @@ impl Server {
     }
 
     /// Starts a call that ends after `patience`. Connects if there is no connection.
-    fn call(&mut self, patience: Duration) -> Result<Call<'_>, StoreFailure> {
+    fn call(&mut self, patience: Duration) -> Result<StatementRunner<'_>, StoreFailure> {
         let deadline = tokio::time::Instant::now() + patience;
         self.look_at_the_connection();
         if self.session.as_ref().is_none_or(|session| session.client.is_closed()) {
@@ -214,7 +214,7 @@ impl Server {
             return Err(StoreFailure::new("the host's store is closed"));
         };
         let shown = self.address.shown.as_str();
-        Ok(Call { runtime, session, deadline, shown, fault: Cell::new(None) })
+        Ok(StatementRunner { runtime, session, deadline, shown, fault: Cell::new(None) })
     }
 
     /// Notices that the server has closed the connection, before a call is lost with it.
@@ -230,7 +230,7 @@ impl Server {
         }
     }
 
-    fn connect(&mut self, deadline: tokio::time::Instant) -> Result<Session, StoreFailure> {
+    fn connect(&mut self, deadline: tokio::time::Instant) -> Result<PostgresConnection, StoreFailure> {
         if let Some((_, failure)) = self.refused.as_ref().filter(|(at, _)| at.elapsed() < PAUSE) {
             return Err(failure.clone());
         }
@@ -261,7 +261,7 @@ impl Server {
         let why = match connected {
             Ok(Ok(client)) => {
                 self.refused = None;
-                return Ok(Session { client, prepared: RefCell::default() });
+                return Ok(PostgresConnection { client, prepared: RefCell::default() });
             }
             Ok(Err(error)) => reason(&error),
             Err(_) => "no answer in time".to_owned(),
@@ -272,7 +272,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
+impl Drop for PostgresDatabase {
     fn drop(&mut self) {
         self.session = None;
         // This may run in a task of another runtime, which must not wait.
@@ -282,7 +282,7 @@ impl Drop for Server {
     }
 }
 
-impl Call<'_> {
+impl StatementRunner<'_> {
     /// Runs statements without parameters.
     fn batch(&self, sql: &str) -> Result<(), StoreFailure> {
         self.wait(self.session.client.batch_execute(sql))
@@ -291,8 +291,8 @@ impl Call<'_> {
     /// Commits a transaction.
     fn commit(&self) -> Result<(), StoreFailure> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
-            Some(Fault::Lost | Fault::Unknown) => {
-                self.fault.set(Some(Fault::Unknown));
+            Some(StatementFault::Lost | StatementFault::Unknown) => {
+                self.fault.set(Some(StatementFault::Unknown));
                 StoreFailure::Away(format!("{failure}; the last change may be kept or not"))
             }
             _ => failure,
@@ -315,19 +315,19 @@ impl Call<'_> {
         let (fault, why) = match answered {
             Ok(Ok(value)) => return Ok(value),
             Ok(Err(error)) => (fault(&error), reason(&error)),
-            Err(_) => (Fault::Unknown, "no answer in time".to_owned()),
+            Err(_) => (StatementFault::Unknown, "no answer in time".to_owned()),
         };
         self.fault.set(Some(fault));
         let sentence = format!("{} failed: {why}", self.shown);
         Err(match fault {
-            Fault::Lost | Fault::Unknown => StoreFailure::Away(sentence),
-            Fault::Full => StoreFailure::Full(sentence),
-            Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
+            StatementFault::Lost | StatementFault::Unknown => StoreFailure::Away(sentence),
+            StatementFault::Full => StoreFailure::Full(sentence),
+            StatementFault::Conflict | StatementFault::Refused => StoreFailure::new(sentence),
         })
     }
 }
 
-impl Statements for Call<'_> {
+impl Statements for StatementRunner<'_> {
     fn execute(&self, sql: &str, values: &[&dyn rusqlite::ToSql]) -> Result<u64, StoreFailure> {
         let values = parameters(values)?;
         self.wait(async {
@@ -420,7 +420,7 @@ impl<'a> FromSql<'a> for Column {
 }
 
 fn in_transaction<T, E: From<StoreFailure>>(
-    call: &Call<'_>,
+    call: &StatementRunner<'_>,
     isolation: &str,
     act: &mut impl FnMut(&dyn Statements) -> Result<T, E>,
 ) -> Result<T, E> {
@@ -439,7 +439,7 @@ fn wait(conflicts: u32) -> Duration {
 }
 
 /// Creates the tables if there are none, all at once or not at all.
-fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
+fn make_tables(call: &StatementRunner<'_>) -> Result<(), StoreFailure> {
     // Not serializable, because it must see the tables that another host created while this one waited for the lock.
     let patience = SCHEMA_TIMEOUT.as_millis();
     call.batch(&format!("BEGIN; SET LOCAL statement_timeout = {patience}"))?;
@@ -457,7 +457,7 @@ fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
 }
 
 /// Returns true if the database has the tables. These must be of this version.
-fn has_tables(call: &Call<'_>) -> Result<bool, StoreFailure> {
+fn has_tables(call: &StatementRunner<'_>) -> Result<bool, StoreFailure> {
     let sql = "SELECT current_setting('server_encoding') = 'UTF8', \
                to_regclass('cellcaster') IS NOT NULL, to_regclass('accounts') IS NOT NULL";
     let row = call.row(sql, &[])?;
@@ -530,7 +530,7 @@ fn no_address() -> StoreFailure {
     )
 }
 
-fn fault(error: &Error) -> Fault {
+fn fault(error: &Error) -> StatementFault {
     // A unique violation may be the only sign that another transaction has inserted the same row.
     const CONFLICTS: [&SqlState; 3] = [
         &SqlState::T_R_SERIALIZATION_FAILURE,
@@ -540,12 +540,12 @@ fn fault(error: &Error) -> Fault {
     // The connection is lost, or the server is ending, starting, or no longer accepts changes.
     const LOSSES: [&str; 3] = ["08", "57P", "25006"];
     match error.code() {
-        Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
-        Some(&SqlState::DISK_FULL) => Fault::Full,
-        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => Fault::Lost,
-        Some(_) => Fault::Refused,
-        None if is_of_the_value(error) => Fault::Refused,
-        None => Fault::Lost,
+        Some(code) if CONFLICTS.contains(&code) => StatementFault::Conflict,
+        Some(&SqlState::DISK_FULL) => StatementFault::Full,
+        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => StatementFault::Lost,
+        Some(_) => StatementFault::Refused,
+        None if is_of_the_value(error) => StatementFault::Refused,
+        None => StatementFault::Lost,
     }
 }
 

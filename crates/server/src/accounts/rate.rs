@@ -7,7 +7,7 @@
 
 use std::net::IpAddr;
 
-use super::{AddressPrefix, Refusal, UnixTime};
+use super::{AddressPrefix, AccountRefusal, UnixTime};
 
 /// The number of accounts that a network may create.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Origin {
 
     /// Counts an account. `known` is the stored time. Returns the new one: when the network has its whole allowance
     /// again, in milliseconds since 1970.
-    pub(crate) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, Refusal> {
+    pub(crate) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, AccountRefusal> {
         let now = milliseconds(now);
         let pause = HOUR / i64::from(self.rate.per_hour.max(1));
         let most = pause * (i64::from(self.rate.at_once.max(1)) - 1);
@@ -53,7 +53,7 @@ impl Origin {
         let early = whole_at - now - most;
         if early > 0 {
             let seconds = (early as u64).div_ceil(1000);
-            return Err(Refusal::TooManyAccounts { seconds });
+            return Err(AccountRefusal::TooManyAccounts { seconds });
         }
         Ok(whole_at + pause)
     }
@@ -87,7 +87,7 @@ mod tests {
                         known = Some(time);
                         made.push(now.seconds());
                     }
-                    Err(Refusal::TooManyAccounts { seconds }) => {
+                    Err(AccountRefusal::TooManyAccounts { seconds }) => {
                         // A visitor who waits as long as told gets in, and not a second earlier.
                         prop_assert!(origin.count(known, now.after(seconds)).is_ok());
                         prop_assert!(origin.count(known, now.after(seconds - 1)).is_err());
@@ -104,7 +104,7 @@ mod tests {
         #[test]
         fn no_time_that_was_kept_shuts_a_network_out_for_long(known: i64, now: u64) {
             let origin = Origin::new([192, 0, 2, 7].into(), AccountRate::default());
-            if let Err(Refusal::TooManyAccounts { seconds }) =
+            if let Err(AccountRefusal::TooManyAccounts { seconds }) =
                 origin.count(Some(known), UnixTime::new(now))
             {
                 prop_assert!(seconds <= 180);

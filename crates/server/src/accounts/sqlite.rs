@@ -47,11 +47,11 @@ pub(crate) fn open(
 ) -> Result<(Connection, Option<String>), StoreFailure> {
     match open_sound(folder) {
         Ok(connection) => Ok((connection, None)),
-        Err(Fault::Failure(failure)) => Err(failure),
-        Err(Fault::Damaged) if accepts_loss => {
+        Err(OpenFault::Failure(failure)) => Err(failure),
+        Err(OpenFault::Damaged) if accepts_loss => {
             replace(folder).map(|(connection, sentence)| (connection, Some(sentence)))
         }
-        Err(Fault::Damaged) => Err(StoreFailure::new(format!(
+        Err(OpenFault::Damaged) => Err(StoreFailure::new(format!(
             "{} is damaged: put a backup in its place, or start once with --accept-empty, which keeps it as \
              {} and goes on with the rows that can be read",
             printable_path(&folder.join(FILE)),
@@ -61,15 +61,15 @@ pub(crate) fn open(
 }
 
 /// Opens the file in `folder`, or creates it.
-fn open_sound(folder: &Path) -> Result<Connection, Fault> {
+fn open_sound(folder: &Path) -> Result<Connection, OpenFault> {
     let file = folder.join(FILE);
     if has_lost_its_content(&file) {
-        return Err(Fault::Damaged);
+        return Err(OpenFault::Damaged);
     }
     let is_new = !file.exists();
     private::create_folder(folder).and_then(|()| private::create_file(&file)).map_err(|error| {
         let sentence = format!("{} can't be used: {error}", printable_path(&file));
-        Fault::Failure(StoreFailure::new(sentence))
+        OpenFault::Failure(StoreFailure::new(sentence))
     })?;
     connect(&file).inspect_err(|_| {
         // An empty file would count as damaged at the next start.
@@ -119,12 +119,12 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
 }
 
 /// The reason why a file is not opened.
-enum Fault {
+enum OpenFault {
     Damaged,
     Failure(StoreFailure),
 }
 
-impl Fault {
+impl OpenFault {
     fn or_damage_of(self, file: &Path) -> StoreFailure {
         match self {
             Self::Damaged => StoreFailure::new(format!("{} is damaged", printable_path(file))),
@@ -133,7 +133,7 @@ impl Fault {
     }
 }
 
-impl From<rusqlite::Error> for Fault {
+impl From<rusqlite::Error> for OpenFault {
     fn from(error: rusqlite::Error) -> Self {
         match error.sqlite_error_code() {
             Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => Self::Damaged,
@@ -143,7 +143,7 @@ impl From<rusqlite::Error> for Fault {
 }
 
 /// Opens a file that must be sound and of this version.
-fn connect(file: &Path) -> Result<Connection, Fault> {
+fn connect(file: &Path) -> Result<Connection, OpenFault> {
     // Without SQLITE_OPEN_URI, so that a path is never read as a URI.
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let mut connection = Connection::open_with_flags(file, flags)?;
@@ -153,7 +153,7 @@ fn connect(file: &Path) -> Result<Connection, Fault> {
     let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;
     if !mode.eq_ignore_ascii_case("wal") {
         let sentence = format!("{} can't have a write-ahead log here", printable_path(file));
-        return Err(Fault::Failure(StoreFailure::new(sentence)));
+        return Err(OpenFault::Failure(StoreFailure::new(sentence)));
     }
     connection.execute_batch(
         "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF;",
@@ -165,7 +165,7 @@ fn connect(file: &Path) -> Result<Connection, Fault> {
 }
 
 /// Refuses a file of another program or of another version.
-fn check_origin(connection: &Connection, file: &Path) -> Result<(), Fault> {
+fn check_origin(connection: &Connection, file: &Path) -> Result<(), OpenFault> {
     let application: i32 = connection.query_row("PRAGMA application_id", [], |row| row.get(0))?;
     let objects: i64 =
         connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
@@ -186,12 +186,12 @@ fn check_origin(connection: &Connection, file: &Path) -> Result<(), Fault> {
     } else {
         return Ok(());
     };
-    Err(Fault::Failure(StoreFailure::new(sentence)))
+    Err(OpenFault::Failure(StoreFailure::new(sentence)))
 }
 
-fn check_content(connection: &Connection) -> Result<(), Fault> {
+fn check_content(connection: &Connection) -> Result<(), OpenFault> {
     let answer: String = connection.query_row("PRAGMA integrity_check(1)", [], |row| row.get(0))?;
-    if answer == "ok" { Ok(()) } else { Err(Fault::Damaged) }
+    if answer == "ok" { Ok(()) } else { Err(OpenFault::Damaged) }
 }
 
 /// Puts a damaged file aside, and copies its readable rows into a new one. Returns the new one, and a sentence.

@@ -11,13 +11,13 @@ use serde::Serialize;
 
 use super::ban::applying;
 
-use super::postgres::Server;
+use super::postgres::PostgresDatabase;
 use super::rate::milliseconds;
 use super::results::with_run;
 use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
-    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, Refusal, StoreFailure,
+    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, AccountRefusal, StoreFailure,
     UnixTime, VerifiedRun, sqlite,
 };
 
@@ -29,7 +29,7 @@ pub struct HostStore {
 /// A SQLite file, or a PostgreSQL server that several hosts share.
 pub(crate) enum Database {
     File(Connection),
-    Server(Box<Server>),
+    Server(Box<PostgresDatabase>),
     /// Fails every call with this failure.
     #[cfg(test)]
     Failing(StoreFailure),
@@ -120,7 +120,7 @@ impl HostStore {
     /// # Errors
     /// If the server can't be reached, or the database is of another version or of another program.
     pub fn connect(address: &str) -> Result<Self, StoreFailure> {
-        Ok(Self { database: Database::Server(Box::new(Server::open(address)?)) })
+        Ok(Self { database: Database::Server(Box::new(PostgresDatabase::open(address)?)) })
     }
 
     /// Connects to the store at an address to read from it. `None` if there is none. All methods that change something
@@ -129,7 +129,7 @@ impl HostStore {
     /// # Errors
     /// If the server can't be reached, or the database is of another version.
     pub fn connect_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
-        let server = Server::open_to_read(address)?;
+        let server = PostgresDatabase::open_to_read(address)?;
         Ok(server.map(|server| Self { database: Database::Server(Box::new(server)) }))
     }
 
@@ -183,12 +183,12 @@ impl HostStore {
         key: &AccountKey,
         name: &Name,
         now: UnixTime,
-    ) -> Result<Account, Refusal> {
+    ) -> Result<Account, AccountRefusal> {
         let sql = "INSERT INTO accounts (key, name, named_at, created_at, seen_at) \
                    VALUES (?1, ?2, ?3, ?3, ?3) RETURNING id";
         self.database.change(|it| {
             if account_of_key(it, key)?.is_some() {
-                return Err(Refusal::KeyKnown);
+                return Err(AccountRefusal::KeyKnown);
             }
             check_name(it, None, name, now)?;
             if let Some(origin) = origin {
@@ -212,16 +212,16 @@ impl HostStore {
         id: AccountId,
         name: &Name,
         now: UnixTime,
-    ) -> Result<Account, Refusal> {
+    ) -> Result<Account, AccountRefusal> {
         let select = format!("SELECT {ACCOUNT} FROM accounts WHERE id = ?1");
         let hold = "UPDATE names SET held_until = ?2 WHERE account = ?1 AND held_until IS NULL";
         let update = "UPDATE accounts SET name = ?2, named_at = ?3 WHERE id = ?1";
         self.database.change(|it| {
             let known = it.row(&select, params![id])?.as_ref().map(account).transpose()?;
-            let known = known.ok_or(Refusal::NoAccount)?;
+            let known = known.ok_or(AccountRefusal::NoAccount)?;
             let next = known.named_at.after(RENAME_INTERVAL);
             if now < next {
-                return Err(Refusal::TooEarly { next });
+                return Err(AccountRefusal::TooEarly { next });
             }
             check_name(it, Some(id), name, now)?;
             it.execute(hold, params![id, now.after(NAME_HELD)])?;
@@ -433,7 +433,7 @@ fn account_of_key(it: &dyn Statements, key: &AccountKey) -> Result<Option<Accoun
 }
 
 /// Counts a new account for its network, and forgets the networks that have their whole allowance.
-fn count_origin(it: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(), Refusal> {
+fn count_origin(it: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(), AccountRefusal> {
     let network = origin.network.to_string();
     let sql = "SELECT whole_at_ms FROM account_rates WHERE network = ?1";
     let known = it.row(sql, params![network])?.map(|row| row.get(0)).transpose()?;
@@ -452,16 +452,16 @@ fn check_name(
     own: Option<AccountId>,
     name: &Name,
     now: UnixTime,
-) -> Result<(), Refusal> {
+) -> Result<(), AccountRefusal> {
     let identity = Identity { name: Some(name), ..Identity::default() };
     if applying(bans_in_force(it, now)?, &identity).is_some() {
-        return Err(Refusal::NameBanned);
+        return Err(AccountRefusal::NameBanned);
     }
     let sql = "SELECT account FROM names WHERE key = ?1 AND account IS DISTINCT FROM ?2 \
                AND (held_until IS NULL OR held_until > ?3)";
     for key in name.keys() {
         if it.row(sql, params![key, own, now])?.is_some() {
-            return Err(Refusal::NameTaken);
+            return Err(AccountRefusal::NameTaken);
         }
     }
     Ok(())

@@ -114,7 +114,7 @@ fn a_key_is_an_account() {
         assert_eq!(store.account(&key(1)).unwrap(), Some(ada.clone()));
         assert_eq!(
             store.create_account(None, &key(1), &name("Eve"), at(1)),
-            Err(Refusal::KeyKnown)
+            Err(AccountRefusal::KeyKnown)
         );
         store.note_visit(ada.id, at(3)).unwrap();
         let seen = Account { seen_at: at(3), ..ada };
@@ -130,7 +130,7 @@ fn a_name_is_of_one_account() {
         store.create_account(None, &key(1), &name("Bill"), at(0)).unwrap();
         for other in ["Bill", "bILL", "BiIl", "bi11"] {
             let refused = store.create_account(None, &key(2), &name(other), at(0));
-            assert_eq!(refused, Err(Refusal::NameTaken), "{other}");
+            assert_eq!(refused, Err(AccountRefusal::NameTaken), "{other}");
         }
         store.create_account(None, &key(2), &name("Will"), at(0)).unwrap();
     });
@@ -142,7 +142,7 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
         let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
         let next = at(7);
         let early = store.rename(ada.id, &name("Eve"), UnixTime::new(next.seconds() - 1));
-        assert_eq!(early, Err(Refusal::TooEarly { next }));
+        assert_eq!(early, Err(AccountRefusal::TooEarly { next }));
         let eve = store.rename(ada.id, &name("Eve"), next).unwrap();
         assert_eq!(eve, Account { name: name("Eve"), named_at: next, ..ada.clone() });
         assert_eq!(store.account(&key(1)).unwrap(), Some(eve));
@@ -150,16 +150,16 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
         // No other account can take the old name for a while, but the account itself can go back to
         // it.
         let taken = store.create_account(None, &key(2), &name("ADA"), at(36));
-        assert_eq!(taken, Err(Refusal::NameTaken));
+        assert_eq!(taken, Err(AccountRefusal::NameTaken));
         store.rename(ada.id, &name("ada"), at(14)).unwrap();
         store.rename(ada.id, &name("Eve"), at(21)).unwrap();
         assert_eq!(
             store.create_account(None, &key(2), &name("Ada"), at(50)),
-            Err(Refusal::NameTaken)
+            Err(AccountRefusal::NameTaken)
         );
         store.create_account(None, &key(2), &name("Ada"), at(51)).unwrap();
         let back = store.rename(ada.id, &name("Ada"), at(60));
-        assert_eq!(back, Err(Refusal::NameTaken));
+        assert_eq!(back, Err(AccountRefusal::NameTaken));
     });
 }
 
@@ -214,7 +214,7 @@ fn a_ban_applies_until_it_ends() {
         assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[0]));
         assert_eq!(store.ban_of(&Identity::default(), at(0)).unwrap(), None);
         // Nobody can take a banned name.
-        assert_eq!(store.create_account(None, &key(3), &rude, at(1)), Err(Refusal::NameBanned));
+        assert_eq!(store.create_account(None, &key(3), &rude, at(1)), Err(AccountRefusal::NameBanned));
         store.create_account(None, &key(3), &rude, at(2)).unwrap();
         // A later ban replaces the earlier one.
         let longer = ban(range(), None);

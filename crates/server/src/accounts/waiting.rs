@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify,
 };
-use cellcaster::app::store::home::{Disk, Real};
+use cellcaster::app::store::home::{Disk, SystemFiles};
 use cellcaster::app::store::private;
 use cellcaster::fault::printable_path;
 use cellcaster::world::World;
@@ -75,7 +75,7 @@ pub enum Late {
 /// A line of the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Row<'a> {
+struct ResultLine<'a> {
     account: String,
     at: u64,
     script: Cow<'a, str>,
@@ -164,17 +164,17 @@ impl WaitingResults {
 
     fn replace(&self) -> io::Result<()> {
         if self.results.is_empty() {
-            return match Real.remove(&self.file) {
+            return match SystemFiles.remove(&self.file) {
                 Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
                 _ => Ok(()),
             };
         }
         let new = self.file.with_extension("new");
         let written = private::create_file(&new)
-            .and_then(|()| Real.write(&new, self.content().as_bytes()))
-            .and_then(|()| Real.rename(&new, &self.file));
+            .and_then(|()| SystemFiles.write(&new, self.content().as_bytes()))
+            .and_then(|()| SystemFiles.rename(&new, &self.file));
         // A partial file would take up room on a full disk.
-        written.inspect_err(|_| _ = Real.remove(&new))
+        written.inspect_err(|_| _ = SystemFiles.remove(&new))
     }
 
     /// The text of the file.
@@ -185,7 +185,7 @@ impl WaitingResults {
     /// Puts aside a file that cannot be read completely, and returns a sentence about it.
     fn put_aside(&mut self) -> Result<String, StoreFailure> {
         let aside = self.file.with_extension("damaged");
-        Real.rename(&self.file, &aside).map_err(|error| failure(&self.file, &error))?;
+        SystemFiles.rename(&self.file, &aside).map_err(|error| failure(&self.file, &error))?;
         self.is_saved = false;
         self.save()?;
         let (file, aside) = (printable_path(&self.file), printable_path(&aside));
@@ -228,13 +228,13 @@ impl WaitingResult {
 
     fn line(&self) -> String {
         let (account, script) = (self.key.to_string(), Cow::Borrowed(self.script.as_str()));
-        let row = Row { account, at: self.at.seconds(), script };
+        let row = ResultLine { account, at: self.at.seconds(), script };
         // Texts and a number always have a form in JSON.
         serde_json::to_string(&row).unwrap_or_default() + "\n"
     }
 
     fn parse(line: &str) -> Option<Self> {
-        let Row { account, at, script } = serde_json::from_str(line).ok()?;
+        let ResultLine { account, at, script } = serde_json::from_str(line).ok()?;
         let (key, at) = (AccountKey::parse(&account)?, UnixTime::new(at));
         Some(Self { key, at, script: script.into_owned() })
     }

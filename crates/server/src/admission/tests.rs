@@ -20,7 +20,7 @@ fn a_classroom_gets_in_by_default() {
         let mut admission = Admission::new(Limits::default());
         let mut chance = SplitMix64::new(seed);
         let pupil = |number: u16| IpAddr::from([0x2001, 0xdb8, 0, 7, 0, 0, 0, number * last]);
-        let ids: Vec<VisitId> = (1..=40)
+        let ids: Vec<ConnectionId> = (1..=40)
             .map(|number| admission.arrive(pupil(number), START, &mut chance).unwrap().id)
             .collect();
         for id in ids {
@@ -206,7 +206,7 @@ fn one_address_has_eight_connections() {
 #[test]
 fn one_key_has_three_connections_from_anywhere() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
-    let ids: Vec<VisitId> = (0..4)
+    let ids: Vec<ConnectionId> = (0..4)
         .map(|host| admission.arrive(address(host, 1), START, &mut chance).unwrap().id)
         .collect();
     for &id in &ids[..3] {
@@ -306,9 +306,9 @@ proptest! {
                     _ = admission.arrive(address(network, host), now, &mut chance);
                 }
                 Act::LogIn(id, number) => {
-                    _ = admission.log_in(VisitId(id as u64), number.map(key), now);
+                    _ = admission.log_in(ConnectionId(id as u64), number.map(key), now);
                 }
-                Act::Leave(id, outcome) => admission.leave(VisitId(id as u64), outcome, now),
+                Act::Leave(id, outcome) => admission.leave(ConnectionId(id as u64), outcome, now),
                 Act::Wait(time) => now += Duration::from_millis(u64::from(time)),
             }
             prop_assert!(admission.waiting.len() <= 20);

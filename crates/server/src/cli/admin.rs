@@ -11,7 +11,7 @@ use std::{env, iter};
 use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction};
-use super::host_store::{Database, failed};
+use super::host_store::{StoreLocation, failed};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
 use crate::operator::socket::{AdminFailure, ask};
@@ -24,13 +24,13 @@ pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let database = Database::named(options.store);
-    let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
+    let database = StoreLocation::named(options.store);
+    let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 
-fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String, Error> {
+fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<String, Error> {
     let mut host = RunningHost { folder, remarks: Vec::new() };
     let text = match action {
         AdminAction::Who => host.lists(&AdminRequest::Who),
@@ -171,7 +171,7 @@ fn summary_of_maps(keys: &[String]) -> String {
 /// Bans a target, and ends the sessions that the ban applies to.
 fn ban(
     host: &mut RunningHost<'_>,
-    database: &Database,
+    database: &StoreLocation,
     target: &Target,
     time: Option<Duration>,
     reason: &str,
@@ -201,7 +201,7 @@ fn ban(
 }
 
 /// Ends the bans of a target.
-fn unban(database: &Database, target: &Target) -> Result<String, Error> {
+fn unban(database: &StoreLocation, target: &Target) -> Result<String, Error> {
     let mut store = open(database)?;
     let mut ended = Vec::new();
     for target in targets(&mut store, target)? {
@@ -218,7 +218,7 @@ fn unban(database: &Database, target: &Target) -> Result<String, Error> {
 }
 
 /// Lists the bans in force.
-fn bans(database: &Database) -> Result<String, Error> {
+fn bans(database: &StoreLocation) -> Result<String, Error> {
     let mut store = database.open_to_read()?;
     let now = UnixTime::now();
     let bans = store.bans(now).map_err(failed)?;
@@ -275,7 +275,7 @@ fn remove(
 }
 
 /// Opens the store. Does not create it if there is none.
-fn open(database: &Database) -> Result<HostStore, Error> {
+fn open(database: &StoreLocation) -> Result<HostStore, Error> {
     database.open_to_read()?;
     database.open().map_err(failed)
 }

@@ -11,7 +11,7 @@ use cellcaster::cli::parse::Takes;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
-use super::host_store::Database;
+use super::host_store::StoreLocation;
 use crate::accounts::{AccountKey, AddressPrefix};
 use crate::admin::Target;
 use crate::logging::LogFormat;
@@ -33,13 +33,13 @@ use crate::visitors::SessionId;
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(crate) command: Option<Command>,
+    pub(crate) command: Option<ServerCommand>,
     #[command(flatten)]
     pub(crate) serve: Serve,
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum ServerCommand {
     #[cfg(unix)]
     Admin(Admin),
     Scores(Scores),
@@ -93,8 +93,8 @@ impl Serve {
 pub(crate) struct Store {
     /// Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share
     /// [default: $`CELLCASTER_STORE`, or the folder for data]
-    #[arg(long, value_name = "URL|FOLDER", value_parser = Database::parse)]
-    pub(crate) store: Option<Database>,
+    #[arg(long, value_name = "URL|FOLDER", value_parser = StoreLocation::parse)]
+    pub(crate) store: Option<StoreLocation>,
 }
 
 /// See who plays on a host, kick, ban, and say something to all
@@ -111,8 +111,8 @@ pub(crate) struct Admin {
     #[arg(long, global = true, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
     /// Where the host's store is: a folder, or a PostgreSQL database [default: $`CELLCASTER_STORE`, or the folder for data]
-    #[arg(long, global = true, value_name = "URL|FOLDER", value_parser = Database::parse)]
-    pub(crate) store: Option<Database>,
+    #[arg(long, global = true, value_name = "URL|FOLDER", value_parser = StoreLocation::parse)]
+    pub(crate) store: Option<StoreLocation>,
     #[command(subcommand)]
     pub(crate) action: AdminAction,
 }
@@ -128,7 +128,7 @@ pub(crate) enum AdminAction {
     /// End the sessions of a player, or one session
     Kick {
         #[command(flatten)]
-        player: Player,
+        player: PlayerSelector,
         /// One session, as \"cellcaster-server admin who\" lists it
         #[arg(long, value_name = "ID", value_parser = session, group = "target")]
         session: Option<SessionId>,
@@ -139,7 +139,7 @@ pub(crate) enum AdminAction {
     /// Ban a player
     Ban {
         #[command(flatten)]
-        player: Player,
+        player: PlayerSelector,
         /// How long, such as 30m or 7d [default: for ever]
         #[arg(long = "for", value_name = "TIME", value_parser = time)]
         time: Option<Duration>,
@@ -150,7 +150,7 @@ pub(crate) enum AdminAction {
     /// End a ban
     Unban {
         #[command(flatten)]
-        player: Player,
+        player: PlayerSelector,
     },
     /// List the bans in force
     Bans,
@@ -166,7 +166,7 @@ pub(crate) enum AdminAction {
 /// The player that an action affects, named in one of three ways.
 #[derive(Args, Debug)]
 #[group(id = "target", required = true, multiple = false)]
-pub(crate) struct Player {
+pub(crate) struct PlayerSelector {
     /// The player's name
     name: Option<String>,
     /// The player's public key, as ssh-keygen -l prints its fingerprint
@@ -177,7 +177,7 @@ pub(crate) struct Player {
     address: Option<AddressPrefix>,
 }
 
-impl Player {
+impl PlayerSelector {
     /// The target. `session` names it if nothing else does.
     pub(crate) fn target(self, session: Option<SessionId>) -> Target {
         let Self { name, key, address } = self;

@@ -16,14 +16,14 @@ use crate::accounts::{HostStore, StoreFailure};
 
 /// The location of a host's store.
 #[derive(Clone, PartialEq)]
-pub(crate) enum Database {
+pub(crate) enum StoreLocation {
     /// A folder.
     Folder(PathBuf),
     /// An address of PostgreSQL, which may contain a password.
     Address(String),
 }
 
-impl Database {
+impl StoreLocation {
     /// Reads the value of `--store`.
     pub(crate) fn parse(text: &str) -> Result<Self, Takes> {
         const TAKES: Takes = Takes("a folder, or an address such as postgres://user@host/database");
@@ -79,7 +79,7 @@ impl Database {
     }
 }
 
-impl fmt::Debug for Database {
+impl fmt::Debug for StoreLocation {
     /// Leaves out an address, because it may contain a password.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -102,12 +102,12 @@ mod tests {
     #[test]
     fn an_address_begins_with_its_kind_and_is_not_shown() {
         for text in ["postgres://ada:geheim@host/games", "postgresql://ada:geheim@host"] {
-            let database = Database::of(text.into());
-            assert_eq!(database, Database::Address(text.to_owned()));
+            let database = StoreLocation::of(text.into());
+            assert_eq!(database, StoreLocation::Address(text.to_owned()));
             assert!(!format!("{database:?}").contains("geheim"));
         }
         for text in ["data", "/var/lib/cellcaster", "postgres", "./postgres:"] {
-            assert_eq!(Database::of(text.into()), Database::Folder(text.into()));
+            assert_eq!(StoreLocation::of(text.into()), StoreLocation::Folder(text.into()));
         }
     }
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Scores, ScoresFormat};
-use super::host_store::{Database, failed};
+use super::host_store::{StoreLocation, failed};
 use crate::accounts::{HostStore, LevelBoard, LevelScore, Name, StoreFailure};
 
 /// The most entries that are listed for a board.
@@ -22,9 +22,9 @@ type Boards = Vec<(LevelBoard, Vec<LevelScore>)>;
 
 /// Prints the boards that `options` request.
 pub(crate) fn run(options: &Scores) -> Result<(), Error> {
-    let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
+    let folder = || options.data.clone().or_else(data_folder).map(StoreLocation::Folder);
     let database =
-        Database::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
+        StoreLocation::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
             Error::mistake("there is no folder for data files: name the one of the host by --data")
         })?;
     let boards = boards(&mut database.open_to_read()?, options).map_err(failed)?;

@@ -11,7 +11,7 @@ use tokio::sync::{Notify, watch};
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::host_store::{Database, failed};
+use super::host_store::{StoreLocation, failed};
 use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
 use crate::cluster::Cluster;
 use crate::config::{Config, LiveConfig};
@@ -39,8 +39,8 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         )
     })?;
     let key = HostKey::open(&folder).map_err(Error::mistake)?;
-    let database = Database::named(options.store.store.take());
-    let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
+    let database = StoreLocation::named(options.store.store.take());
+    let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
     let cluster = cluster(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
@@ -105,7 +105,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
 }
 
 /// Opens the store. A damaged store is an error unless the operator accepts that it may be empty.
-fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
+fn open_store(database: &StoreLocation, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
     if accepts_empty {
         database.open_or_salvage().map(warned).map_err(refused)
@@ -124,9 +124,9 @@ fn warned<T>((opened, damage): (T, Option<String>)) -> T {
 
 /// The address of the cluster's bus that `options` name, and two connections to the database of all hosts: one for
 /// leases and one for visits, so that neither waits for other calls.
-fn cluster(options: &Serve, store: &Database) -> Result<Option<(String, [HostStore; 2])>, Error> {
+fn cluster(options: &Serve, store: &StoreLocation) -> Result<Option<(String, [HostStore; 2])>, Error> {
     let Some(address) = options.cluster() else { return Ok(None) };
-    let Database::Address(store) = store else {
+    let StoreLocation::Address(store) = store else {
         return Err(Error::mistake(
             "a cluster needs a database that all hosts share: name it, as in \
              \"--store postgres://USER@HOST/DATABASE\"",

@@ -23,47 +23,47 @@ use crate::rooms::summary::RoomId;
 pub(crate) trait Bus: Send + Sync {
     /// Appends a message to the log of a room. `last` is the number of the log's last message, 0 for none. Returns the
     /// number of the new message.
-    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
+    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> BusAnswer<'_, u64>;
 
     /// The first message of a room's log after number `after`, with its number.
-    fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>>;
+    fn read(&self, room: RoomId, after: u64) -> BusAnswer<'_, Option<(u64, Vec<u8>)>>;
 
     /// Drops the messages of a room's log before number `first`.
-    fn drop_before(&self, room: RoomId, first: u64) -> Answer<'_, ()>;
+    fn drop_before(&self, room: RoomId, first: u64) -> BusAnswer<'_, ()>;
 
     /// Drops the log of a room.
-    fn drop_log(&self, room: RoomId) -> Answer<'_, ()>;
+    fn drop_log(&self, room: RoomId) -> BusAnswer<'_, ()>;
 
     /// Sends a message to all hosts that have subscribed to the room.
-    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()>;
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> BusAnswer<'_, ()>;
 
     /// Receives the broadcasts to a room from now on.
-    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+    fn subscribe(&self, room: RoomId) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>>;
 
     /// Asks all hosts, including this one. Returns their answers.
-    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+    fn ask_hosts(&self, request: Vec<u8>) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>>;
 
     /// Receives the requests to all hosts from now on.
-    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>>;
+    fn host_requests(&self) -> BusAnswer<'_, mpsc::Receiver<HostRequest>>;
 
     /// A number that was never returned before, on any host.
-    fn next_number(&self) -> Answer<'_, u32>;
+    fn next_number(&self) -> BusAnswer<'_, u32>;
 
     /// Replaces the value that this host last read or put. If another host has put a value since, this call is refused,
     /// but the next one is not.
-    fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
+    fn put(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()>;
 
     /// Stores a value if there is none.
-    fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
+    fn create(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()>;
 
     /// The value of a key.
-    fn get(&self, key: Key) -> Answer<'_, Option<Vec<u8>>>;
+    fn get(&self, key: Key) -> BusAnswer<'_, Option<Vec<u8>>>;
 
     /// Removes the value of a key.
-    fn remove(&self, key: Key) -> Answer<'_, ()>;
+    fn remove(&self, key: Key) -> BusAnswer<'_, ()>;
 
     /// The records of all rooms, and then their changes: `None` for a room that is closed.
-    fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
+    fn watch(&self) -> BusAnswer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
 }
 
 /// A request to all hosts.
@@ -75,7 +75,7 @@ pub(crate) struct HostRequest {
 }
 
 /// The answer of a bus, which arrives in bounded time.
-pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
+pub(crate) type BusAnswer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
 
 /// The reason why a call failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -48,22 +48,22 @@ const TRIES: usize = 3;
 
 /// The rooms that a host shares with other hosts. Clones refer to the same rooms.
 #[derive(Clone)]
-pub(crate) struct SharedRooms(Arc<Inner>);
+pub(crate) struct SharedRooms(Arc<SharedRoomsState>);
 
-struct Inner {
+struct SharedRoomsState {
     context: Arc<HostContext>,
     /// The directory of rooms that lobbies show.
     rooms: Rooms,
     standing: Mutex<Vec<RoomWish>>,
     /// The numbers of the standing rooms.
     own_standing: Mutex<BTreeSet<RoomId>>,
-    records: Mutex<BTreeMap<RoomId, Known>>,
+    records: Mutex<BTreeMap<RoomId, ReceivedRecord>>,
     /// Locked while a replica is created, so that a room has at most one.
     replicas: tokio::sync::Mutex<BTreeMap<RoomId, RoomHandle>>,
 }
 
 /// A record, and the time when it was received.
-struct Known {
+struct ReceivedRecord {
     record: Record,
     since: Instant,
 }
@@ -87,7 +87,7 @@ impl SharedRooms {
     /// Starts the directory on the current runtime.
     pub(crate) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
         let (standing, records) = (Mutex::new(standing), Mutex::default());
-        let shared = Self(Arc::new(Inner {
+        let shared = Self(Arc::new(SharedRoomsState {
             context,
             rooms,
             standing,
@@ -238,7 +238,7 @@ impl SharedRooms {
 
     /// The handle of a room's replica. Starts the replica if this host has none.
     async fn handle(&self, id: RoomId) -> Result<RoomHandle, RoomRefusal> {
-        let Inner { context, replicas, .. } = &*self.0;
+        let SharedRoomsState { context, replicas, .. } = &*self.0;
         if *context.ending.borrow() {
             return Err(RoomRefusal::NotNow);
         }
@@ -276,7 +276,7 @@ impl SharedRooms {
         let record = bytes.and_then(|bytes| Record::parse(bytes).ok());
         let now = Instant::now();
         locked(&self.0.records, |records| match record {
-            Some(record) => _ = records.insert(id, Known { record, since: now }),
+            Some(record) => _ = records.insert(id, ReceivedRecord { record, since: now }),
             None => _ = records.remove(&id),
         });
         self.show();
@@ -377,7 +377,7 @@ impl SharedRooms {
         let now = Instant::now();
         let catalog = &self.0.context.catalog;
         // A host without the level leaves the room to other hosts.
-        let is_abandoned = |known: &Known| {
+        let is_abandoned = |known: &ReceivedRecord| {
             known.record.is_running
                 && now.duration_since(known.since) >= ABANDONED
                 && catalog.world(&known.record.level).is_some()

@@ -30,20 +30,20 @@ pub(crate) struct Leases {
 }
 
 /// The answer to a call; an error if it was not accepted.
-pub(crate) type Reply<T> = Answer<Result<T, StoreFailure>>;
+pub(crate) type LeaseAnswer<T> = Answer<Result<T, StoreFailure>>;
 
 /// A lease to renew, and the sender of the answer.
 pub(crate) type Renewal = (Lease, oneshot::Sender<Result<bool, StoreFailure>>);
 
 impl Leases {
     /// Asks for the lease of a room, with an epoch above the epoch of its log.
-    pub(crate) fn acquire(&self, room: &str, epoch: u64) -> Reply<Option<Lease>> {
+    pub(crate) fn acquire(&self, room: &str, epoch: u64) -> LeaseAnswer<Option<Lease>> {
         let (room, host) = (room.to_owned(), self.host.clone());
         self.store.call(move |store| store.acquire(&room, &host, LEASE_TIME, epoch))
     }
 
     /// Renews a lease, together with the other waiting renewals.
-    pub(crate) fn renew(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn renew(&self, lease: &Lease) -> LeaseAnswer<bool> {
         let (reply, answer) = oneshot::channel();
         locked(&self.renewals, |renewals| renewals.push((lease.clone(), reply)));
         let (renewals, gathered) = (Arc::clone(&self.renewals), self.gathered);
@@ -68,13 +68,13 @@ impl Leases {
     }
 
     /// Releases a lease.
-    pub(crate) fn release(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn release(&self, lease: &Lease) -> LeaseAnswer<bool> {
         let lease = lease.clone();
         self.store.call(move |store| store.release(&lease))
     }
 
     /// Ends the lease of a room that is closed.
-    pub(crate) fn forget(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn forget(&self, lease: &Lease) -> LeaseAnswer<bool> {
         let lease = lease.clone();
         self.store.call(move |store| store.forget(&lease))
     }

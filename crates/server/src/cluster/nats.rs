@@ -30,7 +30,7 @@ use futures_util::StreamExt;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use super::bus::{Answer, Bus, BusFault, HostRequest, Key};
+use super::bus::{BusAnswer, Bus, BusFault, HostRequest, Key};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
@@ -124,7 +124,7 @@ impl NatsBus {
     fn call<'a, T: Send + 'a>(
         &'a self,
         act: impl Future<Output = Result<T, BusFault>> + Send + 'a,
-    ) -> Answer<'a, T> {
+    ) -> BusAnswer<'a, T> {
         Box::pin(async move {
             if self.client.connection_state() != State::Connected {
                 return Err(BusFault::Unknown);
@@ -159,7 +159,7 @@ impl NatsBus {
 }
 
 impl Bus for NatsBus {
-    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64> {
+    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> BusAnswer<'_, u64> {
         self.call(async move {
             let message = PublishMessage::build()
                 .payload(message.into())
@@ -173,7 +173,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>> {
+    fn read(&self, room: RoomId, after: u64) -> BusAnswer<'_, Option<(u64, Vec<u8>)>> {
         self.call(async move {
             let next = self.log.raw_message_builder().sequence(after + 1);
             match next.next_by_subject(log_subject(room)).send().await {
@@ -184,7 +184,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn drop_before(&self, room: RoomId, first: u64) -> Answer<'_, ()> {
+    fn drop_before(&self, room: RoomId, first: u64) -> BusAnswer<'_, ()> {
         self.call(async move {
             // The server reads 1 as no number, and would drop all messages.
             if first <= 1 {
@@ -195,26 +195,26 @@ impl Bus for NatsBus {
         })
     }
 
-    fn drop_log(&self, room: RoomId) -> Answer<'_, ()> {
+    fn drop_log(&self, room: RoomId) -> BusAnswer<'_, ()> {
         self.call(async move {
             self.log.purge().filter(log_subject(room)).await.map(drop).map_err(unknown)
         })
     }
 
-    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()> {
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> BusAnswer<'_, ()> {
         self.call(async move {
             self.client.publish(peers_subject(room), message.into()).await.map_err(unknown)
         })
     }
 
-    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+    fn subscribe(&self, room: RoomId) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(async move {
             let subscription = self.subscription(peers_subject(room)).await?;
             Ok(forward(subscription, &self.client, |_, message| message.payload.to_vec()))
         })
     }
 
-    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+    fn ask_hosts(&self, request: Vec<u8>) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(async move {
             let inbox = self.client.new_inbox();
             let subscription = self.subscription(inbox.clone()).await?;
@@ -224,14 +224,14 @@ impl Bus for NatsBus {
         })
     }
 
-    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>> {
+    fn host_requests(&self) -> BusAnswer<'_, mpsc::Receiver<HostRequest>> {
         self.call(async move {
             let subscription = self.subscription(OPERATOR.to_owned()).await?;
             Ok(forward(subscription, &self.client, host_request))
         })
     }
 
-    fn next_number(&self) -> Answer<'_, u32> {
+    fn next_number(&self) -> BusAnswer<'_, u32> {
         self.call(async move {
             let sent = self.context.publish(NUMBERS, Vec::new().into()).await.map_err(unknown)?;
             let number = sent.await.map_err(unknown)?.sequence;
@@ -239,7 +239,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
+    fn put(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()> {
         self.call(async move {
             let key = key_name(&key);
             match self.store.update(&key, value.into(), self.revision(&key)).await {
@@ -256,7 +256,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
+    fn create(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()> {
         self.call(async move {
             let key = key_name(&key);
             let revision = self.store.create(&key, value.into()).await;
@@ -269,11 +269,11 @@ impl Bus for NatsBus {
         })
     }
 
-    fn get(&self, key: Key) -> Answer<'_, Option<Vec<u8>>> {
+    fn get(&self, key: Key) -> BusAnswer<'_, Option<Vec<u8>>> {
         self.call(async move { self.entry(&key_name(&key)).await })
     }
 
-    fn remove(&self, key: Key) -> Answer<'_, ()> {
+    fn remove(&self, key: Key) -> BusAnswer<'_, ()> {
         self.call(async move {
             let key = key_name(&key);
             locked(&self.revisions, |revisions| _ = revisions.remove(&key));
@@ -281,7 +281,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>> {
+    fn watch(&self) -> BusAnswer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>> {
         self.call(async move {
             let keys = format!("{ROOMS}*");
             let mut watch = self.store.watch_with_history(keys).await.map_err(unknown)?;

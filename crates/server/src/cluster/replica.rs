@@ -31,7 +31,7 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
-use super::leases::{LEASE_TIME, Reply};
+use super::leases::{LEASE_TIME, LeaseAnswer};
 use super::message::{LogMessage, MemberWish, PeerMessage, Record, Token, to_bytes};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
@@ -159,8 +159,8 @@ impl Times {
 /// The calls to the leases that are not answered yet.
 #[derive(Default)]
 struct Leasing {
-    acquiring: Option<Reply<Option<Lease>>>,
-    renewing: Option<Reply<bool>>,
+    acquiring: Option<LeaseAnswer<Option<Lease>>>,
+    renewing: Option<LeaseAnswer<bool>>,
 }
 
 /// The sender of a request's answer.

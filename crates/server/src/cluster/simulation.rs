@@ -32,8 +32,8 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::time::{Instant, sleep};
 
-use self::players::Player;
-use self::world::{Link, World, notice};
+use self::players::SimulatedPlayer;
+use self::world::{HostLinks, World, notice};
 use super::{Cluster, Entrant, SharedRooms};
 use crate::line::Line;
 use crate::load::{Load, Worker};
@@ -58,19 +58,19 @@ const CONFIGURED: Duration = Duration::from_secs(12);
 const SEEDS: u64 = 60;
 
 /// A run of one seed.
-struct Run {
+struct ClusterRun {
     world: World,
     chance: SplitMix64,
     catalog: Arc<Catalog>,
-    hosts: Vec<Host>,
-    players: Vec<Player>,
+    hosts: Vec<SimulatedHost>,
+    players: Vec<SimulatedPlayer>,
     /// All members who were ever let in.
     let_in: Vec<(RoomId, MemberId)>,
     /// How many times players have returned.
     returns: u64,
 }
 
-struct Host {
+struct SimulatedHost {
     rooms: Rooms,
     shared: SharedRooms,
     visitors: Visitors,
@@ -81,14 +81,14 @@ struct Host {
     well_at: Instant,
 }
 
-impl Run {
+impl ClusterRun {
     fn new(seed: u64) -> Self {
         let mut chance = SplitMix64::new(seed);
         let world = World::new(chance.bits(), HOSTS);
         let catalog = Arc::new(catalog(HALL));
-        let hosts = (0..HOSTS).map(|host| Host::new(&world, &catalog, host, chance.bits()));
-        let hosts: Vec<Host> = hosts.collect();
-        let players = (0..PLAYERS).map(Player::new).collect();
+        let hosts = (0..HOSTS).map(|host| SimulatedHost::new(&world, &catalog, host, chance.bits()));
+        let hosts: Vec<SimulatedHost> = hosts.collect();
+        let players = (0..PLAYERS).map(SimulatedPlayer::new).collect();
         Self { world, chance, catalog, hosts, players, let_in: Vec::new(), returns: 0 }
     }
 
@@ -150,13 +150,13 @@ impl Run {
         let now = Instant::now();
         for (index, host) in self.hosts.iter().enumerate() {
             if !host.is_killed && (all || host.well_at <= now) {
-                self.world.set(index, |link| *link = Link { delay: 2, ..Link::default() });
+                self.world.set(index, |link| *link = HostLinks { delay: 2, ..HostLinks::default() });
             }
         }
     }
 }
 
-impl Host {
+impl SimulatedHost {
     fn new(world: &World, catalog: &Arc<Catalog>, index: usize, seed: u64) -> Self {
         let limits = RoomLimits {
             most: 8,
@@ -186,7 +186,7 @@ fn wish() -> RoomWish {
 fn play(seed: u64) -> [u64; 3] {
     let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
     runtime.block_on(async {
-        let mut run = Run::new(seed);
+        let mut run = ClusterRun::new(seed);
         run.play().await;
         run.assert_log();
         run.assert_members();
@@ -225,7 +225,7 @@ fn hosts_agree_whatever_breaks() {
 fn a_standing_room_that_is_taken_out_is_listed_while_somebody_is_in_it() {
     let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
     runtime.block_on(async {
-        let run = Run::new(7);
+        let run = ClusterRun::new(7);
         let listed = |host: usize| run.hosts[host].rooms.summaries().borrow().len();
         sleep(CONFIGURED).await;
         assert_eq!([0, 1, 2].map(listed), [1; 3]);

@@ -36,10 +36,10 @@ pub(crate) const THERE: Duration = Duration::from_secs(5);
 const AGAIN: Duration = Duration::from_millis(250);
 /// The visits of this host. Clones share them.
 #[derive(Clone, Debug)]
-pub(crate) struct Visits(Arc<Inner>);
+pub(crate) struct Visits(Arc<VisitsState>);
 
 #[derive(Debug)]
-struct Inner {
+struct VisitsState {
     store: StoreWorker,
     /// Locked only by calls to the store.
     registry: Mutex<Registry>,
@@ -101,7 +101,7 @@ impl Visits {
         let counting = BTreeSet::new();
         let registry =
             Registry { notice, counting, is_unsure: false, is_away: false, has_left: false };
-        Self(Arc::new(Inner { store, registry: Mutex::new(registry), ended: Mutex::default() }))
+        Self(Arc::new(VisitsState { store, registry: Mutex::new(registry), ended: Mutex::default() }))
     }
 
     /// Begins a visit.

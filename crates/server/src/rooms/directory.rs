@@ -156,7 +156,7 @@ impl Rooms {
         interface: Arc<RoomInterface>,
     ) -> Result<Place, RoomRefusal> {
         if interface.add_watcher(self.limits().most_watchers) {
-            Ok(Place::new(id, Role::Watcher(self.clone()), interface))
+            Ok(Place::new(id, Occupant::Watcher(self.clone()), interface))
         } else {
             Err(RoomRefusal::Full)
         }
@@ -310,7 +310,7 @@ impl Rooms {
 #[derive(Debug)]
 pub(crate) struct Place {
     room: RoomId,
-    role: Role,
+    role: Occupant,
     interface: Arc<RoomInterface>,
     /// The number of the member's seat. A member who was removed and returns through another connection gets
     /// another seat.
@@ -321,21 +321,21 @@ pub(crate) struct Place {
 }
 
 #[derive(Debug)]
-enum Role {
+enum Occupant {
     Member(MemberId),
     Watcher(Rooms),
 }
 
 impl Place {
     pub(crate) fn member(room: RoomId, member: MemberId, interface: Arc<RoomInterface>) -> Self {
-        Self::new(room, Role::Member(member), interface)
+        Self::new(room, Occupant::Member(member), interface)
     }
 
-    fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
+    fn new(room: RoomId, role: Occupant, interface: Arc<RoomInterface>) -> Self {
         let closed = interface.closed();
         let seat = match role {
-            Role::Member(member) => interface.inbox.seat_number(member),
-            Role::Watcher(_) => None,
+            Occupant::Member(member) => interface.inbox.seat_number(member),
+            Occupant::Watcher(_) => None,
         };
         Self { room, role, interface, seat, is_kept: false, closed }
     }
@@ -347,8 +347,8 @@ impl Place {
     /// The member's number; `None` for a watcher.
     pub(crate) fn member_id(&self) -> Option<MemberId> {
         match self.role {
-            Role::Member(member) => Some(member),
-            Role::Watcher(_) => None,
+            Occupant::Member(member) => Some(member),
+            Occupant::Watcher(_) => None,
         }
     }
 
@@ -400,10 +400,10 @@ impl Place {
 impl Drop for Place {
     fn drop(&mut self) {
         match &self.role {
-            Role::Member(_) if self.is_dismissed() => {}
-            Role::Member(member) if self.is_kept => self.interface.inbox.part(*member),
-            Role::Member(member) => self.interface.inbox.leave(*member),
-            Role::Watcher(rooms) => {
+            Occupant::Member(_) if self.is_dismissed() => {}
+            Occupant::Member(member) if self.is_kept => self.interface.inbox.part(*member),
+            Occupant::Member(member) => self.interface.inbox.leave(*member),
+            Occupant::Watcher(rooms) => {
                 self.interface.remove_watcher();
                 rooms.publish();
             }

@@ -32,7 +32,7 @@ use crate::load::Work;
 use crate::lock::locked;
 use crate::rooms::room::{Command, Entry, Header, MemberId, Mode, Room, RoomView};
 use cellcaster::game::{
-    self, Intents, LevelName, Outcome, PlayerColor, Recorder, Rules, STEPS_PER_SECOND, Stretch,
+    self, Intents, LevelName, Outcome, PlayerColor, ScriptWriter, Rules, STEPS_PER_SECOND, Stretch,
 };
 
 /// The maximum number of steps to catch up on after a delay.
@@ -250,7 +250,7 @@ pub(crate) struct RoundLog {
     recording: Option<Box<dyn Recording>>,
     /// Whether a write error was reported. A full disk is reported only once.
     has_failed: bool,
-    run: Run,
+    run: SoloRun,
 }
 
 /// A level that a member has won while playing alone.
@@ -275,7 +275,7 @@ pub(crate) struct Changes {
 
 /// The intents of a member who plays alone, since the start of the round.
 #[derive(Debug, Default)]
-struct Run {
+struct SoloRun {
     stretches: Vec<Stretch>,
     is_finished: bool,
 }
@@ -286,7 +286,7 @@ const FLUSHED: u64 = STEPS_PER_SECOND as u64;
 impl RoundLog {
     /// Begins the log of the current round of `room`.
     pub(crate) fn new(recording: Option<Box<dyn Recording>>, room: &Room) -> Self {
-        let mut log = Self { recording, has_failed: false, run: Run::default() };
+        let mut log = Self { recording, has_failed: false, run: SoloRun::default() };
         log.begin(room);
         log
     }
@@ -333,7 +333,7 @@ impl RoundLog {
     }
 
     fn begin(&mut self, room: &Room) {
-        self.run = Run::default();
+        self.run = SoloRun::default();
         self.record(|recording| recording.begin(room.header()));
     }
 
@@ -357,7 +357,7 @@ impl Changes {
     }
 }
 
-impl Run {
+impl SoloRun {
     /// Records the step that the room has taken; returns the run once the member has reached the exit.
     fn step(&mut self, room: &Room) -> Option<FinishedRun> {
         let (member, player, intents) = room.first_member().filter(|_| !self.is_finished)?;
@@ -387,7 +387,7 @@ impl Run {
             Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
         let header = game::Header::of(LevelName::new(&header.level), rules);
         let mut text = Vec::new();
-        let mut recorder = Recorder::with_header(&mut text, header);
+        let mut recorder = ScriptWriter::with_header(&mut text, header);
         for stretch in &self.stretches {
             // Writing to memory cannot fail.
             _ = recorder.record(stretch.intents, u64::from(stretch.steps));
@@ -417,7 +417,7 @@ const MAX_MOVES: usize = 64;
 /// rate of changes.
 #[derive(Debug)]
 pub(crate) struct Inbox {
-    waiting: Mutex<Waiting>,
+    waiting: Mutex<InboxState>,
     joined: Notify,
 }
 
@@ -431,12 +431,12 @@ pub(crate) enum CommandRefusal {
 }
 
 #[derive(Debug)]
-struct Waiting {
+struct InboxState {
     is_closed: bool,
     most: usize,
     next: u32,
     /// Members who have joined, including those that the room does not know yet.
-    seats: Vec<Seat>,
+    seats: Vec<InboxSeat>,
     /// The number of seats that were ever taken.
     seats_taken: u64,
     moves: VecDeque<(MemberId, Command)>,
@@ -446,7 +446,7 @@ struct Waiting {
 }
 
 #[derive(Debug)]
-struct Seat {
+struct InboxSeat {
     id: MemberId,
     /// A number unique to this seat. A member who loses their seat and returns gets another one.
     number: u64,
@@ -460,7 +460,7 @@ struct Seat {
 impl Inbox {
     /// The inbox of a room without members, whose next member is `next`.
     pub(crate) fn new(mode: Mode, next: MemberId) -> Self {
-        let waiting = Waiting {
+        let waiting = InboxState {
             is_closed: false,
             most: mode.most(),
             next: next.0,
@@ -613,7 +613,7 @@ impl Inbox {
     }
 }
 
-impl Waiting {
+impl InboxState {
     fn join(&mut self, name: &Line) -> Result<MemberId, RoomRefusal> {
         if self.is_closed {
             return Err(RoomRefusal::Gone);
@@ -635,7 +635,7 @@ impl Waiting {
 
     fn seat(&mut self, id: MemberId, color: PlayerColor) {
         self.seats_taken += 1;
-        self.seats.push(Seat {
+        self.seats.push(InboxSeat {
             id,
             number: self.seats_taken,
             color,
@@ -647,7 +647,7 @@ impl Waiting {
     }
 }
 
-impl Seat {
+impl InboxSeat {
     fn act(&mut self, command: Command, time: Duration) -> Result<(), CommandRefusal> {
         let bucket = match command {
             Command::Intents { .. } => {

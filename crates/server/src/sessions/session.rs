@@ -36,13 +36,13 @@ mod ui;
 use std::time::Duration;
 
 use self::frames::{Pace, Unanswered};
-pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent, Way};
+pub(crate) use self::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent, Way};
 use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::rooms::room::RoomView;
 use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
-use cellcaster::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
+use cellcaster::terminal::{Event, KeyEvent, SessionOptions, Phase, Protocol, WindowSize};
 
 /// The number of keys that a visitor may press per second. A held key repeats about 30 times a second.
 const KEYS: f64 = 200.0;
@@ -89,8 +89,8 @@ enum Ending {
 impl Session {
     /// A session on a terminal with these `options`.
     pub(crate) fn new(
-        identity: Identity,
-        options: Options,
+        identity: Profile,
+        options: SessionOptions,
         size: WindowSize,
         host: HostFacts,
         now: Duration,

@@ -16,7 +16,7 @@ use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{Detected, WindowSize};
 
 /// A client, with a handle to its session.
-pub(crate) struct Client {
+pub(crate) struct SimulatedClient {
     pub(crate) visiting: Visiting,
     end: FarEnd,
     terminal: Arc<Mutex<Terminal>>,
@@ -61,7 +61,7 @@ struct Terminal {
 /// The time of an arrival, and the total number of bytes received by then.
 type Arrived = (Instant, usize);
 
-impl Client {
+impl SimulatedClient {
     /// Connects to a host. Must be called within a runtime.
     pub(crate) fn come(
         host: &Simulated,

@@ -26,7 +26,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{Client, Conditions, ENTER, HALL, Rig, Speaks, Wish, catalog};
+use super::{SimulatedClient, Conditions, ENTER, HALL, Rig, Speaks, Wish, catalog};
 use crate::load::Worker;
 use crate::rooms::room::Mode;
 use cellcaster::color::palette::ColorDepth;
@@ -53,7 +53,7 @@ struct Bystander {
 }
 
 /// The state of a run.
-struct Run {
+struct SeedRun {
     rig: Rig,
     /// The bystander; present only if the worker is slow.
     bystander: Option<Bystander>,
@@ -71,7 +71,7 @@ struct Run {
     is_draining: bool,
 }
 
-impl Run {
+impl SeedRun {
     fn new(seed: u64) -> Self {
         let mut chance = SplitMix64::new(seed);
         let mode = [Mode::Roam, Mode::Tag, Mode::Race, Mode::Together][chance.below(4)];
@@ -179,14 +179,14 @@ fn hall() -> String {
 
 /// Plays a seed; returns the bytes that each client has received.
 fn play(seed: u64) -> Vec<Vec<u8>> {
-    let mut run = Run::new(seed);
+    let mut run = SeedRun::new(seed);
     run.play();
     run.calm_down();
     run.assert_members();
     run.assert_screens();
     run.assert_replays();
     run.assert_harmless();
-    let received = |client: &Client| client.look(|emulator| emulator.bytes().to_vec());
+    let received = |client: &SimulatedClient| client.look(|emulator| emulator.bytes().to_vec());
     let all = run.rig.clients.iter().map(received).collect();
     run.assert_no_task_left();
     all

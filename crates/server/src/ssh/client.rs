@@ -22,9 +22,9 @@ use super::gate::Gate;
 use super::inbound::{Inlet, inbound};
 use super::outbox::Outbox;
 use super::visitor::{self, Departure, Link, MAX_VARIABLES, Visitor};
-use super::wire::Line;
+use super::wire::ConnectionState;
 use crate::accounts::AccountKey;
-use crate::admission::{Refusal, VisitId};
+use crate::admission::{Refusal, ConnectionId};
 use crate::logging;
 use cellcaster::terminal::WindowSize;
 
@@ -40,8 +40,8 @@ pub(crate) struct Begun {
 /// The state of a client until its session begins.
 pub(crate) struct Client {
     gate: Arc<Gate>,
-    line: Arc<Line>,
-    visit: VisitId,
+    line: Arc<ConnectionState>,
+    visit: ConnectionId,
     peer: SocketAddr,
     /// Taken when the session begins.
     begin: Option<oneshot::Sender<Begun>>,
@@ -67,8 +67,8 @@ const STANDARD_ERROR: u32 = 1;
 impl Client {
     pub(crate) fn new(
         gate: Arc<Gate>,
-        line: Arc<Line>,
-        visit: VisitId,
+        line: Arc<ConnectionState>,
+        visit: ConnectionId,
         peer: SocketAddr,
         begin: oneshot::Sender<Begun>,
     ) -> Self {

@@ -17,11 +17,11 @@ use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::client::{Begun, Client};
-use super::gate::{Entry, Gate, Phase, VERSION};
+use super::gate::{AdmittedConnection, Gate, ShutdownPhase, VERSION};
 use super::host_key::HostKey;
 use super::outbox::Passage;
 use super::visitor::Host;
-use super::wire::{ByteLimits, Line, Stage, Wire};
+use super::wire::{ByteLimits, ConnectionState, Stage, Wire};
 use crate::admission::Outcome;
 use crate::config::LiveConfig;
 use crate::logging::{self, ConnectionEvent};
@@ -45,14 +45,14 @@ pub(crate) async fn serve<H: Host>(
     ssh: Arc<server::Config>,
     host: Arc<H>,
     socket: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    Entry { visit, peer, displaced }: Entry,
+    AdmittedConnection { visit, peer, displaced }: AdmittedConnection,
 ) {
     let _open = Counted::new(&gate.metrics.connections);
     let config = gate.config.get();
     let limits =
         ByteLimits { before_login: config.login_bytes.into(), per_second: config.bytes_per_second };
     let passage = Arc::new(Passage::new(gate.metrics.clone()));
-    let line = Arc::new(Line::new(limits, passage));
+    let line = Arc::new(ConnectionState::new(limits, passage));
     let (begin, begun) = oneshot::channel();
     let client = Client::new(gate.clone(), line.clone(), visit, peer, begin);
     let wire = Wire::new(socket, line.clone());
@@ -101,7 +101,7 @@ async fn disconnect(
 /// Waits until the session begins, or the deadline of the client's stage passes.
 async fn log_in(
     gate: &Gate,
-    line: &Line,
+    line: &ConnectionState,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
     mut begun: oneshot::Receiver<Begun>,
 ) -> Result<Begun, Outcome> {
@@ -135,7 +135,7 @@ async fn log_in(
 async fn converse<H: Host>(
     gate: &Gate,
     host: &H,
-    line: &Line,
+    line: &ConnectionState,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
     begun: Begun,
 ) {
@@ -159,9 +159,9 @@ async fn converse<H: Host>(
                 line.cut();
             }
             Ok(()) = phases.changed() => match *phases.borrow_and_update() {
-                Phase::Open => {}
-                Phase::Draining => inlet.drain(),
-                Phase::Closing => line.cut(),
+                ShutdownPhase::Open => {}
+                ShutdownPhase::Draining => inlet.drain(),
+                ShutdownPhase::Closing => line.cut(),
             },
         }
     };
@@ -185,7 +185,7 @@ async fn converse<H: Host>(
 /// A silent client gets a question that it must answer (RFC 4254, section 4). Rejected: russh's own
 /// keep-alives. They queue behind a frame that the socket does not accept, and they arrive while the user
 /// types a passphrase, which makes OpenSSH's client complain.
-async fn lost(config: &LiveConfig, line: &Line, handle: &Handle) {
+async fn lost(config: &LiveConfig, line: &ConnectionState, handle: &Handle) {
     let mut part = (line.passage.parts(), Instant::now());
     loop {
         let config = config.get();

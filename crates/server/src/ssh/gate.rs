@@ -24,7 +24,7 @@ use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, timeout};
 
 use crate::accounts::{AccountKey, AddressPrefix};
-use crate::admission::{Admission, Admitted, Outcome, Refusal, VisitId};
+use crate::admission::{Admission, Admitted, Outcome, Refusal, ConnectionId};
 use crate::config::LiveConfig;
 use crate::lock::locked;
 use crate::logging::{ConnectionEvent, Throttle};
@@ -35,14 +35,14 @@ use cellcaster::rng::SplitMix64;
 pub(crate) struct Gate {
     pub(crate) config: LiveConfig,
     pub(crate) metrics: Arc<Metrics>,
-    phase: watch::Sender<Phase>,
+    phase: watch::Sender<ShutdownPhase>,
     begun: Instant,
     state: Mutex<State>,
 }
 
 /// The phases of a server's shutdown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Phase {
+pub(crate) enum ShutdownPhase {
     Open,
     /// Sessions are told to end, and no client may log in.
     Draining,
@@ -51,8 +51,8 @@ pub(crate) enum Phase {
 }
 
 /// An admitted connection.
-pub(crate) struct Entry {
-    pub(crate) visit: VisitId,
+pub(crate) struct AdmittedConnection {
+    pub(crate) visit: ConnectionId,
     pub(crate) peer: SocketAddr,
     /// Receives the sentence for the client, if any, when the connection is displaced.
     pub(crate) displaced: oneshot::Receiver<Option<String>>,
@@ -64,7 +64,7 @@ struct State {
     explanations: Explanations,
     logged: Throttle,
     /// The open connections, each with its address and the sender that displaces it.
-    open: BTreeMap<VisitId, (IpAddr, oneshot::Sender<Option<String>>)>,
+    open: BTreeMap<ConnectionId, (IpAddr, oneshot::Sender<Option<String>>)>,
 }
 
 impl Gate {
@@ -76,22 +76,22 @@ impl Gate {
             logged: Throttle::default(),
             open: BTreeMap::new(),
         });
-        let phase = watch::Sender::new(Phase::Open);
+        let phase = watch::Sender::new(ShutdownPhase::Open);
         Self { config, metrics, phase, begun: Instant::now(), state }
     }
 
     /// Enters the next phase of the shutdown.
-    pub(crate) fn enter(&self, phase: Phase) {
+    pub(crate) fn enter(&self, phase: ShutdownPhase) {
         self.phase.send_replace(phase);
     }
 
     /// Waits until clients may no longer log in.
     pub(crate) async fn stopped(&self) {
-        _ = self.phase.subscribe().wait_for(|phase| *phase != Phase::Open).await;
+        _ = self.phase.subscribe().wait_for(|phase| *phase != ShutdownPhase::Open).await;
     }
 
     /// A receiver of the phases, starting with the current one.
-    pub(crate) fn phases(&self) -> watch::Receiver<Phase> {
+    pub(crate) fn phases(&self) -> watch::Receiver<ShutdownPhase> {
         let mut phases = self.phase.subscribe();
         phases.mark_changed();
         phases
@@ -101,7 +101,7 @@ impl Gate {
     ///
     /// # Errors
     /// The connection is refused. The error contains the sentence for its client, or `None` to close it silently.
-    pub(crate) fn admit(&self, peer: SocketAddr) -> Result<Entry, Option<String>> {
+    pub(crate) fn admit(&self, peer: SocketAddr) -> Result<AdmittedConnection, Option<String>> {
         let (limits, now, address) = (self.config.get().admission, self.begun.elapsed(), peer.ip());
         locked(&self.state, |state| {
             state.admission.set_limits(limits);
@@ -118,7 +118,7 @@ impl Gate {
                     }
                     let (sender, displaced) = oneshot::channel();
                     state.open.insert(visit, (address, sender));
-                    Ok(Entry { visit, peer, displaced })
+                    Ok(AdmittedConnection { visit, peer, displaced })
                 }
                 Err(reason) => {
                     state.logged.log(ConnectionEvent::Refused(reason), address);
@@ -152,7 +152,7 @@ impl Gate {
     /// The reason why the connection is refused after all.
     pub(crate) fn log_in(
         &self,
-        visit: VisitId,
+        visit: ConnectionId,
         key: Option<AccountKey>,
         address: IpAddr,
     ) -> Result<(), Refusal> {
@@ -168,7 +168,7 @@ impl Gate {
     }
 
     /// Counts the end of a connection.
-    pub(crate) fn leave(&self, visit: VisitId, outcome: Outcome) {
+    pub(crate) fn leave(&self, visit: ConnectionId, outcome: Outcome) {
         let now = self.begun.elapsed();
         locked(&self.state, |state| {
             state.open.remove(&visit);

@@ -39,7 +39,7 @@ pub enum Arrival {
 /// The session's end of the buffer.
 #[derive(Debug)]
 pub struct Inbound {
-    shared: Arc<Shared>,
+    shared: Arc<InboundState>,
     /// Whether the last arrival was one part of several. The session yields to other tasks before the next part.
     yields: bool,
 }
@@ -47,13 +47,13 @@ pub struct Inbound {
 /// The connection's end of the buffer.
 #[derive(Clone, Debug)]
 pub(crate) struct Inlet {
-    shared: Arc<Shared>,
+    shared: Arc<InboundState>,
 }
 
 #[derive(Debug)]
-struct Shared {
+struct InboundState {
     begun: Instant,
-    waiting: Mutex<Waiting>,
+    waiting: Mutex<PendingInput>,
     /// Tells the session that something has arrived.
     arrived: Notify,
     /// Tells the connection that there is room.
@@ -61,7 +61,7 @@ struct Shared {
 }
 
 #[derive(Debug)]
-struct Waiting {
+struct PendingInput {
     /// The number of bytes that the client may send now.
     bucket: Bucket,
     bytes: Vec<u8>,
@@ -84,10 +84,10 @@ enum Appended {
 
 /// Both ends of a buffer.
 pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
-    let waiting = Waiting::new(limits.bucket(Duration::ZERO));
+    let waiting = PendingInput::new(limits.bucket(Duration::ZERO));
     let [arrived, taken] = [(); 2].map(|()| Notify::new());
     let begun = Instant::now();
-    let shared = Arc::new(Shared { begun, waiting: Mutex::new(waiting), arrived, taken });
+    let shared = Arc::new(InboundState { begun, waiting: Mutex::new(waiting), arrived, taken });
     (Inlet { shared: shared.clone() }, Inbound { shared, yields: false })
 }
 
@@ -112,7 +112,7 @@ impl Inbound {
             yield_now().await;
         }
         loop {
-            if let Some(arrival) = locked(&self.shared.waiting, Waiting::take) {
+            if let Some(arrival) = locked(&self.shared.waiting, PendingInput::take) {
                 self.yields = arrival.is_full();
                 self.shared.taken.notify_one();
                 return arrival;
@@ -125,7 +125,7 @@ impl Inbound {
 impl Drop for Inbound {
     fn drop(&mut self) {
         locked(&self.shared.waiting, |waiting| {
-            *waiting = Waiting { is_abandoned: true, ..Waiting::new(waiting.bucket) };
+            *waiting = PendingInput { is_abandoned: true, ..PendingInput::new(waiting.bucket) };
         });
         self.shared.taken.notify_one();
     }
@@ -163,13 +163,13 @@ impl Inlet {
         self.shared.taken.notify_one();
     }
 
-    fn change(&self, change: impl FnOnce(&mut Waiting)) {
+    fn change(&self, change: impl FnOnce(&mut PendingInput)) {
         locked(&self.shared.waiting, change);
         self.shared.arrived.notify_one();
     }
 }
 
-impl Waiting {
+impl PendingInput {
     fn new(bucket: Bucket) -> Self {
         let bytes = Vec::new();
         Self { bucket, bytes, size: None, drains: false, ended: false, is_abandoned: false }

@@ -11,7 +11,7 @@ use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use super::connection::{self, ssh_config};
-use super::gate::{Gate, Phase, explain};
+use super::gate::{Gate, ShutdownPhase, explain};
 use super::host_key::HostKey;
 use super::visitor::Host;
 use crate::config::{Config, LiveConfig};
@@ -107,7 +107,7 @@ impl Server {
         let drain = config.get().drain;
         logging::draining(drain.as_secs());
         let until_end = drain + LAST_WORDS.min(drain);
-        for (next, time) in [(Phase::Draining, until_end), (Phase::Closing, CLOSING)] {
+        for (next, time) in [(ShutdownPhase::Draining, until_end), (ShutdownPhase::Closing, CLOSING)] {
             gate.enter(next);
             let all = async { while tasks.join_next().await.is_some() {} };
             if timeout(time, all).await.is_ok() {

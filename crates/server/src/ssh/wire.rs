@@ -44,7 +44,7 @@ impl ByteLimits {
 /// A rate-limited socket.
 pub(crate) struct Wire<S> {
     socket: S,
-    line: Arc<Line>,
+    line: Arc<ConnectionState>,
     bucket: Bucket,
     pause: Pin<Box<Sleep>>,
     /// Whether the last write found the socket full.
@@ -52,7 +52,7 @@ pub(crate) struct Wire<S> {
 }
 
 /// The shared state of a connection.
-pub(crate) struct Line {
+pub(crate) struct ConnectionState {
     pub(crate) passage: Arc<Passage>,
     pub(crate) limits: ByteLimits,
     pub(crate) begun: Instant,
@@ -76,14 +76,14 @@ const READER: usize = 0;
 const WRITER: usize = 1;
 
 impl<S> Wire<S> {
-    pub(crate) fn new(socket: S, line: Arc<Line>) -> Self {
+    pub(crate) fn new(socket: S, line: Arc<ConnectionState>) -> Self {
         let bucket = line.limits.bucket(line.begun.elapsed());
         let pause = Box::pin(sleep_until(Instant::now()));
         Self { socket, line, bucket, pause, is_full: false }
     }
 }
 
-impl Line {
+impl ConnectionState {
     pub(crate) fn new(limits: ByteLimits, passage: Arc<Passage>) -> Self {
         Self {
             passage,
@@ -143,7 +143,7 @@ impl Line {
 impl<S> Wire<S> {
     /// The number of bytes that may be read now.
     fn allowance(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
-        let Line { limits, read, .. } = &*self.line;
+        let ConnectionState { limits, read, .. } = &*self.line;
         if !self.line.is_logged_in() {
             let left = limits.before_login.saturating_sub(read.load(Ordering::Relaxed));
             return Poll::Ready(match left {

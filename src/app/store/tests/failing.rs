@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
 use super::*;
-use crate::app::store::home::{Disk, Real};
+use crate::app::store::home::{Disk, SystemFiles};
 
 /// The real disk with a range of failing operations.
 #[derive(Clone, Debug)]
@@ -34,37 +34,37 @@ impl Failing {
 impl Disk for Failing {
     fn create_folder(&self, folder: &Path) -> io::Result<()> {
         self.check()?;
-        Real.create_folder(folder)
+        SystemFiles.create_folder(folder)
     }
 
     fn read(&self, file: &Path, most: u64) -> io::Result<Vec<u8>> {
         self.check()?;
-        Real.read(file, most)
+        SystemFiles.read(file, most)
     }
 
     fn write(&self, file: &Path, content: &[u8]) -> io::Result<()> {
         self.check().inspect_err(|_| _ = fs::write(file, &content[..content.len() / 2]))?;
-        Real.write(file, content)
+        SystemFiles.write(file, content)
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.check()?;
-        Real.rename(from, to)
+        SystemFiles.rename(from, to)
     }
 
     fn remove(&self, file: &Path) -> io::Result<()> {
         self.check()?;
-        Real.remove(file)
+        SystemFiles.remove(file)
     }
 
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
         self.check()?;
-        Real.names(folder)
+        SystemFiles.names(folder)
     }
 
     fn lock(&self, file: &Path, attempts: u32) -> io::Result<Option<File>> {
         self.check()?;
-        Real.lock(file, attempts)
+        SystemFiles.lock(file, attempts)
     }
 }
 

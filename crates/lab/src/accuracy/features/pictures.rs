@@ -17,7 +17,7 @@ use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer, Surface};
 use cellcaster::rng::SplitMix64;
-use cellcaster::space::{Block, Body, Ray, Scene, Shape, SolidTexture};
+use cellcaster::space::{Block, Body, Ray, Scene, BodyShape, SolidTexture};
 use cellcaster::world::{Camera, FieldOfView, Fog, Heading, World};
 
 /// The width and the height of the pictures.
@@ -208,7 +208,7 @@ fn heights(seed: u64) -> Feature {
         let corner = DVec3::new(column as f64, row as f64, -1.0);
         let height = tile_at(column, row).1 + 1.0;
         let block = Block::new(corner, corner + DVec3::new(1.0, 1.0, height))?;
-        Some(Body { shape: Shape::Block(block), texture })
+        Some(Body { shape: BodyShape::Block(block), texture })
     });
     let scene = Scene { bodies: bodies.collect(), ..Scene::default() };
     // The eyes are above the highest floor and below the top of the walls.

@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use glam::DVec2;
 
-use super::super::fixed_point::Fixed;
+use super::super::fixed_point::FixedPoint;
 use super::super::{cast as cast_at_walls, random_ray};
 use super::Feature;
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
@@ -63,13 +63,13 @@ fn rays(grid: &Grid, seed: u64) -> Vec<Ray> {
 /// A place where a ray may end.
 struct Met {
     cell: Cell,
-    t: Fixed,
+    t: FixedPoint,
     /// `true` at the end of a wall, on the border of its cell. The ray may pass in the next cell.
     is_end: bool,
 }
 
 /// The possible hits of a ray.
-struct Truth {
+struct PossibleHits {
     /// All places up to the first place that is not an end. There are several if a ray through the
     /// end of one wall meets another wall.
     places: Vec<Met>,
@@ -77,7 +77,7 @@ struct Truth {
     may_escape: bool,
 }
 
-impl Truth {
+impl PossibleHits {
     fn new(mut places: Vec<Met>) -> Self {
         places.sort_by(|one, other| one.t.cmp(&other.t));
         let certain = places.iter().position(|met| !met.is_end);
@@ -91,8 +91,8 @@ impl Truth {
 }
 
 /// The feature of these rays in `world`, compared with these truths.
-fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Truth]) -> Feature {
-    let outcome = |(ray, truth): (&Ray, &Truth)| {
+fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[PossibleHits]) -> Feature {
+    let outcome = |(ray, truth): (&Ray, &PossibleHits)| {
         let Some(hit) = cast(&world, ray) else { return (!truth.may_escape, None) };
         let met = truth.places.iter().find(|met| met.cell == hit.cell);
         (met.is_none(), met.map(|met| met.t.relative_error(hit.t)))
@@ -119,14 +119,14 @@ fn shapes(name: &'static str, world: World, seed: u64) -> Feature {
             _ => None,
         })
         .collect();
-    let truths: Vec<Truth> = rays
+    let truths: Vec<PossibleHits> = rays
         .iter()
         .map(|ray| {
             let meetings = outlines.iter().filter_map(|&(cell, outline)| match outline {
                 Outline::Line(line) => meet_line(ray, cell, line),
                 Outline::Pillar(radius) => meet_pillar(ray, cell, radius.cells()),
             });
-            Truth::new(meetings.collect())
+            PossibleHits::new(meetings.collect())
         })
         .collect();
     compared(name, world, rays, &truths)
@@ -140,8 +140,8 @@ fn cells(world: &World) -> impl Iterator<Item = (Cell, TileKind)> {
 }
 
 /// The components of a vector in fixed point.
-fn fixed(vector: DVec2) -> [Fixed; 2] {
-    vector.to_array().map(Fixed::new)
+fn fixed(vector: DVec2) -> [FixedPoint; 2] {
+    vector.to_array().map(FixedPoint::new)
 }
 
 /// The place where a ray meets a line, by Cramer's rule.
@@ -156,8 +156,8 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
     let (x, y) = (&start_x - &x, &start_y - &y);
     let t = &(&(&x * &extent_y) - &(&y * &extent_x)) / &determinant;
     let along = &(&(&x * &dy) - &(&y * &dx)) / &determinant;
-    let is_beside = along.is_negative() || along > Fixed::new(1.0);
-    let is_end = along.is_zero() || along == Fixed::new(1.0);
+    let is_beside = along.is_negative() || along > FixedPoint::new(1.0);
+    let is_end = along.is_zero() || along == FixedPoint::new(1.0);
     (!t.is_negative() && !is_beside).then_some(Met { cell, t, is_end })
 }
 
@@ -165,7 +165,7 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
 fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let [center_x, center_y] = fixed(cell.center());
-    let (x, y, radius) = (&x - &center_x, &y - &center_y, Fixed::new(radius));
+    let (x, y, radius) = (&x - &center_x, &y - &center_y, FixedPoint::new(radius));
     let a = &(&dx * &dx) + &(&dy * &dy);
     let b = &(&x * &dx) + &(&y * &dy);
     let c = &(&(&x * &x) + &(&y * &y)) - &(&radius * &radius);
@@ -203,11 +203,11 @@ fn doors(seed: u64) -> Feature {
         !walls.is_solid(cell.x as i64, cell.y as i64)
     };
     let rays: Vec<Ray> = rays(world.grid(), seed).into_iter().filter(is_open).collect();
-    let truths: Vec<Truth> = rays
+    let truths: Vec<PossibleHits> = rays
         .iter()
         .map(|ray| {
             let met = leaves.iter().filter_map(|leaf| meet_leaf(ray, leaf));
-            Truth::new(met.chain(meet_wall(&walls, ray)).collect())
+            PossibleHits::new(met.chain(meet_wall(&walls, ray)).collect())
         })
         .collect();
     compared("doors ajar", world, rays, &truths)
@@ -223,9 +223,9 @@ fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<Met> 
     if across.1.is_zero() {
         return None;
     }
-    let t = &(&Fixed::new(line) - &across.0) / &across.1;
+    let t = &(&FixedPoint::new(line) - &across.0) / &across.1;
     let place = &along.0 + &(&t * &along.1);
-    let is_within = place >= Fixed::new(start) && place <= Fixed::new(start + (1.0 - part));
+    let is_within = place >= FixedPoint::new(start) && place <= FixedPoint::new(start + (1.0 - part));
     (!t.is_negative() && is_within).then_some(Met { cell, t, is_end: false })
 }
 
@@ -236,6 +236,6 @@ fn meet_wall(walls: &Grid, ray: &Ray) -> Option<Met> {
         Side::Y => (ray.origin().y, ray.direction().y, truth.cell.row),
     };
     let line = f64::from(index) + if direction > 0.0 { 0.0 } else { 1.0 };
-    let t = &(&Fixed::new(line) - &Fixed::new(origin)) / &Fixed::new(direction);
+    let t = &(&FixedPoint::new(line) - &FixedPoint::new(origin)) / &FixedPoint::new(direction);
     Some(Met { cell: truth.cell, t, is_end: false })
 }

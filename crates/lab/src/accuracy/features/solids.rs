@@ -4,11 +4,11 @@ use std::hint::black_box;
 
 use glam::DVec3;
 
-use super::super::fixed_point::Fixed;
+use super::super::fixed_point::FixedPoint;
 use super::Feature;
 use cellcaster::color::Rgb;
 use cellcaster::rng::SplitMix64;
-use cellcaster::space::{Block, Body, Plane, Ray, Scene, Shape, SolidTexture, Sphere};
+use cellcaster::space::{Block, Body, Plane, Ray, Scene, BodyShape, SolidTexture, Sphere};
 
 const RAYS: usize = 2000;
 const BODIES: usize = 6;
@@ -20,14 +20,14 @@ pub(crate) fn features(seed: u64) -> Vec<Feature> {
         DVec3::new(coordinate(), coordinate(), coordinate())
     };
     let spheres = (0..BODIES).filter_map(|index| {
-        Some(Shape::Sphere(Sphere::new(point(5.0), 0.25 * (index + 1) as f64)?))
+        Some(BodyShape::Sphere(Sphere::new(point(5.0), 0.25 * (index + 1) as f64)?))
     });
     let spheres = scene(spheres);
     let planes =
-        scene((0..BODIES).filter_map(|_| Some(Shape::Plane(Plane::new(point(5.0), point(1.0))?))));
+        scene((0..BODIES).filter_map(|_| Some(BodyShape::Plane(Plane::new(point(5.0), point(1.0))?))));
     let boxes = (0..BODIES).filter_map(|_| {
         let corner = point(5.0);
-        Some(Shape::Block(Block::new(corner, corner + point(3.0))?))
+        Some(BodyShape::Block(Block::new(corner, corner + point(3.0))?))
     });
     let boxes = scene(boxes);
     let rays: Vec<Ray> = (0..RAYS).map(|_| Ray::new(point(8.0), point(1.0))).collect();
@@ -38,7 +38,7 @@ pub(crate) fn features(seed: u64) -> Vec<Feature> {
     ]
 }
 
-fn scene(shapes: impl Iterator<Item = Shape>) -> Scene {
+fn scene(shapes: impl Iterator<Item = BodyShape>) -> Scene {
     let texture = SolidTexture::Plain(Rgb::WHITE);
     Scene { bodies: shapes.map(|shape| Body { shape, texture }).collect(), ..Scene::default() }
 }
@@ -65,25 +65,25 @@ fn feature(name: &'static str, scene: Scene, rays: Vec<Ray>) -> Feature {
     Feature { name, figure, unit, outcomes, work: Box::new(work) }
 }
 
-fn fixed(vector: DVec3) -> [Fixed; 3] {
-    vector.to_array().map(Fixed::new)
+fn fixed(vector: DVec3) -> [FixedPoint; 3] {
+    vector.to_array().map(FixedPoint::new)
 }
 
-fn dot(one: &[Fixed; 3], other: &[Fixed; 3]) -> Fixed {
-    one.iter().zip(other).fold(Fixed::new(0.0), |sum, (one, other)| &sum + &(one * other))
+fn dot(one: &[FixedPoint; 3], other: &[FixedPoint; 3]) -> FixedPoint {
+    one.iter().zip(other).fold(FixedPoint::new(0.0), |sum, (one, other)| &sum + &(one * other))
 }
 
-fn minus(one: &[Fixed; 3], other: &[Fixed; 3]) -> [Fixed; 3] {
+fn minus(one: &[FixedPoint; 3], other: &[FixedPoint; 3]) -> [FixedPoint; 3] {
     std::array::from_fn(|axis| &one[axis] - &other[axis])
 }
 
 /// The distance at which `ray` meets `shape` first.
-fn meet(shape: &Shape, ray: &Ray) -> Option<Fixed> {
+fn meet(shape: &BodyShape, ray: &Ray) -> Option<FixedPoint> {
     let (origin, direction) = (fixed(ray.origin), fixed(ray.direction));
     match shape {
-        Shape::Sphere(sphere) => {
+        BodyShape::Sphere(sphere) => {
             let from_center = minus(&origin, &fixed(sphere.center()));
-            let radius = Fixed::new(sphere.radius());
+            let radius = FixedPoint::new(sphere.radius());
             let (a, b) = (dot(&direction, &direction), dot(&from_center, &direction));
             let c = &dot(&from_center, &from_center) - &(&radius * &radius);
             let discriminant = &(&b * &b) - &(&a * &c);
@@ -94,25 +94,25 @@ fn meet(shape: &Shape, ray: &Ray) -> Option<Fixed> {
             let ends = [&(&-&b - &root) / &a, &(&-&b + &root) / &a];
             ends.into_iter().find(|t| !t.is_negative())
         }
-        Shape::Plane(plane) => {
+        BodyShape::Plane(plane) => {
             let normal = fixed(plane.normal());
             let speed = dot(&normal, &direction);
             let way = dot(&normal, &minus(&fixed(plane.point()), &origin));
             let t = (!speed.is_zero()).then(|| &way / &speed)?;
             (!t.is_negative()).then_some(t)
         }
-        Shape::Block(block) => meet_block(block, &origin, &direction),
+        BodyShape::Block(block) => meet_block(block, &origin, &direction),
     }
 }
 
 /// The distance to a box, found by the slabs between opposite faces. No direction in the report is
 /// parallel to a face.
-fn meet_block(block: &Block, origin: &[Fixed; 3], direction: &[Fixed; 3]) -> Option<Fixed> {
+fn meet_block(block: &Block, origin: &[FixedPoint; 3], direction: &[FixedPoint; 3]) -> Option<FixedPoint> {
     let (low, high) = (fixed(block.low()), fixed(block.high()));
-    let slabs: Option<Vec<(Fixed, Fixed)>> = (0..3)
+    let slabs: Option<Vec<(FixedPoint, FixedPoint)>> = (0..3)
         .map(|axis| {
             let speed = &direction[axis];
-            let to = |face: &Fixed| (!speed.is_zero()).then(|| &(face - &origin[axis]) / speed);
+            let to = |face: &FixedPoint| (!speed.is_zero()).then(|| &(face - &origin[axis]) / speed);
             let (one, other) = (to(&low[axis])?, to(&high[axis])?);
             Some(if one < other { (one, other) } else { (other, one) })
         })

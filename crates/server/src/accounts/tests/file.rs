@@ -249,7 +249,7 @@ fn a_reader_sees_what_a_host_writes() {
     host.record(ada.id, &run("cellar", 9, Rank::Ghost), at(0)).unwrap();
     assert_eq!(reader.level_scores(&board("cellar"), 9).unwrap()[0].name, ada.name);
     let refused = reader.create_account(None, &key(2), &name("Bob"), at(0));
-    assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
+    assert!(matches!(refused, Err(AccountRefusal::Failed(_))), "{refused:?}");
     drop((host, reader));
     let mut reader = HostStore::open_to_read(&folder.0).unwrap().unwrap();
     assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));

@@ -65,7 +65,7 @@ fn what_one_host_keeps_another_one_shows() {
     let mut reader = HostStore::connect_to_read(&address).unwrap().unwrap();
     assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));
     let refused = reader.create_account(None, &key(2), &name("Bob"), at(0));
-    assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
+    assert!(matches!(refused, Err(AccountRefusal::Failed(_))), "{refused:?}");
     assert!(reader.note_visit(AccountId(1), at(1)).is_err());
 }
 
@@ -82,7 +82,7 @@ fn of_hosts_that_create_a_name_at_once_one_does() {
             store.create_account(None, &key(round * 8 + host), &name, at(0))
         });
         assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
-        let refused = answers.iter().filter(|answer| **answer == Err(Refusal::NameTaken));
+        let refused = answers.iter().filter(|answer| **answer == Err(AccountRefusal::NameTaken));
         assert_eq!(refused.count(), 3, "{answers:?}");
     }
 }
@@ -95,7 +95,7 @@ fn of_hosts_that_create_the_account_of_a_key_at_once_one_does() {
             store.create_account(None, &key(round), &name(&format!("n-{round}-{host}")), at(0))
         });
         assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
-        let refused = answers.iter().filter(|answer| **answer == Err(Refusal::KeyKnown));
+        let refused = answers.iter().filter(|answer| **answer == Err(AccountRefusal::KeyKnown));
         assert_eq!(refused.count(), 3, "{answers:?}");
     }
 }
@@ -120,7 +120,7 @@ fn of_accounts_that_take_a_name_at_once_one_has_it() {
         let winners: Vec<_> = answers.iter().flatten().collect();
         assert_eq!(winners.len(), 1, "{answers:?}");
         assert_eq!(store.account_named(&name(&wanted)).unwrap().as_ref(), Some(winners[0]));
-        let taken = answers.iter().filter(|answer| **answer == Err(Refusal::NameTaken));
+        let taken = answers.iter().filter(|answer| **answer == Err(AccountRefusal::NameTaken));
         assert_eq!(taken.count(), 3, "{answers:?}");
     }
 }

@@ -12,7 +12,7 @@ fn create(
     address: &str,
     number: u8,
     second: u64,
-) -> Result<Account, Refusal> {
+) -> Result<Account, AccountRefusal> {
     let name = name(&format!("n-{number}-x"));
     let now = UnixTime::new(1_795_300_000 + second);
     store.create_account(Some(&origin(address)), &key(number), &name, now)
@@ -25,7 +25,7 @@ fn a_network_makes_so_many_accounts() {
             create(store, &format!("192.0.2.{number}"), number, 0).unwrap();
         }
         let refused = create(store, "192.0.2.9", 9, 1).unwrap_err();
-        assert_eq!(refused, Refusal::TooManyAccounts { seconds: 179 });
+        assert_eq!(refused, AccountRefusal::TooManyAccounts { seconds: 179 });
         let sentence = "Your network makes too many accounts; try again in 3 minutes.";
         assert_eq!(refused.to_string(), sentence);
         assert_eq!(store.account(&key(9)).unwrap(), None);
@@ -34,7 +34,7 @@ fn a_network_makes_so_many_accounts() {
         create(store, "2001:db8::1", 4, 1).unwrap();
         let taken =
             store.create_account(Some(&origin("192.0.3.2")), &key(10), &name("n-0-x"), at(0));
-        assert_eq!(taken, Err(Refusal::NameTaken));
+        assert_eq!(taken, Err(AccountRefusal::NameTaken));
         create(store, "192.0.3.2", 5, 1).unwrap();
         create(store, "192.0.3.3", 6, 1).unwrap();
         assert!(create(store, "192.0.3.4", 7, 1).is_err());

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-use super::super::bus::{Answer, Bus, BusFault, HostRequest, Key};
-use super::world::{Inner, Kept, LOOK, TIMEOUT, World};
+use super::super::bus::{BusAnswer, Bus, BusFault, HostRequest, Key};
+use super::world::{WorldState, StoredMessage, LOOK, TIMEOUT, World};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
@@ -26,8 +26,8 @@ impl SimulatedBus {
     /// Runs `act` on the bus, unless the way there or back fails.
     fn call<'a, T: Send + 'a>(
         &'a self,
-        act: impl FnOnce(&mut Inner, usize) -> Result<T, BusFault> + Send + 'a,
-    ) -> Answer<'a, T> {
+        act: impl FnOnce(&mut WorldState, usize) -> Result<T, BusFault> + Send + 'a,
+    ) -> BusAnswer<'a, T> {
         let Self { world, host, .. } = self;
         Box::pin(async move {
             world.pass(*host).await;
@@ -51,19 +51,19 @@ impl SimulatedBus {
 }
 
 impl Bus for SimulatedBus {
-    fn append(&self, room: RoomId, last: u64, bytes: Vec<u8>) -> Answer<'_, u64> {
+    fn append(&self, room: RoomId, last: u64, bytes: Vec<u8>) -> BusAnswer<'_, u64> {
         self.call(move |inner, host| {
             let log = inner.logs.entry(room).or_default();
             if log.last().map_or(0, |kept| kept.number) != last {
                 return Err(BusFault::Refused);
             }
             inner.messages += 1;
-            log.push(Kept { number: inner.messages, host, bytes, at: Instant::now() });
+            log.push(StoredMessage { number: inner.messages, host, bytes, at: Instant::now() });
             Ok(inner.messages)
         })
     }
 
-    fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>> {
+    fn read(&self, room: RoomId, after: u64) -> BusAnswer<'_, Option<(u64, Vec<u8>)>> {
         self.call(move |inner, _| {
             let first = inner.dropped.get(&room).copied().unwrap_or_default().max(after + 1);
             let next = inner.logs.get(&room).into_iter().flatten().find(|it| it.number >= first);
@@ -71,7 +71,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn drop_before(&self, room: RoomId, first: u64) -> Answer<'_, ()> {
+    fn drop_before(&self, room: RoomId, first: u64) -> BusAnswer<'_, ()> {
         self.call(move |inner, _| {
             let dropped = inner.dropped.entry(room).or_default();
             *dropped = first.max(*dropped);
@@ -79,11 +79,11 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn drop_log(&self, room: RoomId) -> Answer<'_, ()> {
+    fn drop_log(&self, room: RoomId) -> BusAnswer<'_, ()> {
         self.drop_before(room, u64::MAX)
     }
 
-    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()> {
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> BusAnswer<'_, ()> {
         let world = self.world.clone();
         self.call(move |inner, _| {
             for (host, _, listener) in inner.listeners.iter().filter(|it| it.1 == room) {
@@ -100,7 +100,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+    fn subscribe(&self, room: RoomId) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(move |inner, host| {
             let (listener, message) = mpsc::channel(1_024);
             inner.listeners.retain(|it| !it.2.is_closed());
@@ -109,7 +109,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+    fn ask_hosts(&self, request: Vec<u8>) -> BusAnswer<'_, mpsc::Receiver<Vec<u8>>> {
         let (world, asking) = (self.world.clone(), self.host);
         self.call(move |inner, _| {
             let (answers, receiver) = mpsc::channel(1_024);
@@ -132,7 +132,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>> {
+    fn host_requests(&self) -> BusAnswer<'_, mpsc::Receiver<HostRequest>> {
         self.call(|inner, host| {
             let (listener, requests) = mpsc::channel(1_024);
             inner.operators.push((host, listener));
@@ -140,14 +140,14 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn next_number(&self) -> Answer<'_, u32> {
+    fn next_number(&self) -> BusAnswer<'_, u32> {
         self.call(|inner, _| {
             inner.rooms += 1;
             Ok(inner.rooms)
         })
     }
 
-    fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
+    fn put(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()> {
         let known = locked(&self.revisions, |it| it.get(&key).copied().unwrap_or_default());
         self.call(move |inner, _| {
             let is_known = inner.revision(&key) == known;
@@ -158,7 +158,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
+    fn create(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()> {
         self.call(move |inner, _| {
             if inner.values.get(&key).is_some_and(|kept| kept.1.is_some()) {
                 return Err(BusFault::Refused);
@@ -169,7 +169,7 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn get(&self, key: Key) -> Answer<'_, Option<Vec<u8>>> {
+    fn get(&self, key: Key) -> BusAnswer<'_, Option<Vec<u8>>> {
         self.call(move |inner, _| {
             let (revision, value) = inner.values.get(&key).cloned().unwrap_or_default();
             self.note(key, revision);
@@ -177,14 +177,14 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn remove(&self, key: Key) -> Answer<'_, ()> {
+    fn remove(&self, key: Key) -> BusAnswer<'_, ()> {
         self.call(move |inner, _| {
             inner.keep(key, None);
             Ok(())
         })
     }
 
-    fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>> {
+    fn watch(&self) -> BusAnswer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>> {
         let (world, host) = (self.world.clone(), self.host);
         self.call(move |_, _| {
             let (changes, receiver) = mpsc::channel(1_024);

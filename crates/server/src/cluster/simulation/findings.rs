@@ -7,7 +7,7 @@ use tokio::time::Instant;
 
 use super::super::message::{LogMessage, Record};
 use super::super::room_state::{Position, RoomState};
-use super::Run;
+use super::ClusterRun;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::{Command, Header, MemberId};
 use crate::rooms::summary::RoomId;
@@ -25,7 +25,7 @@ struct Played {
     last_at: Option<Instant>,
 }
 
-impl Run {
+impl ClusterRun {
     /// Replays each log from its beginning, and compares the result with the rooms that hosts show.
     pub(crate) fn assert_log(&self) {
         for host in &self.hosts {

@@ -8,7 +8,7 @@ use tokio::runtime::Builder;
 use tokio::sync::Notify;
 use tokio::time::{Instant, sleep};
 
-use super::{HOSTS, Run};
+use super::{HOSTS, ClusterRun};
 use crate::accounts::AccountKey;
 use crate::admin::{AdminReply, AdminRequest, Target};
 use crate::operator::Operator;
@@ -16,14 +16,14 @@ use crate::visitors::{Notice, Presence};
 
 /// Hosts with a visitor each, called `p0` and so on, and their operators.
 struct Hosts {
-    run: Run,
+    run: ClusterRun,
     operators: Vec<Operator>,
     visitors: Vec<Presence>,
 }
 
 impl Hosts {
     async fn start() -> Self {
-        let run = Run::new(7);
+        let run = ClusterRun::new(7);
         let (mut operators, mut visitors) = (Vec::new(), Vec::new());
         for (index, host) in run.hosts.iter().enumerate() {
             let (own, cluster) = (host.visitors.clone(), Some(host.shared.clone()));

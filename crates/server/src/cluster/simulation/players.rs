@@ -5,7 +5,7 @@ use tokio::task::JoinHandle;
 use super::super::Entrant;
 use super::super::message::LogMessage;
 use super::world::World;
-use super::{HOSTS, Run, wish};
+use super::{HOSTS, ClusterRun, wish};
 use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::rooms::directory::{Place, RoomRefusal};
@@ -16,7 +16,7 @@ use cellcaster::game::{Intent, Intents};
 /// The first guest. All later players are guests, too.
 const FIRST_GUEST: usize = 4;
 
-pub(crate) struct Player {
+pub(crate) struct SimulatedPlayer {
     pub(crate) host: usize,
     pub(crate) place: Option<Place>,
     pub(crate) entrant: Entrant,
@@ -34,7 +34,7 @@ struct Arrived {
     is_return: bool,
 }
 
-impl Player {
+impl SimulatedPlayer {
     pub(crate) fn new(index: usize) -> Self {
         let name = Line::of(&format!("p{index}"), 16).expect("a name");
         let key = (index < FIRST_GUEST).then(|| AccountKey::new([index as u8; 32]));
@@ -64,7 +64,7 @@ impl Player {
     }
 }
 
-impl Run {
+impl ClusterRun {
     /// Lets a player act.
     pub(crate) async fn act(&mut self, index: usize) {
         self.arrive(index).await;

@@ -23,12 +23,12 @@ pub(crate) const LOOK: Duration = Duration::from_millis(10);
 
 /// The state that the hosts share, and the faults of their links.
 #[derive(Clone)]
-pub(crate) struct World(Arc<Mutex<Inner>>);
+pub(crate) struct World(Arc<Mutex<WorldState>>);
 
-pub(crate) struct Inner {
+pub(crate) struct WorldState {
     pub(crate) chance: SplitMix64,
     /// All messages that were ever appended.
-    pub(crate) logs: BTreeMap<RoomId, Vec<Kept>>,
+    pub(crate) logs: BTreeMap<RoomId, Vec<StoredMessage>>,
     /// The number before which the messages of a room are dropped.
     pub(crate) dropped: BTreeMap<RoomId, u64>,
     pub(crate) messages: u64,
@@ -39,12 +39,12 @@ pub(crate) struct Inner {
     pub(crate) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
     store: HostStore,
     asked_at: Instant,
-    links: Vec<Link>,
+    links: Vec<HostLinks>,
 }
 
 /// A message of a log.
 #[derive(Clone)]
-pub(crate) struct Kept {
+pub(crate) struct StoredMessage {
     pub(crate) number: u64,
     pub(crate) host: usize,
     pub(crate) bytes: Vec<u8>,
@@ -53,7 +53,7 @@ pub(crate) struct Kept {
 
 /// The links of a host.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Link {
+pub(crate) struct HostLinks {
     /// `true` if the host reaches nobody on the bus.
     pub(crate) is_cut: bool,
     /// `true` if the host does not reach the database.
@@ -74,8 +74,8 @@ pub(crate) fn notice(host: usize) -> HostNotice {
 
 impl World {
     pub(crate) fn new(seed: u64, hosts: usize) -> Self {
-        let good = Link { delay: 2, ..Link::default() };
-        Self(Arc::new(Mutex::new(Inner {
+        let good = HostLinks { delay: 2, ..HostLinks::default() };
+        Self(Arc::new(Mutex::new(WorldState {
             chance: SplitMix64::new(seed),
             logs: BTreeMap::new(),
             dropped: BTreeMap::new(),
@@ -91,7 +91,7 @@ impl World {
         })))
     }
 
-    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut WorldState) -> T) -> T {
         locked(&self.0, act)
     }
 
@@ -129,16 +129,16 @@ impl World {
         worker
     }
 
-    pub(crate) fn link(&self, host: usize) -> Link {
+    pub(crate) fn link(&self, host: usize) -> HostLinks {
         self.with(|inner| inner.links[host])
     }
 
-    pub(crate) fn set(&self, host: usize, change: impl FnOnce(&mut Link)) {
+    pub(crate) fn set(&self, host: usize, change: impl FnOnce(&mut HostLinks)) {
         self.with(|inner| change(&mut inner.links[host]));
     }
 
     /// All messages that a room's log ever contained.
-    pub(crate) fn log(&self, room: RoomId) -> Vec<Kept> {
+    pub(crate) fn log(&self, room: RoomId) -> Vec<StoredMessage> {
         self.with(|inner| inner.logs.get(&room).cloned().unwrap_or_default())
     }
 
@@ -167,7 +167,7 @@ impl World {
     }
 }
 
-impl Inner {
+impl WorldState {
     /// The database of all hosts, with its clock moved on to now.
     fn store(&mut self) -> &mut HostStore {
         let now = Instant::now();

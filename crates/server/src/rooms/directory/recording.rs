@@ -45,7 +45,7 @@ impl Recordings {
 
     /// Recordings in a folder; no recordings if there is no folder.
     pub(crate) fn in_folder(folder: Option<PathBuf>) -> Self {
-        let folder = folder.map(|path| Arc::new(Folder::open(path, Bounds::default())));
+        let folder = folder.map(|path| Arc::new(RecordingFolder::open(path, Bounds::default())));
         Self::new(move |room| {
             let folder = Arc::clone(folder.as_ref()?);
             Some(Box::new(RecordedRoom { folder, room, file: None }))
@@ -66,7 +66,7 @@ impl fmt::Debug for Recordings {
 
 /// A room whose log is recorded in a folder.
 struct RecordedRoom {
-    folder: Arc<Folder>,
+    folder: Arc<RecordingFolder>,
     room: RoomId,
     /// `None` if the recording ended before this round.
     file: Option<RecordedFile>,
@@ -74,7 +74,7 @@ struct RecordedRoom {
 
 /// A recording that is being written.
 struct RecordedFile {
-    folder: Arc<Folder>,
+    folder: Arc<RecordingFolder>,
     path: PathBuf,
     output: BufWriter<File>,
     bytes: u64,
@@ -89,7 +89,7 @@ struct Bounds {
 }
 
 /// A folder of recordings.
-struct Folder {
+struct RecordingFolder {
     path: PathBuf,
     bounds: Bounds,
     held: Mutex<Held>,
@@ -154,7 +154,7 @@ impl RecordedRoom {
 
 impl RecordedFile {
     /// Creates a new file in the folder.
-    fn create(folder: &Arc<Folder>, room: RoomId) -> io::Result<Self> {
+    fn create(folder: &Arc<RecordingFolder>, room: RoomId) -> io::Result<Self> {
         private::create_folder(&folder.path)?;
         if !folder.take(1) {
             return Err(io::ErrorKind::QuotaExceeded.into());
@@ -186,7 +186,7 @@ impl Drop for RecordedFile {
     }
 }
 
-impl Folder {
+impl RecordingFolder {
     /// Opens a folder and counts the recordings in it.
     fn open(path: PathBuf, bounds: Bounds) -> Self {
         let mut held = Held::default();
@@ -280,9 +280,9 @@ mod tests {
     const DAY: Duration = Duration::from_hours(24);
 
     /// A folder that does not exist yet and is removed at the end.
-    struct Place(PathBuf);
+    struct TemporaryFolder(PathBuf);
 
-    impl Place {
+    impl TemporaryFolder {
         fn new(name: &str) -> Self {
             let path =
                 env::temp_dir().join(format!("cellcaster-recordings-{}-{name}", process::id()));
@@ -290,9 +290,9 @@ mod tests {
             Self(path)
         }
 
-        fn open(&self, bytes: u64) -> Arc<Folder> {
+        fn open(&self, bytes: u64) -> Arc<RecordingFolder> {
             let bounds = Bounds { bytes, file: 3 * BLOCK, ..Bounds::default() };
-            Arc::new(Folder::open(self.0.clone(), bounds))
+            Arc::new(RecordingFolder::open(self.0.clone(), bounds))
         }
 
         /// Adds recordings of an earlier server run, with their ages in days.
@@ -319,7 +319,7 @@ mod tests {
         }
     }
 
-    impl Drop for Place {
+    impl Drop for TemporaryFolder {
         fn drop(&mut self) {
             _ = fs::remove_dir_all(&self.0);
         }
@@ -330,7 +330,7 @@ mod tests {
     }
 
     /// The log of a room in its first round.
-    fn begun(folder: &Arc<Folder>, room: u32) -> RecordedRoom {
+    fn begun(folder: &Arc<RecordingFolder>, room: u32) -> RecordedRoom {
         let mut log = RecordedRoom { folder: folder.clone(), room: RoomId(room), file: None };
         log.begin(&header()).unwrap();
         log
@@ -346,7 +346,7 @@ mod tests {
 
     #[test]
     fn the_oldest_recordings_go_first_and_never_one_that_is_written() {
-        let place = Place::new("oldest").with_old(&[
+        let place = TemporaryFolder::new("oldest").with_old(&[
             ("room-1.log", 2),
             ("room-2.log", 3),
             ("notes.txt", 90),
@@ -372,7 +372,7 @@ mod tests {
 
     #[test]
     fn recordings_of_more_than_thirty_days_are_removed() {
-        let place = Place::new("age").with_old(&[("room-1.log", 29), ("room-2.log", 31)]);
+        let place = TemporaryFolder::new("age").with_old(&[("room-1.log", 29), ("room-2.log", 31)]);
         let _folder = place.open(1 << 20);
         assert_eq!(place.names(), ["room-1.log"]);
     }
@@ -380,7 +380,7 @@ mod tests {
     /// The folder stays within its limit, no matter how many rooms write how much, and every recording can be parsed.
     #[test]
     fn a_folder_never_has_more_than_its_bytes() {
-        let place = Place::new("bytes");
+        let place = TemporaryFolder::new("bytes");
         let folder = place.open(8 * BLOCK);
         let mut logs = [1, 2, 3].map(|room| begun(&folder, room));
         for round in 0..20 {
@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn a_recording_that_fills_the_folder_ends_and_the_next_round_takes_its_place() {
-        let place = Place::new("full");
+        let place = TemporaryFolder::new("full");
         let folder = place.open(2 * BLOCK);
         let mut log = begun(&folder, 1);
         assert_eq!(say(&mut log, 1000).unwrap_err().kind(), io::ErrorKind::QuotaExceeded);
@@ -420,7 +420,7 @@ mod tests {
 
     #[test]
     fn a_round_after_a_long_recording_begins_another_file() {
-        let place = Place::new("next");
+        let place = TemporaryFolder::new("next");
         let folder = place.open(1 << 20);
         let mut log = begun(&folder, 7);
         log.begin(&header()).unwrap();

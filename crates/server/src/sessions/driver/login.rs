@@ -5,18 +5,18 @@ use std::sync::atomic::Ordering;
 use super::Shared;
 use crate::accounts::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
-    Origin, Refusal, StoreFailure, UnixTime,
+    Origin, AccountRefusal, StoreFailure, UnixTime,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
 use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
 use crate::ssh::{Departure, Visitor};
-use cellcaster::terminal::{Options, locale_without_utf8};
+use cellcaster::terminal::{SessionOptions, locale_without_utf8};
 
 /// The account data of a visitor.
 #[derive(Debug)]
-pub(crate) struct Known {
+pub(crate) struct AccountData {
     /// The key; `None` for a guest.
     pub(crate) key: Option<AccountKey>,
     /// The account; `None` for a guest, and before a name is chosen.
@@ -34,7 +34,7 @@ const NOT_NOW: &str = "The host can't keep this now; try again later.";
 impl Shared {
     /// Looks up a visitor. On failure, returns the sentence that tells them why they may not play, and their
     /// departure.
-    pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
+    pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<AccountData, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
@@ -68,7 +68,7 @@ impl Shared {
             Some(account) => account.name.clone(),
             None => self.offer(&visitor.user),
         };
-        Ok(Known { key, account, settings, offer })
+        Ok(AccountData { key, account, settings, offer })
     }
 
     /// A name to offer to a new visitor: their user name, if it is valid and free, or else a guest name.
@@ -87,7 +87,7 @@ pub(crate) fn choose_name(
     name: &Name,
 ) -> Result<Option<Account>, String> {
     let now = UnixTime::now();
-    let sentence = |refusal: Refusal| refusal.to_string();
+    let sentence = |refusal: AccountRefusal| refusal.to_string();
     match (key, account) {
         (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
         (Some(key), None) => {
@@ -96,7 +96,7 @@ pub(crate) fn choose_name(
         }
         (None, None) => match guest_may_use(store, name) {
             Ok(true) => Ok(None),
-            Ok(false) => Err(Refusal::NameTaken.to_string()),
+            Ok(false) => Err(AccountRefusal::NameTaken.to_string()),
             Err(_) => Err(NOT_NOW.to_owned()),
         },
     }
@@ -157,11 +157,11 @@ impl Shared {
 }
 
 /// The properties of a visitor's terminal, as described by their client.
-pub(crate) fn terminal_options(visitor: &Visitor) -> Options {
-    Options {
+pub(crate) fn terminal_options(visitor: &Visitor) -> SessionOptions {
+    SessionOptions {
         is_remote: true,
         is_ascii: ascii_locale(visitor).is_some(),
-        ..Options::from_environment(|name| variable(visitor, name))
+        ..SessionOptions::from_environment(|name| variable(visitor, name))
     }
 }
 

@@ -19,7 +19,7 @@ use crate::rooms::room::{Catalog, RoomView};
 use crate::sessions::session::Session;
 use crate::ssh::{Link, Visitor};
 use crate::visitors::Visitors;
-use cellcaster::terminal::Options;
+use cellcaster::terminal::SessionOptions;
 
 /// A host in simulated time.
 pub(crate) struct Simulated {
@@ -87,7 +87,7 @@ impl Simulated {
         &self,
         visitor: Visitor,
         link: Link,
-        change: impl FnOnce(&mut Options),
+        change: impl FnOnce(&mut SessionOptions),
     ) -> Visiting {
         let mut options = login::terminal_options(&visitor);
         change(&mut options);
@@ -102,7 +102,7 @@ async fn serve(
     shared: Arc<Shared>,
     visitor: Visitor,
     mut link: Link,
-    options: Options,
+    options: SessionOptions,
     mut looked: mpsc::UnboundedReceiver<Look>,
 ) -> u8 {
     let known = match shared.log_in(&visitor).await {

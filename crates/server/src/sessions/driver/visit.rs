@@ -15,7 +15,7 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 use tokio::task::block_in_place;
 use tokio::time::sleep_until;
 
-use super::login::{self, Known};
+use super::login::{self, AccountData};
 use super::{Shared, results};
 use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin};
 use crate::cluster::Entrant;
@@ -28,11 +28,11 @@ use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
+use crate::sessions::session::{HostFacts, Profile, Request, Session, SessionEvent, Way};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
-use cellcaster::terminal::Options;
+use cellcaster::terminal::SessionOptions;
 use cellcaster::world::Difficulty;
 
 /// A visitor's driver.
@@ -113,11 +113,11 @@ impl Driver {
     pub(crate) fn new(
         shared: Arc<Shared>,
         visitor: &Visitor,
-        known: Known,
-        options: Options,
+        known: AccountData,
+        options: SessionOptions,
     ) -> Self {
-        let Known { key, account, settings, offer } = known;
-        let identity = Identity {
+        let AccountData { key, account, settings, offer } = known;
+        let identity = Profile {
             has_account: key.is_some(),
             name: login::line(&offer),
             is_named: account.is_some(),

@@ -15,7 +15,7 @@ use cellcaster::world::Difficulty;
 
 /// The visitor's identity and settings.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Identity {
+pub(crate) struct Profile {
     /// Whether they have an account, which makes their results rank. Otherwise they are a guest.
     pub(crate) has_account: bool,
     /// The name of the account, or else a free name to offer.

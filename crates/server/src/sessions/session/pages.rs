@@ -11,7 +11,7 @@ use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use cellcaster::app::parts::{self, Choice as _, Kind, Menu, of_steps};
+use cellcaster::app::parts::{self, Choice as _, PageKind, Menu, of_steps};
 use cellcaster::world::Difficulty;
 
 /// The number of rooms listed in the lobby. If there are more, another page lists all of them.
@@ -37,7 +37,7 @@ pub(crate) enum Page {
     Boards,
     Board,
     /// A description of a room, before the visitor enters it.
-    Card(Target),
+    Card(RoomTarget),
     /// The driver has been asked for the room.
     Entering,
     Settings,
@@ -78,7 +78,7 @@ pub(crate) enum Choice {
 
 /// A room to enter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
+pub(crate) enum RoomTarget {
     /// A room on the list.
     Existing(RoomId),
     /// A new room, in the level with this index in the catalog.
@@ -86,13 +86,13 @@ pub(crate) enum Target {
 }
 
 impl parts::Page for Page {
-    fn kind(self) -> Kind {
+    fn kind(self) -> PageKind {
         match self {
-            Self::Name | Self::Room | Self::Chat => Kind::Bare,
-            Self::Help => Kind::Help,
-            Self::Leaving => Kind::Leaving,
-            Self::Settings | Self::Levels(_) | Self::Board => Kind::Menu { has_values: true },
-            _ => Kind::Menu { has_values: false },
+            Self::Name | Self::Room | Self::Chat => PageKind::Bare,
+            Self::Help => PageKind::Help,
+            Self::Leaving => PageKind::Leaving,
+            Self::Settings | Self::Levels(_) | Self::Board => PageKind::Menu { has_values: true },
+            _ => PageKind::Menu { has_values: false },
         }
     }
 }
@@ -172,9 +172,9 @@ impl Ui {
     fn enter_room(&mut self, watches: bool) {
         let Page::Card(target) = self.page() else { return };
         let way = match target {
-            Target::Existing(room) if watches => Way::Watch(room),
-            Target::Existing(room) => Way::Enter(room),
-            Target::New { mode, level, difficulty } => {
+            RoomTarget::Existing(room) if watches => Way::Watch(room),
+            RoomTarget::Existing(room) => Way::Enter(room),
+            RoomTarget::New { mode, level, difficulty } => {
                 let Some(level) = self.host.catalog.names.get(level).cloned() else { return };
                 Way::Open(RoomWish { level, mode, difficulty })
             }
@@ -241,7 +241,7 @@ impl Ui {
         let offer = self.offer(&rooms);
         let (label, value) = self.label_of(offer);
         let menu = menu.entry_with(label, value, Choice::Open(Page::Card(offer)));
-        let others = rooms.iter().map(|room| Target::Existing(room.id));
+        let others = rooms.iter().map(|room| RoomTarget::Existing(room.id));
         let others = others.filter(|&target| target != offer).take(ROOMS_IN_LOBBY);
         let menu = others.fold(menu, |menu, target| {
             let (label, value) = self.label_of(target);
@@ -275,27 +275,27 @@ impl Ui {
     }
 
     /// The offered room: the room with the most members that is not full, or else a new room.
-    fn offer(&self, rooms: &[&RoomSummary]) -> Target {
+    fn offer(&self, rooms: &[&RoomSummary]) -> RoomTarget {
         let open = rooms.first().filter(|room| !room.is_full());
-        open.map_or_else(|| self.first_walk(), |room| Target::Existing(room.id))
+        open.map_or_else(|| self.first_walk(), |room| RoomTarget::Existing(room.id))
     }
 
-    fn first_walk(&self) -> Target {
+    fn first_walk(&self) -> RoomTarget {
         let names = &self.host.catalog.names;
         let level = names.iter().position(|name| name == FIRST_LEVEL).unwrap_or(0);
-        Target::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
+        RoomTarget::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
     }
 
     /// The label and the value of a room's menu entry.
-    fn label_of(&self, target: Target) -> (String, String) {
+    fn label_of(&self, target: RoomTarget) -> (String, String) {
         let catalog = &self.host.catalog;
         match target {
-            Target::Existing(id) => {
+            RoomTarget::Existing(id) => {
                 let Some(room) = self.room(id) else { return Default::default() };
                 let label = format!("{} in {}", room.mode.title(), catalog.title(&room.level));
                 (label, format!("{}/{}", room.members.len(), room.mode.most()))
             }
-            Target::New { mode, .. } => {
+            RoomTarget::New { mode, .. } => {
                 let label = format!("{} in {}", mode.title(), self.level_title(target));
                 (label, "new".to_owned())
             }
@@ -303,11 +303,11 @@ impl Ui {
     }
 
     /// The title of a room's level.
-    pub(crate) fn level_title(&self, target: Target) -> String {
+    pub(crate) fn level_title(&self, target: RoomTarget) -> String {
         let catalog = &self.host.catalog;
         let name = match target {
-            Target::Existing(id) => self.room(id).map(|room| room.level.as_str()),
-            Target::New { level, .. } => catalog.names.get(level).map(String::as_str),
+            RoomTarget::Existing(id) => self.room(id).map(|room| room.level.as_str()),
+            RoomTarget::New { level, .. } => catalog.names.get(level).map(String::as_str),
         };
         name.map_or_else(String::new, |name| catalog.title(name).to_owned())
     }
@@ -317,7 +317,7 @@ impl Ui {
         let rooms = self.rooms_by_life();
         let rooms = rooms.into_iter().filter(|room| !watches || !room.members.is_empty());
         let menu = rooms.fold(menu, |menu, room| {
-            let target = Target::Existing(room.id);
+            let target = RoomTarget::Existing(room.id);
             let (label, value) = self.label_of(target);
             menu.entry_with(label, value, Choice::Open(Page::Card(target)))
         });
@@ -335,7 +335,7 @@ impl Ui {
             menu
         };
         self.each_level(menu, mode, |level| {
-            Choice::Open(Page::Card(Target::New { mode, level, difficulty }))
+            Choice::Open(Page::Card(RoomTarget::New { mode, level, difficulty }))
         })
     }
 
@@ -375,11 +375,11 @@ impl Ui {
         .entry("Back", Choice::Back)
     }
 
-    fn card_menu(&self, target: Target) -> Menu<Choice> {
+    fn card_menu(&self, target: RoomTarget) -> Menu<Choice> {
         let back = |menu: Menu<Choice>| menu.entry("Back", Choice::Back);
         let (mode, who, is_full) = match target {
-            Target::New { mode, .. } => (mode, None, false),
-            Target::Existing(id) => match self.room(id) {
+            RoomTarget::New { mode, .. } => (mode, None, false),
+            RoomTarget::Existing(id) => match self.room(id) {
                 None => return back(Menu::new("").line("The room is closed.")),
                 Some(room) if self.host.catalog.world(&room.level).is_none() => {
                     return back(Menu::new("").line(RoomRefusal::NoLevel.to_string()));
@@ -402,9 +402,9 @@ impl Ui {
         let menu = lines.into_iter().flatten().fold(menu, Menu::line);
         let [enters, watches] = [false, true].map(|watches| Choice::Enter { watches });
         back(match target {
-            Target::New { .. } => menu.entry("Go in", enters),
-            Target::Existing(_) if is_full => menu.entry("Watch, since it is full", watches),
-            Target::Existing(_) => menu.entry("Go in", enters).entry("Watch", watches),
+            RoomTarget::New { .. } => menu.entry("Go in", enters),
+            RoomTarget::Existing(_) if is_full => menu.entry("Watch, since it is full", watches),
+            RoomTarget::Existing(_) => menu.entry("Go in", enters).entry("Watch", watches),
         })
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
-use super::messages::{HostFacts, Identity, SessionEvent};
+use super::messages::{HostFacts, Profile, SessionEvent};
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::room::{Catalog, MemberId, RoomView};
@@ -23,7 +23,7 @@ pub(crate) struct ReplayedScreen {
 impl ReplayedScreen {
     /// The screen of `member`, as their session shows it with the usual settings.
     pub(crate) fn new(member: MemberId, name: Line, catalog: Arc<Catalog>, size: Size) -> Self {
-        let identity = Identity {
+        let identity = Profile {
             has_account: false,
             name: name.clone(),
             is_named: true,

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::endings::{Draining, ELSEWHERE, IN_ROOM, Idle, IdleAction};
 use super::line_entry::LineEntry;
-use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
+use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
 use crate::line::Line;
@@ -25,7 +25,7 @@ const MAX_REQUESTS: usize = 64;
 /// The state of a session's user interface.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(crate) struct Ui {
-    pub(crate) identity: Identity,
+    pub(crate) identity: Profile,
     pub(crate) host: HostFacts,
     pub(crate) requests: Vec<Request>,
     pub(crate) bindings: Bindings,
@@ -77,7 +77,7 @@ pub(crate) struct Board {
 
 impl Ui {
     pub(crate) fn new(
-        identity: Identity,
+        identity: Profile,
         host: HostFacts,
         has_ascii_only: bool,
         now: Duration,

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{CLIENTS, HOSTILE, Run};
+use super::{CLIENTS, HOSTILE, SeedRun};
 
 /// How long a connection takes at most to notice that its client is gone, in milliseconds; the
 /// configuration's default.
@@ -32,7 +32,7 @@ const KEYS: [&str; 20] = [
     "w",
 ];
 
-impl Run {
+impl SeedRun {
     /// Disturbs a random client other than the steady one.
     pub(crate) fn disturb(&mut self) {
         let others = &self.connected[1..];

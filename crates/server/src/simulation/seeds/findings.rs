@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{BETWEEN_KEYS, Bystander, Run, STEADY, hall};
+use super::{BETWEEN_KEYS, Bystander, SeedRun, STEADY, hall};
 use crate::sessions::session::Session;
 use crate::simulation::emulator::Emulator;
 use crate::simulation::looks::looks;
@@ -18,7 +18,7 @@ const MAX_PAUSE: Duration = Duration::from_millis(100);
 /// The longest time from the bystander's key to the frame that answers it.
 const MAX_ANSWER: Duration = Duration::from_millis(100);
 
-impl Run {
+impl SeedRun {
     /// Asserts that the frames of the steady member were never delayed.
     pub(crate) fn assert_steady(&self, begun: Instant, end: Instant) {
         let arrivals = self.rig.clients[STEADY].arrivals();

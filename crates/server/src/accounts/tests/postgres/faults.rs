@@ -45,7 +45,7 @@ fn what_was_acknowledged_survives_a_crash_amid_writes() {
             }
             server.crash();
             let failure = writer.join().unwrap();
-            assert!(matches!(failure, Some(Refusal::Failed(_))), "{failure:?}");
+            assert!(matches!(failure, Some(AccountRefusal::Failed(_))), "{failure:?}");
             acknowledged.extend(receiver);
         });
         server.restart();
@@ -97,7 +97,7 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
             "{failure}"
         );
         let changed = store.create_account(None, &key(1), &name("Ada"), at(0));
-        assert!(matches!(changed, Err(Refusal::Failed(_))), "{changed:?}");
+        assert!(matches!(changed, Err(AccountRefusal::Failed(_))), "{changed:?}");
         assert!(start.elapsed() < 2 * MAX, "{:?}", start.elapsed());
         thread::sleep(Duration::from_millis(1100));
     }
@@ -131,7 +131,7 @@ fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
         proxy.cut(Cut { at: "COMMIT", is_passed_on });
         let name = name(&format!("n-{number}"));
         let answer = store.create_account(None, &key(number), &name, at(0));
-        let Err(Refusal::Failed(failure)) = answer else { panic!("{answer:?}") };
+        let Err(AccountRefusal::Failed(failure)) = answer else { panic!("{answer:?}") };
         assert!(failure.to_string().ends_with("the last change may be kept or not"), "{failure}");
         assert!(proxy.has_cut());
         // The server may still be executing the statement.

@@ -224,10 +224,10 @@ fn only_ascii_is_sent_until_half_blocks_are_chosen() {
 #[test]
 fn frames_begin_exact_where_the_connection_compresses() {
     let first = |fidelity| {
-        let options = Options {
+        let options = SessionOptions {
             fidelity,
             is_remote: true,
-            ..Options::from_environment(|name| (name == "TERM").then(|| "xterm".to_owned()))
+            ..SessionOptions::from_environment(|name| (name == "TERM").then(|| "xterm".to_owned()))
         };
         Protocol::new(options, WindowSize::of_cells(80, 24)).fidelity()
     };

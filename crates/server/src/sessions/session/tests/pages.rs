@@ -3,7 +3,7 @@
 use super::*;
 use crate::rooms::summary::RoomId;
 use crate::sessions::session::pages::Page;
-use crate::sessions::session::pages::Target;
+use crate::sessions::session::pages::RoomTarget;
 use crate::simulation::emulator::{Emulator, Modes};
 
 #[test]
@@ -11,7 +11,7 @@ fn enter_alone_leads_to_a_first_walk() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("amber-fox", (80, 24), Speaks::Kitty);
     assert_eq!(rig.page(one), Page::Name);
-    for page in [Page::Lobby, Page::Card(Target::Existing(ROOM)), Page::Room] {
+    for page in [Page::Lobby, Page::Card(RoomTarget::Existing(ROOM)), Page::Room] {
         rig.press(one, ENTER);
         assert_eq!(rig.page(one), page, "{}", rig.text(one));
     }
