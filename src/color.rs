@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn every_share_is_rounded_to_the_nearest() {
+    fn blends_round_to_the_nearest_value() {
         for (alpha, front) in (0..=255).flat_map(|alpha| (0..=255).map(move |front| (alpha, front)))
         {
             for behind in (0..=255).step_by(3).chain([254, 255]) {
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn many_pixels_are_blended_as_each_by_itself() {
+    fn many_pixels_blend_like_single_ones() {
         let behind: Vec<_> = (0..=255).map(|it| Rgb::new(it, 255 - it, it / 2)).collect();
         for (alpha, count) in (0..=255).zip((0..9).chain(248..257).cycle()) {
             for front in [Rgb::BLACK, Rgb::WHITE, Rgb::new(alpha, 17, 200)] {
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn blending_is_by_channel() {
+    fn channels_blend_separately() {
         let (one, other) = (Rgb::new(200, 0, 255), Rgb::new(100, 255, 1));
         assert_eq!(one.blended(256, other, 0), one);
         assert_eq!(one.blended(0, other, 256), other);

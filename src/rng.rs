@@ -109,7 +109,7 @@ mod tests {
     /// The expected numbers are the first three of the reference implementation for the seed
     /// 1234567.
     #[test]
-    fn numbers_are_those_of_the_reference() {
+    fn numbers_match_the_reference() {
         let mut random = SplitMix64::new(1_234_567);
         assert_eq!(
             [(); 3].map(|()| random.bits()),

@@ -53,7 +53,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn items_are_sorted_as_by_the_standard_library(
+        fn items_sort_as_in_the_standard_library(
             items in prop::collection::vec((0..9_u8, any::<u8>()), 0..50),
         ) {
             let (mut sorted, mut expected) = (items.clone(), items);

@@ -40,7 +40,7 @@ pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
 pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
-pub(crate) use sectors::{PlaneSide, PlaneSurface as PlaneSurfaceAlias};
+pub(crate) use sectors::{PlaneSide, PlaneSurface};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::StatsCounter;
 pub use stats::{FrameStats, Pass, PassStats, WalkStats};

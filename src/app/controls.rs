@@ -566,7 +566,7 @@ mod tests {
     }
 
     #[test]
-    fn the_character_of_a_key_counts_before_its_position() {
+    fn a_keys_character_takes_precedence_over_its_position() {
         let event = |key, base| KeyEvent {
             key: Key::Char(key),
             base: Some(Key::Char(base)),
@@ -600,7 +600,7 @@ mod tests {
     const CELL: u32 = MouseEvent::UNITS_PER_CELL;
 
     #[test]
-    fn the_first_position_turns_nothing_and_a_cell_is_two_degrees() {
+    fn the_first_position_turns_nothing_and_a_cell_turns_two_degrees() {
         let mut pointer = on(80);
         pointer.move_to(40 * CELL, 10 * CELL);
         assert_eq!(pointer.look(), Look::NONE);
@@ -613,7 +613,7 @@ mod tests {
     }
 
     #[test]
-    fn at_an_edge_the_player_makes_one_turn() {
+    fn an_edge_turns_the_player_one_full_circle() {
         let mut pointer = on(80);
         pointer.move_to(50 * CELL, 10 * CELL);
         pointer.move_to(79 * CELL, 10 * CELL);
@@ -643,7 +643,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn returning_to_a_position_turns_nothing(
+        fn returning_to_a_position_undoes_the_turn(
             positions in prop::collection::vec((20 * CELL..60 * CELL, 0..24 * CELL), 1..40),
             cuts in prop::collection::vec(any::<bool>(), 40),
         ) {

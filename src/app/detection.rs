@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn the_line_about_tmux_says_what_gives_more() {
+    fn the_tmux_line_says_how_to_get_more() {
         let said = |answer, depth, source| {
             let tmux = TmuxClient::parse(answer);
             let detection =

@@ -190,7 +190,7 @@ mod tests {
     use crate::game::{Intent, Script};
 
     #[test]
-    fn the_script_has_the_steps_that_were_recorded() {
+    fn the_script_contains_the_recorded_steps() {
         let run = [Intent::Run].into_iter().collect();
         let most = u64::from(Stretch::MAX_STEPS);
         let recorded = [(run, 3), (run, 4), (Intents::new(), 1), (run, 0), (run, 2 * most + 1)];
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn it_gives_the_steps_of_the_script() {
+    fn steps_match_the_script() {
         let text = "2 steps forward\n[b]\n1 step stand\n3 steps run\n";
         let script = Script::parse(text, "it").unwrap_or_else(|faults| panic!("{faults}"));
         assert!(steps(&script).eq(script.iter().map(|(_, intents)| intents)));

@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ordinals_have_the_endings_of_english() {
+    fn ordinals_have_english_endings() {
         let numbers = [1, 2, 3, 4, 11, 12, 13, 21, 102, 111, 113];
         let shown = numbers.map(ordinal).join(" ");
         assert_eq!(shown, "1st 2nd 3rd 4th 11th 12th 13th 21st 102nd 111th 113th");

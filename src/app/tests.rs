@@ -138,7 +138,7 @@ grid = '''
 "##;
 
 #[test]
-fn who_looks_ahead_does_so_whatever_was_pressed_before() {
+fn looking_ahead_works_whatever_was_pressed_before() {
     let pitch = |rig: &Rig| rig.game().camera(FieldOfView::default()).pitch.slope();
     for rate in [None, Some((250, 40)), Some((500, 30)), Some((660, 15))] {
         for (held, between) in [(10, 0), (10, 60), (10, 200), (900, 0), (900, 60)] {
@@ -156,7 +156,7 @@ fn who_looks_ahead_does_so_whatever_was_pressed_before() {
 }
 
 #[test]
-fn walking_and_turning_is_a_circle() {
+fn walking_while_turning_traces_a_circle() {
     for (delay, rate) in [(250, 40), (500, 30), (660, 15)] {
         let mut rig = Rig::new(floor(), Some((delay, rate)));
         rig.press(W);
@@ -179,7 +179,7 @@ fn walking_and_turning_is_a_circle() {
 }
 
 #[test]
-fn two_taps_are_twice_one_tap_in_one_read_and_apart() {
+fn taps_add_up_in_one_read_and_apart() {
     for gap in [0, 1, 50, 150, 300, 500] {
         for (key, one) in [(W, 0.25), (Key::Right, 5.0), (Key::Char('o'), 5.0)] {
             for taps in 1..=4 {
@@ -220,7 +220,7 @@ fn losing_the_focus_releases_all_keys() {
 }
 
 #[test]
-fn a_key_to_walk_ends_walking_without_a_key() {
+fn a_walking_key_ends_automatic_walking() {
     let mut rig = Rig::new(floor(), Some((500, 30)));
     rig.tap(Key::Char('g'), 50);
     rig.wait(1000);
@@ -235,7 +235,7 @@ fn a_key_to_walk_ends_walking_without_a_key() {
 }
 
 #[test]
-fn turning_around_is_180_degrees() {
+fn turning_around_turns_180_degrees() {
     let mut rig = Rig::new(floor(), Some((500, 30)));
     rig.tap(Key::Char('b'), 50);
     rig.wait(1000);

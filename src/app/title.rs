@@ -292,7 +292,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_demo_moves_and_comes_to_its_end() {
+    fn the_demo_moves_and_ends() {
         let (mut played, intents_of_steps) = demo().unwrap();
         let start = played.grid().unwrap().clone();
         let mut steps = 0;
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn the_name_is_as_large_as_it_is_drawn() {
+    fn the_reported_size_of_the_name_matches_its_drawing() {
         insta::assert_snapshot!(lines(GlyphSet::Half, 1).join("\n"));
         insta::assert_snapshot!(lines(GlyphSet::Ascii, 1).join("\n"));
         for (glyphs, scale, size) in [

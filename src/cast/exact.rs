@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ulp_beside_a_corner_counts() {
+    fn one_ulp_beside_a_corner_changes_the_side() {
         let diagonal = ["...", ".#.", "..."];
         let enters_by = |y| side(&diagonal, (0.5, y), (1.0, 1.0));
         assert_eq!(enters_by(0.5_f64.next_down()), Some(Side::Y));

@@ -188,7 +188,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_rays_of_a_camera_have_the_order_of_each_by_itself(
+        fn camera_rays_are_ordered_like_each_ray_alone(
             origin in prop::array::uniform2(prop_oneof![
                 -1.0..5.0,
                 (-4..20_i32).prop_map(|quarters| f64::from(quarters) / 4.0),

@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_ray_without_a_direction() {
+    fn a_ray_needs_a_finite_origin_and_direction() {
         let ray = |x, y, dx, dy| Ray::new(DVec2::new(x, y), DVec2::new(dx, dy));
         assert_eq!(ray(0.0, 0.0, 0.0, -0.0), Err(RayError::NoDirection));
         assert_eq!(ray(0.0, f64::NAN, 1.0, 0.0), Err(RayError::Origin));

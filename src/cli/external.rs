@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_that_moved_go_to_other_programs() {
+    fn moved_commands_run_other_programs() {
         for (line, expected) in [
             ("c", "here"),
             ("c cellar", "here"),

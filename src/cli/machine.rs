@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn days_are_dates() {
+    fn days_convert_to_dates() {
         for (days, expected) in [
             (0, 19_700_101),
             (58, 19_700_228),

@@ -258,7 +258,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_text_comes_back_at_its_time(events: Vec<(u16, String)>) {
+        fn every_text_is_recorded_at_its_time(events: Vec<(u16, String)>) {
             let mut file = Vec::new();
             let mut asciicast = Asciicast::begin(&mut file, Size::new(1, 1))?;
             let mut now = Duration::ZERO;

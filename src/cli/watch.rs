@@ -97,7 +97,7 @@ mod tests {
     const ANOTHER_PNG: &[u8] = include_bytes!("../../tests/maps/letter.png");
 
     #[test]
-    fn every_change_is_reported_once_and_faults_when_they_last() {
+    fn each_change_is_reported_once_and_faults_only_if_they_last() {
         let folder = env::temp_dir().join(format!("cellcaster-watch-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (map, texture) = (folder.join("map.toml"), folder.join("floor.png"));

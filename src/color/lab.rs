@@ -190,7 +190,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
         #[test]
-        fn distances_are_those_of_the_standard(one: [u8; 3], other: [u8; 3]) {
+        fn distances_match_the_standard(one: [u8; 3], other: [u8; 3]) {
             let [found, other_found] = [one, other].map(|color| PackedLab::of(color).components());
             let found = distance(found.map(f64::from), other_found.map(f64::from));
             let expected = distance(exact(one), exact(other));

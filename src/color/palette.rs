@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_colour_of_a_palette_colour_is_itself_or_almost() {
+    fn a_palette_colour_maps_to_itself_or_nearly_so() {
         for index in 16..=255 {
             let shown = of_256(nearest_of_256(of_256(index)));
             for (channel, shown) in of_256(index).channels().into_iter().zip(shown.channels()) {

@@ -119,7 +119,7 @@ mod tests {
 
     /// The power function is the oracle.
     #[test]
-    fn the_table_is_the_standard_function() {
+    fn the_table_matches_the_standard_function() {
         for (value, &light) in LINEAR.iter().enumerate() {
             let signal = value as f64 / 255.0;
             let expected = if signal <= 0.040_45 {
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn every_channel_comes_back_from_linear_light() {
+    fn every_channel_survives_a_round_trip_to_linear_light() {
         for channel in 0..=255 {
             let gray = Rgb::new(channel, channel, channel);
             assert_eq!(from_linear_16(linear_16(gray)), gray);

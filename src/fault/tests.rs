@@ -3,7 +3,7 @@ use insta::assert_snapshot;
 use super::*;
 
 #[test]
-fn a_place_of_several_lines_is_underlined_on_its_first() {
+fn a_multi_line_place_is_underlined_on_its_first_line() {
     let text = "grid = '''\r\n####\r\n'''\r\n";
     let fault = Fault::new(7..21, "the grid is small").label("this one").help("draw more");
     assert_snapshot!(Faults::new("a.toml", text, vec![fault]), @r"
@@ -18,7 +18,7 @@ fn a_place_of_several_lines_is_underlined_on_its_first() {
 }
 
 #[test]
-fn faults_come_in_the_order_of_their_places() {
+fn faults_are_ordered_by_place() {
     let faults = [7, 0, 3].map(|at| Fault::new(at..at + 1, format!("the byte {at} is bad")));
     assert_snapshot!(Faults::new("a.toml", "one\nänd\n", faults.into()), @r"
     error: the byte 0 is bad
@@ -61,7 +61,7 @@ fn an_endless_line_is_not_shown() {
 }
 
 #[test]
-fn the_end_of_the_text_is_a_place() {
+fn a_fault_can_be_at_the_end_of_the_text() {
     for text in ["", "a", "a\n", "a\r\n", "ä"] {
         let end = text.len();
         let report = Faults::new("a.toml", text, vec![Fault::new(end..end, "more was due")]);
@@ -70,7 +70,7 @@ fn the_end_of_the_text_is_a_place() {
 }
 
 #[test]
-fn many_faults_are_counted() {
+fn faults_beyond_the_limit_are_counted() {
     let faults: Vec<Fault> = (0..250).map(|at| Fault::new(at..at + 1, "no")).collect();
     let faults = Faults::new("a.toml", &"\n".repeat(250), faults);
     assert_eq!(faults.len(), 250);
@@ -80,7 +80,7 @@ fn many_faults_are_counted() {
 }
 
 #[test]
-fn a_whole_file_has_no_line() {
+fn a_fault_of_a_whole_file_shows_no_line() {
     let faults = Faults::of_whole_file("a.toml", "a.toml is too large", "make it small");
     assert_snapshot!(faults, @r"
     error: a.toml is too large
@@ -90,7 +90,7 @@ fn a_whole_file_has_no_line() {
 }
 
 #[test]
-fn control_characters_are_shown_and_nothing_else_changes() {
+fn control_characters_are_escaped_and_nothing_else_changes() {
     assert_eq!(printable("a\u{1b}[31m\r\n\u{9b}\u{7f}\0"), r"a\u{1b}[31m\r\n\u{9b}\u{7f}\0");
     assert_eq!(printable("\u{202e}live"), r"\u{202e}live");
     for text in ["", r#""it's" C:\maps"#, "Flur – 廊下", "e\u{301}"] {
@@ -106,14 +106,14 @@ fn a_path_is_shown_on_one_line() {
 
 #[cfg(feature = "cli")]
 #[test]
-fn lines_stay_lines() {
+fn printing_keeps_line_breaks() {
     assert_eq!(printable_lines("one\ntwo\u{7}\n"), "one\ntwo\\u{7}\n");
 }
 
 const KEYS: &[&str] = &["title", "ceiling", "floor", "grid"];
 
 #[test]
-fn a_slip_has_a_nearest_name() {
+fn a_misspelling_has_a_nearest_name() {
     for (slip, name) in
         [("titel", "title"), ("celing", "ceiling"), ("Floor", "floor"), ("gridd", "grid")]
     {
@@ -122,7 +122,7 @@ fn a_slip_has_a_nearest_name() {
 }
 
 #[test]
-fn another_word_has_none() {
+fn an_unrelated_word_has_no_nearest_name() {
     for word in ["", "x", "walls", "ceilinggniliec", &"floor".repeat(1_000_000)] {
         assert_eq!(nearest(word, KEYS), None);
     }

@@ -444,7 +444,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn distances_are_the_shortest_however_often_the_search_stops(
+        fn distances_are_shortest_however_often_the_search_stops(
             open in prop::collection::vec(prop::bool::weighted(0.7), (SIDE * SIDE) as usize),
             starts in prop::collection::vec((0..SIDE, 0..SIDE), 1..4),
         ) {

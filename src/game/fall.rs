@@ -85,7 +85,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn two_steps_are_one_step_of_their_sum(
+        fn two_steps_equal_one_step_of_their_sum(
             height in 0.0..1.0,
             speed in -10.0..10.0,
             ceiling in prop_oneof![Just(f64::INFINITY), 1.0..3.0],
@@ -103,7 +103,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_always_between_floor_and_ceiling(
+        fn a_flight_stays_between_floor_and_ceiling(
             height in 0.0..=1.0,
             speed in prop_oneof![-1e9..1e9, -1.0..1.0],
             floor in prop_oneof![Just(0.0), Just(-1e9), -1e-9..0.0],

@@ -231,7 +231,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nobody_enters_a_body_or_outruns_a_runner(
+        fn the_player_never_enters_a_body_or_exceeds_running_speed(
             degrees in 0.0..360.0,
             script in prop::collection::vec(
                 (1..40_usize, prop::sample::subsequence(Intent::ALL.to_vec(), 0..6)),
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn rising_sinking_and_looking() {
+    fn the_player_rises_sinks_and_looks() {
         let mut flight = Flight::new(scene(0.0));
         (0..30).for_each(|_| flight.step(intents(&[Intent::Jump, Intent::LookUp])));
         assert!(flight.player.position.z > 1.0 && flight.player.elevation.degrees() > 10.0);

@@ -295,7 +295,7 @@ mod tests {
         }
 
         #[test]
-        fn they_first_come_out_after_their_delay(period in 60..=3600_u16, delay in 0..3600_u16) {
+        fn spikes_first_come_out_after_their_delay(period in 60..=3600_u16, delay in 0..3600_u16) {
             let rhythm = Rhythm { period, delay: delay % period };
             let first = (0..7200).find(|&step| rhythm.phase(step) == SpikePosition::Out);
             prop_assert_eq!(first, Some(u64::from(rhythm.delay)));

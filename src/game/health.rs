@@ -227,7 +227,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn health_is_between_nothing_and_most(
+        fn health_stays_between_zero_and_the_maximum(
             changes in prop::collection::vec((any::<bool>(), any::<u8>(), any::<bool>()), 0..20)
         ) {
             let mut health = Health::default();
@@ -250,7 +250,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_guard_warns_first_and_kills_after_the_grace_whatever_others_do(
+        fn each_guard_warns_first_and_kills_only_after_its_grace(
             waits in prop::collection::vec(1..700_u64, 1..12),
             others in prop::collection::vec(any::<bool>(), 12),
         ) {

@@ -333,7 +333,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn behaves_as_a_set(changes: Vec<(bool, prop::sample::Index)>) {
+        fn intents_behave_as_a_set(changes: Vec<(bool, prop::sample::Index)>) {
             let mut intents = Intents::new();
             let mut model = BTreeSet::new();
             for (add, index) in changes {
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn every_amount_is_read_as_it_is_written() {
+    fn every_amount_reads_back_as_written() {
         for amount in i16::MIN + 1..=i16::MAX {
             let read = (amount != 0).then_some(amount);
             assert_eq!(hundredths(&Degrees(amount).to_string()), read);
@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_amount_is_refused() {
+    fn invalid_amounts_are_refused() {
         for text in ["", "x", "nan", "inf", "0", "-0.0", "0.001", "1.005", "328", "1e300", "1,5"] {
             assert_eq!(hundredths(text), None, "{text}");
         }

@@ -200,7 +200,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nobody_carries_more_than_nine_or_less_than_nothing(
+        fn supplies_stay_between_zero_and_nine(
             changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
         ) {
             let mut supplies = Supplies::AT_START;

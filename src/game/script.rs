@@ -695,7 +695,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_reads_as_the_same(script in script()) {
+        fn a_written_script_reads_back_unchanged(script in script()) {
             let text = script.to_string();
             prop_assert_eq!(Script::parse(&text, "it").map_err(|faults| faults.to_string()), Ok(script));
         }
@@ -718,7 +718,7 @@ mod tests {
     }
 
     #[test]
-    fn a_script_is_its_steps() {
+    fn a_script_expands_to_its_steps() {
         let text = "1 step forward\n[b] # two\n0.05s stand\n2 steps run  open\n";
         let script = Script::parse(text, "it").unwrap();
         let wanted: Vec<(usize, Vec<Intent>)> =
@@ -742,7 +742,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_was_recorded_is_what_happened(
+        fn a_recording_reads_back_as_the_steps_played(
             happened in prop::collection::vec((0..3_usize, 0..400_u64), 1..20)
         ) {
             let wants = [Intents::new(), [Intent::Run].into_iter().collect(), Intent::ALL.into_iter().collect()];
@@ -760,7 +760,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_comes_with_the_first_stretch() {
+    fn the_header_is_written_with_the_first_stretch() {
         let header = Header { seed: Some(7), ..Header::default() };
         let mut text = Vec::new();
         drop(ScriptWriter::with_header(&mut text, header.clone()));
@@ -770,7 +770,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretch_longer_than_a_line_may_be_takes_several() {
+    fn an_overlong_stretch_takes_several_lines() {
         let mut text = Vec::new();
         ScriptWriter::new(&mut text)
             .record(Intents::new(), 2 * u64::from(Stretch::MAX_STEPS) + 1)

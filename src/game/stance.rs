@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_ducks_gets_small_and_who_stands_up_tall_again() {
+    fn ducking_lowers_the_player_and_standing_up_raises_them_again() {
         let after =
             |stance: Stance, ducks| (0..60).fold(stance, |stance, _| stance.after_a_step(ducks));
         let small = after(Stance::default(), true);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn an_eye_is_between_floor_and_ceiling() {
+    fn the_eye_stays_between_floor_and_ceiling() {
         for climbed in [-1e9, -0.3, 0.0, 0.3, 1e9] {
             let eye = Stance::default().following(climbed).eye(0.7);
             assert!(0.0 < eye && eye < 0.7, "{eye}");

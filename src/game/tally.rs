@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rank_for_everybody() {
+    fn every_result_has_a_rank() {
         let all = Share { found: 50, total: 50 };
         let some = Share { found: 10, total: 50 };
         let tally = |steps, treasure, alarms, stunned| {

@@ -122,7 +122,7 @@ proptest! {
     }
 
     #[test]
-    fn nobody_enters_a_wall_or_outruns_a_runner(script in script(), degrees in 0.0..360.0) {
+    fn the_player_never_enters_a_wall_or_exceeds_running_speed(script in script(), degrees in 0.0..360.0) {
         let mut game = Game::new(world(&CELLAR, degrees));
         for held in script.iter().flat_map(|(steps, held)| vec![held; *steps]) {
             let before = position(&game);
@@ -134,7 +134,7 @@ proptest! {
     }
 
     #[test]
-    fn who_wants_nothing_comes_to_rest(script in script(), degrees in 0.0..360.0) {
+    fn a_player_without_intents_comes_to_rest(script in script(), degrees in 0.0..360.0) {
         let mut game = Game::new(world(&CELLAR, degrees));
         for (steps, held) in &script {
             walk(&mut game, *steps, held);
@@ -150,7 +150,7 @@ proptest! {
     }
 
     #[test]
-    fn who_pushes_into_a_corner_comes_to_rest(degrees in 1.0..89.0) {
+    fn a_player_pushing_into_a_corner_comes_to_rest(degrees in 1.0..89.0) {
         let mut game = Game::new(world(&["####", "#@.#", "#..#", "####"], degrees));
         walk(&mut game, 60 * 60, &[Intent::Forward]);
         prop_assert!(game.is_at_rest(intents(&[Intent::Forward])));
@@ -160,7 +160,7 @@ proptest! {
 }
 
 #[test]
-fn a_second_of_walking_and_of_turning() {
+fn walking_running_and_turning_reach_their_speeds() {
     let row = format!("@{}", ".".repeat(20));
     for (gait, speed) in [(&[][..], 3.0), (&[Intent::Run], 5.5)] {
         let mut game = Game::new(world(&[&row], 0.0));
@@ -178,7 +178,7 @@ fn a_second_of_walking_and_of_turning() {
 }
 
 #[test]
-fn a_wall_keeps_no_speed() {
+fn a_wall_takes_all_speed() {
     let mut game = Game::new(world(&["@....#"], 0.0));
     walk(&mut game, 600, &[Intent::Forward, Intent::Run]);
     assert_eq!(position(&game), DVec2::new(4.75, 0.5));
@@ -238,7 +238,7 @@ fn a_walk_ends_at_the_same_place_on_every_machine() {
 }
 
 #[test]
-fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
+fn a_player_keeps_their_place_in_a_changed_world_if_it_is_free() {
     let rows = ["#######", "#@....#", "#....E#", "#######"];
     let mut game = Game::new(world(&rows, 0.0));
     let wants = [Intent::Forward, Intent::TurnRight].into_iter().collect();
@@ -261,7 +261,7 @@ fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
 }
 
 #[test]
-fn a_look_turns_and_tilts_at_once_and_by_exactly_its_angle() {
+fn a_look_turns_and_tilts_at_once_by_its_exact_angle() {
     let mut game = Game::new(world(&["#####", "#.@.#", "#####"], 0.0));
     let start = game.camera(FieldOfView::default());
     let looking = |turn, tilt| Intents::new().with_look(Look { turn, tilt });

@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dart_finds_what_is_within_15_degrees() {
+    fn a_dart_aims_within_15_degrees() {
         assert!((AIM_COSINE - libm::cos(15_f64.to_radians())).abs() < 1e-15);
     }
 }

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn ten_steps_of_aiming_are_five_degrees() {
+    fn ten_steps_of_aiming_turn_five_degrees() {
         for (way, sign) in [(Intent::TurnRight, 1.0), (Intent::TurnLeft, -1.0)] {
             let mut turning = Turning::default();
             let turned = degrees(&mut turning, 10, &[way, Intent::Aim]);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_as_far_as_it_goes_and_comes_to_rest() {
+    fn pitch_stops_at_its_limit_and_comes_to_rest() {
         let up = after(PitchControl::default(), 600, &[Intent::LookUp]);
         assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MAX_DEGREES).unwrap());
         assert_eq!(after(up, 1, &[Intent::LookUp]), up);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tap_takes_it_back_unless_one_looks_elsewhere() {
+    fn a_tap_levels_the_view_unless_the_player_looks_elsewhere() {
         let up = after(PitchControl::default(), 40, &[Intent::LookUp]);
         let returning = after(up, 1, &[Intent::LookAhead]);
         assert_eq!(after(returning, 120, &[]), PitchControl::default());

@@ -269,7 +269,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_site_is_a_cell_of_one_chunk(column: i64, row: i64, columns in -9_i64..9, rows in -9_i64..9) {
+        fn every_site_is_in_exactly_one_chunk(column: i64, row: i64, columns in -9_i64..9, rows in -9_i64..9) {
             let (chunk, (x, y)) = Site { column, row }.chunk();
             prop_assert_eq!(chunk.site(x as i64, y as i64), Site { column, row });
             let further = chunk.offset(columns, rows);
@@ -281,7 +281,7 @@ mod tests {
         }
 
         #[test]
-        fn plots_are_what_is_within_the_outermost_wall(columns in 8_u32..200, rows in 8_u32..200) {
+        fn plots_cover_everything_inside_the_outer_wall(columns in 8_u32..200, rows in 8_u32..200) {
             let extent = Extent::new(columns, rows).unwrap();
             let areas = (-1..8).flat_map(|row| (-1..8).map(move |column| ChunkIndex { column, row }));
             let area: usize = areas.map(|index| extent.area(index)).map(|area| area.columns.len() * area.rows.len()).sum();

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_the_same_everywhere() {
+    fn numbers_are_the_same_on_every_machine() {
         let numbers = [
             hash(0, Purpose::Plan, 0, 0),
             hash(7, Purpose::Rock, 1_000_000_000, -1_000_000_000),
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn a_neighbour_a_purpose_and_a_seed_tell_nothing_of_each_other() {
+    fn neighbours_purposes_and_seeds_give_unrelated_hashes() {
         let ones = |one: u64, other: u64| (one ^ other).count_ones();
         let mean = |pairs: &dyn Fn(i64) -> (u64, u64)| {
             (0..1000).map(pairs).map(|(one, other)| ones(one, other)).sum::<u32>() / 1000

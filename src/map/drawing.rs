@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn characters_come_in_their_order() {
+    fn characters_come_in_code_point_order() {
         let mut counts = PerCharacter::<u32>::new();
         for character in "éxaé\u{7f}\u{80}\0".chars() {
             *counts.get_mut(character) += 1;

@@ -58,7 +58,7 @@ fn cell(column: u32, row: u32) -> Cell {
 }
 
 #[test]
-fn items_are_things() {
+fn items_become_things() {
     let world = world();
     let kind = |column, row| world.things_in(cell(column, row))[0].kind;
     assert_eq!((world.par(), world.treasure_needed()), (Some(90), 60));
@@ -79,7 +79,7 @@ fn items_are_things() {
 }
 
 #[test]
-fn guards_are_posts_and_no_things() {
+fn guards_become_posts_rather_than_things() {
     let world = world();
     let [warden, hound, lantern, archer, listener] = world.guards() else { panic!("five guards") };
     assert_eq!((warden.kind, warden.heading.degrees()), (GuardKind::Warden, 90.0));

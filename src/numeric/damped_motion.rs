@@ -64,7 +64,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn two_steps_are_one_step_of_their_sum(
+        fn two_steps_equal_one_step_of_their_sum(
             velocity in speed(),
             target in speed(),
             rate in power_of_ten(-3.0..6.0),
@@ -83,7 +83,7 @@ mod tests {
         }
 
         #[test]
-        fn never_passes_its_target(
+        fn velocity_never_passes_its_target(
             velocity in speed(),
             target in speed(),
             rate in power_of_ten(-3.0..6.0),
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_integral_in_small_steps() {
+    fn motion_agrees_with_the_integral_in_small_steps() {
         let (velocity, target, rate, duration) = (-2.0, 3.0, 12.0, 0.5);
         let steps = 10_000;
         let tick = duration / f64::from(steps);

@@ -282,7 +282,7 @@ mod tests {
 
         /// For numbers that need no rounding, the result equals the integer formula.
         #[test]
-        fn agrees_with_integers(
+        fn the_cross_product_agrees_with_integers(
             numbers in prop::array::uniform4(-(1_i64 << 30)..1 << 30),
             corner in (0..1_i64 << 20, 0..1_i64 << 20),
             exponent in -900..900,

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_are_kept() {
+    fn ceilings_stay_within_bounds() {
         let numbers = [-1e300, -0.5, 0.0, 1e-300, 6.5, 7.0, 7.1, f64::INFINITY, f64::NAN];
         let ceilings = numbers.map(|number| ceil_within(7.0, number));
         assert_eq!(ceilings, [0, 0, 0, 1, 7, 7, 7, 7, 0]);
@@ -137,7 +137,7 @@ mod tests {
         }
 
         #[test]
-        fn ties_are_rounded_away_from_zero(number in prop_oneof![
+        fn ties_round_away_from_zero(number in prop_oneof![
             (-1_i64 << 40..1 << 40).prop_map(|halves| halves as f64 / 2.0),
             any::<f64>().prop_filter("in range", |number| number.abs() < 2.0_f64.powi(62)),
         ]) {
@@ -160,7 +160,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn doubles_are_rounded_as_by_the_standard_library(number in number()) {
+        fn doubles_round_as_in_the_standard_library(number in number()) {
             prop_assert_eq!(floor_double(number), number.floor());
             if number.abs() <= 2.0_f64.powi(50) {
                 prop_assert_eq!(floor_of_small(number), number.floor());
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_nan_stays_one_and_is_rounded_to_zero() {
+    fn nan_floors_to_nan_and_rounds_to_zero() {
         assert!(floor_double(f64::NAN).is_nan() && floor_of_small(f64::NAN).is_nan());
         assert_eq!(rounded_short(f64::NAN), 0);
     }

@@ -133,7 +133,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn pixels_are_the_same_piece_by_piece_and_one_by_one(
+        fn drawing_by_pieces_equals_drawing_by_pixels(
             middle in (-50.0..50.0, -50.0..50.0),
             on_edges: bool,
             half_step in prop::array::uniform2(prop_oneof![

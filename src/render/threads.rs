@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn only_large_frames_are_shared_out() {
+    fn only_large_frames_are_split() {
         let threads = |width, height, most| {
             let size = FrameSize::new(width, height).unwrap();
             Threads::new(size, NonZero::new(most))

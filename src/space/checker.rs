@@ -231,12 +231,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_mean_along_an_axis_is_that_of_many_samples(place in -9.0..9.0, width in 0.0..30.0) {
+        fn the_mean_along_an_axis_matches_many_samples(place in -9.0..9.0, width in 0.0..30.0) {
             prop_assert!((mean_along(place, width) - sampled(place, width)).abs() < 3e-3);
         }
 
         #[test]
-        fn any_place_and_any_width_have_a_mean(place in place(), width in width()) {
+        fn every_place_and_width_has_a_mean(place in place(), width in width()) {
             let mean = mean_along(place, width);
             prop_assert!(mean.is_nan() || (-1.0..=1.0).contains(&mean), "{mean}");
             let expected = mean_by_branches(place, width);
@@ -245,7 +245,7 @@ mod tests {
         }
 
         #[test]
-        fn lanes_have_the_means_of_their_places(
+        fn lanes_match_the_means_of_single_places(
             place in place(), spread in prop_oneof![Just(0.0), -1e-9..1e-9, -2.0..2.0],
             width in width(), wider in 0.0..0.1, odd in 0..LANES, odd_place in place(),
         ) {
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn within_a_cube_there_is_one_colour() {
+    fn a_cube_has_one_colour() {
         assert_eq!(mean(DVec3::new(0.5, 0.5, 0.5), DVec3::splat(0.9)), 1.0);
         assert_eq!(mean(DVec3::new(1e9 + 0.5, 1.5, -0.5), DVec3::splat(0.9)), 1.0);
         assert_eq!(mean(DVec3::new(1.5, 0.5, 0.5), DVec3::ZERO), -1.0);

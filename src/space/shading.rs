@@ -235,7 +235,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_sky_is_above() {
+    fn the_sky_runs_from_horizon_to_zenith() {
         let scene = Scene::default();
         assert_eq!(scene.sky_color(DVec3::Z), scene.sky.zenith);
         assert_eq!(scene.sky_color(DVec3::new(1.0, 0.0, 0.5)), scene.sky.zenith);

@@ -218,7 +218,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_tree_finds_what_a_test_of_every_body_finds(
+        fn a_tree_finds_the_same_body_as_brute_force(
             shapes in prop::collection::vec(shape(), 0..60),
             origin in point(14),
             directions in prop::collection::vec(point(5), 1..20),

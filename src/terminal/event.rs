@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_and_pixels_are_the_same_places() {
+    fn cells_and_pixels_map_to_the_same_places() {
         assert_eq!(place(MouseUnits::Cells, [1, 1]), Some((32, 32)));
         assert_eq!(place(MouseUnits::Cells, [80, 24]), Some((79 * 64 + 32, 23 * 64 + 32)));
         assert_eq!(place(MouseUnits::Pixels, [1, 1]), Some((0, 0)));
@@ -423,7 +423,7 @@ mod tests {
     }
 
     #[test]
-    fn no_place_is_outside_of_the_window() {
+    fn every_place_is_inside_the_window() {
         for units in [MouseUnits::Cells, MouseUnits::Pixels] {
             assert_eq!(place(units, [u32::MAX, u32::MAX]), Some((80 * 64, 24 * 64)));
             assert!(place(units, [0, 0]).is_some());
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plausible_shape_of_cells_is_used() {
+    fn a_plausible_cell_shape_is_used() {
         assert_eq!(aspect((80, 24), (640, 384)), Some(2.0));
         assert_eq!(aspect((100, 50), (1000, 1100)), Some(2.2));
     }
@@ -497,7 +497,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_character_key_survives_its_text(character: char) {
+        fn every_character_key_survives_a_text_round_trip(character: char) {
             prop_assume!(!character.is_control());
             let key = Key::typing(character);
             prop_assert_eq!(key.to_string().parse::<Key>(), Ok(key));
@@ -526,7 +526,7 @@ mod tests {
     }
 
     #[test]
-    fn the_key_that_the_terminal_reports_comes_first() {
+    fn the_key_reported_by_the_terminal_takes_precedence() {
         // A phonetic layout has this letter at the place of S.
         assert_eq!(base_key(Key::Char('с'), Some('s')), Some(Key::Char('s')));
         assert_eq!(base_key(Key::Char('с'), None), Some(Key::Char('c')));

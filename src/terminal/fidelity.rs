@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fidelity_is_read_as_it_is_written() {
+    fn a_fidelity_reads_back_as_written() {
         for tolerance in 0..=u8::MAX {
             let fidelity = Fidelity::new(tolerance);
             assert_eq!(fidelity.to_string().parse(), Ok(fidelity));

@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_network_is_known_by_the_variables_of_sshd() {
+    fn sshd_variables_reveal_a_network() {
         let is_remote = |value: &'static str| {
             let environment =
                 move |name: &str| (name == "SSH_CONNECTION").then(|| value.to_owned());
@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn only_terminals_in_windows_are_probed() {
+    fn only_graphical_terminals_are_probed() {
         let probes = |term: &'static str, name: &'static str, value: &'static str| {
             let environment = move |asked: &str| match asked {
                 "TERM" => Some(term.to_owned()),
@@ -510,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn only_terminals_without_cursor_motion_are_teletypes() {
+    fn only_terminals_without_cursor_motion_count_as_teletypes() {
         for term in ["TERM=dumb", "TERM=unknown", "TERM=tty33"] {
             assert!(teletype(environment(term)).is_some(), "{term}");
         }

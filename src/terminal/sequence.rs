@@ -274,7 +274,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_query_for_colours_names_their_capability() {
+    fn the_colour_query_names_the_rgb_capability() {
         assert!(QUERY_TRUE_COLOR.contains(RGB_CAPABILITY));
         let name = b"RGB".map(|byte| format!("{byte:02x}")).concat();
         assert_eq!(RGB_CAPABILITY, name);

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn strange_answers_are_no_clients_and_give_no_commands() {
+    fn strange_answers_give_no_client_and_no_command() {
         for answer in ["", "\n", "||", "RGB", "RGB|kitty(1)", "RGB|kitty(1)|xterm|more"] {
             assert_eq!(TmuxClient::parse(answer), None, "{answer:?}");
         }
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_or_hanging_tmux_gives_no_answer_in_time() {
+    fn a_missing_or_hanging_tmux_is_given_up_in_time() {
         let soon = Duration::from_millis(50);
         assert_eq!(output(&mut Command::new("no-such-program"), soon), None);
         let began = Instant::now();

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_y_side_of_a_white_wall_has_the_brightest_character_of_y_sides() {
+    fn a_white_y_side_has_the_brightest_y_side_character() {
         assert_eq!(character(Surface::WallX, Rgb::WHITE), '@');
         assert_eq!(character(Surface::WallY, Rgb::WHITE.halved()), 'H');
         assert_eq!(character(Surface::Floor, Rgb::BLACK), '.');

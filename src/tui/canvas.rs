@@ -311,7 +311,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_glyph_that_shares_colours_with_its_neighbour_is_taken() {
+    fn a_glyph_sharing_its_neighbours_colours_is_chosen() {
         let [a, b, c] = [1, 2, 3].map(|red| Color::Rgb(red, 0, 0));
         let mut buffer = Buffer::empty(Rect::new(0, 0, 4, 1));
         buffer.draw_halves(0, 0, [[a, b], [b, a], [c, b], [c, c], [a, a]].into_iter());
@@ -332,7 +332,7 @@ mod tests {
 
     /// From the names in UnicodeData.txt, version 16.
     #[test]
-    fn characters_have_the_dots_of_their_names() {
+    fn characters_have_the_dots_in_their_names() {
         for (code, digits) in [
             (0x1CD00, "3"),
             (0x1CD01, "23"),
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn every_mosaic_has_a_character_of_its_own() {
+    fn every_mosaic_has_its_own_character() {
         let characters: HashSet<char> = all().map(Mosaic::character).collect();
         assert_eq!(characters.len(), 256 + 60);
         for mosaic in all() {

@@ -113,7 +113,7 @@ fn maps_fill_exactly_their_area() {
 
 /// The layout of this module's example, in windows that have no room for the picture.
 #[test]
-fn the_example_of_a_layout_works_in_any_window() {
+fn the_layout_example_works_in_any_window() {
     use ratatui::layout::{Constraint, Layout};
     let world = heights();
     let camera = world.start_camera(FieldOfView::default());

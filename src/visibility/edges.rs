@@ -500,7 +500,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_share_below_an_edge_is_that_of_many_samples(
+        fn the_share_below_an_edge_matches_many_samples(
             ends in [-3.0..13.0_f64, -3.0..13.0_f64],
             row in 0_u32..10,
         ) {
@@ -517,7 +517,7 @@ mod tests {
         }
 
         #[test]
-        fn an_edge_crosses_its_rows_only(ends in [-3.0..13.0_f64, -3.0..13.0_f64]) {
+        fn an_edge_crosses_only_its_rows(ends in [-3.0..13.0_f64, -3.0..13.0_f64]) {
             let edge = SlopedEdge { ends };
             let rows = edge.rows(10);
             for row in 0..10 {

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_along_the_grid_is_as_bright_as_a_wall() {
+    fn a_grid_aligned_surface_is_as_bright_as_a_wall() {
         let light = Light::new(0.7).unwrap();
         for (normal, side) in [(DVec2::X, Side::X), (-DVec2::X, Side::X), (DVec2::Y, Side::Y)] {
             let wall = Faded::of_wall(side, light, None, 3.0);

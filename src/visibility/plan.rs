@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_level_is_for_areas_around_a_power_of_four() {
+    fn each_level_covers_areas_around_a_power_of_four() {
         let lod = [0.0, f64::NAN, 1.9, 2.0, 4.0, 7.9, 8.0, 16.0].map(|area| Filter::Mip.lod(area));
         assert_eq!(lod, [0, 0, 0, 1, 1, 1, 2, 2]);
         assert!(Filter::Mip.lod(f64::INFINITY) > 100);

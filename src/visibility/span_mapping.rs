@@ -245,7 +245,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_fraction_is_what_the_whole_number_leaves(
+        fn a_fraction_is_the_rest_after_the_integer(
             number in prop_oneof![-1e4..1e4_f64, -1e-6..1e-6_f64, any::<f64>()],
         ) {
             let rest = number.abs() - number.abs().trunc();

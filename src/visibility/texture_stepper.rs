@@ -236,7 +236,7 @@ mod tests {
     const WALL: (f64, f64) = (0.0, 1.0);
 
     #[test]
-    fn halves_of_the_picture_show_halves_of_a_wall_at_any_distance() {
+    fn half_the_picture_shows_half_the_wall_at_any_distance() {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
             let texels = stepper(64, (WALL, 0.5), 90.0, near);
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn however_far_the_horizon_is_a_row_on_the_wall_is_near_a_texel_of_it() {
+    fn rows_stay_near_their_texels_however_far_the_horizon_is() {
         for (rows, at_eye) in (0..31).flat_map(|power| [(1_i64 << power, 0.02), (1 << power, 0.9)])
         {
             // The top row of a picture shows the end of the wall, and the horizon is `rows` rows below.
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_between_two_texels_is_on_the_lower_one() {
+    fn a_row_between_two_texels_takes_the_lower_one() {
         // Thirds and sevenths have no finite binary fraction.
         for (rows, count) in [(3_u32, 1_u32), (7, 3), (21, 5), (63, 64), (4095, 3)] {
             let height_of_row = 1.0 / f64::from(rows);
@@ -281,7 +281,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_row_is_on_the_texel_computed_in_doubles(
+        fn a_row_shows_the_texel_computed_in_doubles(
             height in 1_u32..4096,
             rows in 0.01..9000.0_f64,
             at_eye in 0.02..0.98,

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_clear_up_to_a_pillar_and_from_there_on() {
+    fn a_beam_is_clear_before_and_behind_a_pillar() {
         let pillar = 200 - STRIP;
         for (within, lines) in [(0, pillar), (pillar - 1, 1), (pillar, 0), (pillar + 1, 55)] {
             assert_eq!(lines_ahead(30, false, within), lines);
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_beside_a_beam_is_not_in_it() {
+    fn a_pillar_beside_a_beam_does_not_block_it() {
         for band in [20, 40] {
             assert_eq!(lines_ahead(band, false, 0), STRIP);
             assert_eq!(lines_ahead(band, true, 9), STRIP - 9);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_map_nothing_is_known() {
+    fn nothing_is_known_beyond_the_map() {
         let table = BeamTable::new([1024, 64], iter::empty());
         assert_eq!(table.beams(0, false).lines_ahead(7, 0, 0), STRIP);
         assert_eq!(table.beams(0, false).lines_ahead(8, 0, 0), 0);
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn large_maps_are_worth_it_where_little_is_solid() {
+    fn beams_pay_off_on_large_maps_with_few_solid_cells() {
         let around = 8 * 1024;
         assert!(BeamTable::are_worthwhile([1024, 1024], around + 1024));
         assert!(!BeamTable::are_worthwhile([1024, 1024], around + 1025));

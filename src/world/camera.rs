@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axes_are_exact() {
+    fn headings_along_the_axes_are_exact() {
         for turns in [-1e6, -1.0, 0.0, 7.0] {
             let axes = [(0.0, DVec2::X), (90.0, DVec2::Y), (180.0, -DVec2::X), (270.0, -DVec2::Y)];
             for (degrees, axis) in axes {
@@ -263,14 +263,14 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_by_nothing_leaves_a_heading_as_it_is() {
+    fn a_turn_by_zero_keeps_the_heading() {
         for degrees in (0..720).map(|half| f64::from(half) / 2.0) {
             assert_eq!(heading(degrees).turned(0.0), heading(degrees), "{degrees}");
         }
     }
 
     #[test]
-    fn degrees_come_back() {
+    fn heading_degrees_survive_a_round_trip() {
         for degrees in [0.0, 1.0, 44.0, 45.0, 46.0, 135.0, 225.5, 359.0] {
             assert!((heading(degrees).degrees() - degrees).abs() < 1e-12, "{degrees}");
         }
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_that_is_no_number_turns_nothing() {
+    fn a_turn_by_nan_keeps_the_heading() {
         assert_eq!(heading(3.0).turned(f64::NAN), heading(3.0));
         assert_eq!(heading(3.0).turned(f64::INFINITY), heading(3.0));
     }
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn degrees_of_a_pitch_come_back() {
+    fn pitch_degrees_survive_a_round_trip() {
         for degrees in [-30.0, -12.5, 0.0, 1.0, 29.999, 30.0] {
             let pitch = Pitch::from_degrees(degrees).unwrap();
             assert!((pitch.degrees() - degrees).abs() < 1e-12, "{degrees}");
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_looks_further_than_the_limit() {
+    fn pitch_stops_at_its_limit() {
         let highest = Pitch::from_degrees(30.0).unwrap();
         assert_eq!(Pitch::LEVEL.tilted(f64::INFINITY), highest.tilted(1e9));
         assert_eq!(highest.tilted(1.0).tilted(-2.0 * STEEPEST).degrees(), -highest.degrees());

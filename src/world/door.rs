@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_opening_is_a_part() {
+    fn an_opening_is_between_zero_and_one() {
         for part in [0.0, -0.0, 0.25, 1.0] {
             assert_eq!(Opening::new(part).map(Opening::part), Some(part));
         }

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_cells_come_first_and_none_comes_twice() {
+    fn cells_come_once_and_nearest_first() {
         let map = ["..#.", ".##.", "...."];
         let is_open = |cell: Cell| map[cell.row as usize].as_bytes()[cell.column as usize] == b'.';
         let mut flood = Flood::new((4, 3), Cell { column: 1, row: 0 });

@@ -259,7 +259,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn off_the_map_is_nothing() {
+    fn cells_off_the_map_are_empty() {
         let grid = Grid::sketch(&["#.", "##", "##"]).unwrap();
         assert_eq!((grid.width(), grid.height()), (2, 3));
         assert!(!grid.is_solid(1, 0) && grid.is_solid(1, 2));
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn no_grid_without_cells_or_with_ragged_rows() {
+    fn empty_and_ragged_grids_are_refused() {
         assert_eq!(Grid::sketch(&[]), None);
         assert_eq!(Grid::sketch(&[""]), None);
         assert_eq!(Grid::sketch(&["##", "#"]), None);

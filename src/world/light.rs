@@ -209,7 +209,7 @@ mod tests {
     use crate::map;
 
     #[test]
-    fn light_is_a_share() {
+    fn light_is_between_zero_and_one() {
         assert_eq!(Light::new(1.0), Some(Light::FULL));
         assert_eq!(Light::new(0.5).unwrap().in_256ths(), 128);
         for share in [-0.1, 1.1, f64::NAN] {
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn half_is_left_at_the_distance_of_a_fog() {
+    fn fog_halves_clearness_at_its_distance() {
         let fog = Fog::new(Rgb::BLACK, 8.0).unwrap();
         assert_eq!([0.0, 8.0, f64::INFINITY].map(|t| fog.clearness(t)), [1.0, 0.5, 0.0]);
         for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -249,7 +249,7 @@ mod tests {
         /// Two faces that meet on one line have equal lights at the common end, and no face is
         /// brighter or darker than the cell in front of it and the neighbours of that cell.
         #[test]
-        fn faces_that_meet_on_one_line_have_one_light_there(
+        fn faces_that_meet_have_equal_light_at_their_edge(
             cells in prop::collection::vec(prop::sample::select(&['.', 'a', 'b', 'h', '#', 'g', 'o'][..]), 25),
         ) {
             let world = world(&cells);
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn light_goes_over_linearly_and_through_no_wall() {
+    fn light_blends_linearly_but_not_through_walls() {
         let cells: Vec<char> = "ab#bag.....#####.........".chars().collect();
         let world = world(&cells);
         let face = world.face_light(cell(1, 1), cell(1, 0));
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_that_is_lit_alike_everywhere_asks_no_neighbours() {
+    fn an_evenly_lit_world_asks_no_neighbours() {
         let world = map::parse_str(
             "light = 0.5\ngrid = '''\n@..\n###\n'''\n[tiles]\n'#'.wall = '#ffffff'\n[things]\n'@'.start = 0\n",
         )

@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_towards_the_sun_are_bright_and_others_ambient() {
+    fn surfaces_facing_the_sun_are_bright_and_others_ambient() {
         let sun = Sun::new(DVec3::new(0.0, 0.0, 1e-200), Fraction(0.25)).unwrap();
         assert_eq!(sun.brightness(DVec3::Z), 1.0);
         assert_eq!(sun.brightness(DVec3::X), 0.25);

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_follow_each_other_and_begin_again() {
+    fn frames_play_in_order_and_repeat() {
         let sprite = sprite(3, Facings::One);
         let frames = [0.0, 0.19, 0.21, 0.41, 0.61, -1.0, f64::NAN];
         let frames = frames.map(|seconds| shown(&sprite, seconds, (1.0, 0.0)));
@@ -250,12 +250,12 @@ mod tests {
     }
 
     #[test]
-    fn what_has_one_frame_never_changes() {
+    fn a_single_frame_never_changes() {
         assert_eq!(sprite(4, Facings::Four).next_change(0.3), None);
     }
 
     #[test]
-    fn time_goes_through_the_animated_frames_only() {
+    fn time_cycles_only_the_animated_frames() {
         let sprite = |animated| sprite(3, Facings::One).with_animated_frames(animated);
         let shows = |animated, seconds| shown(&sprite(animated), seconds, (1.0, 0.0));
         assert_eq!([0.1, 0.3, 0.5].map(|seconds| shows(2, seconds)), [0, 1, 0]);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_without_whole_frames_is_no_sprite() {
+    fn a_sheet_without_whole_frames_is_refused() {
         assert_eq!(Sprite::new(Vec::new(), Facings::One), None);
         let side = NonZeroU32::MIN;
         let picture = Texture::from_fn(side, side, |_, _| Rgb::BLACK);

@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn mean_and_alpha() {
+    fn a_texture_reports_its_mean_and_alpha() {
         let texture = Texture::from_fn_with_alpha(size(2), size(1), |x, _| {
             (Rgb::new(100 * x as u8, 0, 255), if x == 0 { 0 } else { 255 })
         });
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_read_is_made() {
+    fn only_levels_that_are_read_are_made() {
         let texture = Texture::on_demand(size(8), size(4), false, || {
             |x, y| (Rgb::new(x as u8, y as u8, 0), 255)
         });

@@ -325,7 +325,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_stretch_of_a_row_holds_what_stands_there(
+        fn a_range_of_a_row_yields_its_things(
             places in prop::collection::vec((0..SIDE, 0..SIDE), 0..20),
             gone in (0..SIDE, 0..SIDE),
             row in prop_oneof![0..SIDE + 2, Just(u32::MAX)],

@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_are_what_floor_ceiling_and_roof_leave() {
+    fn gaps_lie_between_floor_ceiling_and_roof() {
         let sky = f64::INFINITY;
         assert_eq!(gaps(false, 0.25, 1.0, 1.0), [(0.25, sky)]);
         assert_eq!(gaps(true, 0.25, 1.0, 1.5), [(0.25, 1.0), (1.5, sky)]);
@@ -473,7 +473,7 @@ mod tests {
     const CELL: Cell = Cell { column: 3, row: 5 };
 
     #[test]
-    fn lines_are_in_their_cells_and_no_two_are_alike() {
+    fn lines_stay_in_their_cells_and_all_differ() {
         let mut ends = Vec::new();
         for line in Line::ALL {
             let start = line.start(CELL);

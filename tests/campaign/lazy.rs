@@ -52,7 +52,7 @@ pub(crate) fn run(pilot: &mut Pilot, Errand { verb, cell, height, .. }: Errand) 
 }
 
 #[test]
-fn a_player_without_care_loses_every_level() {
+fn a_careless_player_loses_every_level() {
     let rules = Rules { difficulty: Difficulty::Normal, seed: 0 };
     let ends = builtin::LEVELS.iter().map(|level| {
         let pilot = play(level, rules);

@@ -67,7 +67,7 @@ fn the_help_of_the_program_is_enough_to_use_it() {
 }
 
 #[test]
-fn the_version_is_that_of_the_package() {
+fn the_version_matches_the_package() {
     let version = concat!("cellcaster ", env!("CARGO_PKG_VERSION"), "\n");
     assert_eq!([text_of(&["--version"]), text_of(&["-V"])], [version, version]);
 }
@@ -131,13 +131,13 @@ fn options_may_stand_before_the_subcommand() {
 }
 
 #[test]
-fn the_last_of_an_option_that_is_repeated_counts() {
+fn the_last_of_several_equal_options_counts() {
     let once = output_of(&["snapshot", "--size", "9x3", "--fov", "100"]);
     assert_eq!(output_of(&["snapshot", "--fov", "20", "--size", "9x3", "--fov", "100"]), once);
 }
 
 #[test]
-fn mistakes_are_one_sentence_each() {
+fn each_mistake_is_reported_in_one_sentence() {
     let refused: [&[&str]; 32] = [
         &["plya"],
         &["cellar", "snapshot"],
@@ -196,7 +196,7 @@ fn a_map_may_come_from_standard_input() {
 }
 
 #[test]
-fn a_missing_file_is_the_only_fault() {
+fn a_missing_file_is_the_only_reported_fault() {
     assert_eq!(complaint_about(&["check", "absent.toml"]), "error: there is no file absent.toml\n");
     let complaint = complaint_about(&["check", "absent.toml", "absent2.toml"]);
     insta::assert_snapshot!(complaint, @r"
@@ -212,7 +212,7 @@ fn a_missing_file_is_the_only_fault() {
 }
 
 #[test]
-fn a_recording_replaces_no_file_and_has_an_ending_that_is_known() {
+fn a_recording_replaces_no_file_and_needs_a_known_extension() {
     let folder = scratch("recording");
     let taken = folder.join("taken.cast");
     fs::write(&taken, "precious").unwrap();

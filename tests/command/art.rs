@@ -39,7 +39,7 @@ fn assert_refused(folder: &PathBuf, sentence: &str) {
 }
 
 #[test]
-fn a_picture_of_a_players_own_replaces_the_built_in_one() {
+fn a_players_picture_replaces_the_built_in_one() {
     let built_in = picture(None);
     let same = folder("same", &[("brick", "brick.png")]);
     assert_eq!(picture(Some(&same)), built_in);

@@ -36,7 +36,7 @@ fn run_without_room(blocks: u32, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn every_command_says_that_standard_output_is_full() {
+fn every_command_reports_that_standard_output_is_full() {
     let map = "tests/maps/cross.toml";
     let commands: [&[&str]; 16] = [
         &["--help"],
@@ -67,7 +67,7 @@ fn every_command_says_that_standard_output_is_full() {
 }
 
 #[test]
-fn rays_that_cannot_be_answered_are_said_to_be() {
+fn unanswered_rays_are_reported() {
     let rays = "2.5 2.5 1 0\n".repeat(1000);
     let folder = scratch("rays");
     fs::write(folder.join("rays"), rays).unwrap();
@@ -79,7 +79,7 @@ fn rays_that_cannot_be_answered_are_said_to_be() {
 }
 
 #[test]
-fn a_recording_without_room_leaves_the_one_before() {
+fn a_recording_without_room_keeps_the_previous_one() {
     let folder = scratch("replay");
     let cast = folder.join("walk.cast");
     let path = cast.to_str().unwrap();
@@ -103,7 +103,7 @@ fn a_recording_without_room_leaves_the_one_before() {
 }
 
 #[test]
-fn a_device_and_the_target_of_a_link_are_written_in_their_place() {
+fn devices_and_link_targets_are_written_in_place() {
     let folder = scratch("link");
     let (file, link, full) =
         (folder.join("file.cast"), folder.join("link.cast"), folder.join("full.cast"));
@@ -125,7 +125,7 @@ fn a_device_and_the_target_of_a_link_are_written_in_their_place() {
 }
 
 #[test]
-fn a_recording_of_no_game_leaves_the_one_before() {
+fn a_game_that_cannot_start_keeps_the_previous_recording() {
     let folder = scratch("record");
     for name in ["walk.cast", "walk.script"] {
         let path = folder.join(name);

@@ -180,7 +180,7 @@ fn an_animated_png_shows_every_frame_of_the_game_for_its_time() {
 }
 
 #[test]
-fn mistakes_are_told() {
+fn mistakes_are_reported() {
     let bad = file("bad.script", "[x]\n1 s foward\n");
     let turns = file("turns.script", "1 s turn-left\n");
     let complaints = [

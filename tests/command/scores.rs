@@ -57,7 +57,7 @@ fn levels_are_listed_in_order_with_best_results() {
 }
 
 #[test]
-fn a_newer_data_folder_is_left_alone_with_a_sentence() {
+fn a_newer_data_folder_is_reported_and_left_alone() {
     let folder = scratch("newer");
     fs::write(folder.join("progress.toml"), "version = 9\n").unwrap();
     let output = cellcaster(&["levels"]).env("CELLCASTER_DATA", &folder).output().unwrap();
@@ -71,7 +71,7 @@ fn a_newer_data_folder_is_left_alone_with_a_sentence() {
 const GAME: &str = "CELLCASTER_TEST_GAME";
 
 #[test]
-fn two_processes_that_record_at_once_lose_nothing() {
+fn two_processes_recording_at_once_lose_nothing() {
     const RUNS: u64 = 20;
     if let Ok(game) = env::var(GAME) {
         let (folder, number) = game.rsplit_once(':').unwrap();
@@ -81,7 +81,7 @@ fn two_processes_that_record_at_once_lose_nothing() {
     let itself = env::current_exe().unwrap();
     let start = |number: u64| {
         Command::new(&itself)
-            .args(["--exact", "scores::two_processes_that_record_at_once_lose_nothing"])
+            .args(["--exact", "scores::two_processes_recording_at_once_lose_nothing"])
             .env(GAME, format!("{}:{number}", folder.display()))
             .stdout(Stdio::null())
             .spawn()
@@ -126,7 +126,7 @@ fn verify(name: &str, script: &str, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_script_that_wins_is_told_by_the_status() {
+fn the_exit_status_tells_whether_a_script_wins() {
     let folder = scratch("map");
     let map = folder.join("hall.toml");
     fs::write(&map, MAP).unwrap();
@@ -146,7 +146,7 @@ fn a_script_that_wins_is_told_by_the_status() {
 }
 
 #[test]
-fn a_floor_is_a_level_of_a_script() {
+fn a_script_can_name_a_floor_as_its_level() {
     let report = |name| {
         let output = verify(name, "level floor 2\nseed 20261122\n\n2 s forward\n", &[]);
         assert_eq!(output.status.code(), Some(1));
@@ -158,7 +158,7 @@ fn a_floor_is_a_level_of_a_script() {
 }
 
 #[test]
-fn a_descent_goes_without_a_level() {
+fn a_descent_takes_no_level() {
     for arguments in [
         &["play", "--daily", "--endless"][..],
         &["play", "--daily", "--difficulty", "hard"],
@@ -172,7 +172,7 @@ fn a_descent_goes_without_a_level() {
 }
 
 #[test]
-fn what_is_missing_is_told_in_a_sentence() {
+fn missing_input_is_reported_in_one_sentence() {
     let told = |name, script, arguments: &[&str]| {
         let output = verify(name, script, arguments);
         assert_eq!(output.status.code(), Some(2));

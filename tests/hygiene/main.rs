@@ -72,7 +72,7 @@ fn blocks(text: &str, language: &str) -> Vec<(usize, String)> {
 }
 
 #[test]
-fn links_between_documents_lead_somewhere() {
+fn links_between_documents_resolve() {
     let mut broken = Vec::new();
     for document in documents() {
         let text = fs::read_to_string(&document).unwrap();
@@ -107,7 +107,7 @@ fn documents_are_formatted() {
 }
 
 #[test]
-fn the_price_list_has_every_map_of_the_gallery() {
+fn the_price_list_has_every_gallery_map() {
     let list = fs::read_to_string("docs/prices.md").unwrap();
     for map in fs::read_dir("maps/gallery").unwrap() {
         let path = map.unwrap().path();
@@ -128,7 +128,7 @@ fn the_changelog_has_a_section_for_this_version() {
 
 /// A block with a grid is a whole map. Any other block is a part of a map, and is valid TOML.
 #[test]
-fn maps_in_the_documents_are_right() {
+fn maps_in_the_documents_are_valid() {
     let mut maps = 0;
     for document in documents() {
         let text = fs::read_to_string(&document).unwrap();

@@ -54,7 +54,7 @@ fn named(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn modules_depend_on_those_above_them() {
+fn modules_depend_only_on_modules_above_them() {
     check("## Modules of the game", Path::new("src"));
     check("## Modules of the server", Path::new("crates/server/src"));
 }

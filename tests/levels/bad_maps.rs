@@ -70,13 +70,13 @@ fn a_missing_quote_or_bracket_is_one_fault_at_its_line() -> Outcome {
 }
 
 #[test]
-fn no_such_file() -> Outcome {
+fn a_missing_file_is_refused() -> Outcome {
     insta::assert_snapshot!(faults(Path::new("tests/bad_maps/absent.toml"))?, @"error: there is no file tests/bad_maps/absent.toml");
     Ok(())
 }
 
 #[test]
-fn a_folder() -> Outcome {
+fn a_folder_is_refused() -> Outcome {
     insta::assert_snapshot!(faults(Path::new("tests/bad_maps"))?, @r"
     error: tests/bad_maps is a folder, not a map
      |
@@ -86,7 +86,7 @@ fn a_folder() -> Outcome {
 }
 
 #[test]
-fn a_grid_too_wide_or_too_high() -> Outcome {
+fn a_grid_too_wide_or_too_high_is_refused() -> Outcome {
     let folder = scratch("large_grids")?;
     let path = folder.join("wide.toml");
     fs::write(&path, map_with_grid(&format!("@{}\n", "#".repeat(4096))))?;
@@ -110,7 +110,7 @@ fn a_grid_too_wide_or_too_high() -> Outcome {
 }
 
 #[test]
-fn a_file_too_large() -> Outcome {
+fn an_oversized_file_is_refused() -> Outcome {
     let folder = scratch("large_file")?;
     let path = folder.join("large.toml");
     fs::File::create(&path)?.set_len(map::MAX_BYTES as u64 + 1)?;
@@ -124,7 +124,7 @@ fn a_file_too_large() -> Outcome {
 
 #[cfg(unix)]
 #[test]
-fn a_link_out_of_the_folder() -> Outcome {
+fn a_link_out_of_the_folder_is_refused() -> Outcome {
     let folder = scratch("links")?;
     let inside = folder.join("inside");
     fs::create_dir_all(&inside)?;

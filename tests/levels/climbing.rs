@@ -45,7 +45,7 @@ fn stairs_are_climbed_at_a_run_and_walked_down_without_a_jump() {
 }
 
 #[test]
-fn a_jump_clears_a_ledge_of_six_tenths_and_none_of_seven() {
+fn a_jump_clears_a_ledge_of_six_tenths_but_not_of_seven() {
     let jump_onto = |height: f64| {
         let mut game = corridor(SKY, &[&format!("floor_height = {height}")]);
         walk(&mut game, 240, &[Intent::Forward]);

@@ -44,7 +44,7 @@ fn the_same_seed_gives_the_same_level() {
 }
 
 #[test]
-fn a_camera_is_a_place_of_the_level() {
+fn a_camera_position_is_a_place_in_the_level() {
     let level = Generator::Maze.level(7, Extent::Endless).unwrap();
     for place in [0, 1_000_000_000, -1_000_000_000] {
         let Site { column, row } = level.start_near(Site { column: place, row: -place }).unwrap();
@@ -60,7 +60,7 @@ fn a_camera_is_a_place_of_the_level() {
 }
 
 #[test]
-fn mistakes_are_one_sentence_each() {
+fn each_mistake_is_reported_in_one_sentence() {
     let complaints = [
         &["play", "--generate", "swamp"][..],
         &["play", "--generate"],
@@ -127,7 +127,7 @@ proptest! {
 
     /// In a level that is the same everywhere, pictures are equal at every distance, bit for bit.
     #[test]
-    fn pictures_are_equal_in_equal_chunks(
+    fn equal_chunks_give_equal_pictures(
         (column, row) in (
             prop::sample::select(vec![31_250_000_i64, -31_250_000, i64::MAX >> 5, i64::MIN >> 5]),
             prop_oneof![-1_000_000_i64..1_000_000, Just(i64::MIN >> 5)],
@@ -198,7 +198,7 @@ fn first_views_are_neither_too_dark_nor_too_bright() {
 
 /// The first views of consecutive seeds differ, in position or in materials.
 #[test]
-fn offices_differ_from_the_first_step() {
+fn offices_differ_from_the_first_view() {
     let views: Vec<Frame> = (1..=8).map(|seed| first_view(Generator::Office, seed)).collect();
     for (index, one) in views.iter().enumerate() {
         for other in &views[index + 1..] {

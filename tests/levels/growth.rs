@@ -47,7 +47,7 @@ fn a_grid_reports_the_bytes_of_a_large_map() {
 }
 
 #[test]
-fn among_rooms_rays_go_line_by_line() {
+fn rays_among_rooms_go_line_by_line() {
     let rooms = square(66, |column, row| {
         (column % 8 == 0 && row % 8 != 4 || row % 8 == 0 && column % 8 != 4).then_some('#')
     });
@@ -56,7 +56,7 @@ fn among_rooms_rays_go_line_by_line() {
 }
 
 #[test]
-fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
+fn a_hall_16_times_as_wide_takes_at_most_twice_the_lookups() {
     let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)).stats.walk);
     assert!(large.cells > 10 * small.cells);
     assert!(large.looks <= 2 * small.looks, "{:?}", (small, large));
@@ -65,7 +65,7 @@ fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
 
 /// There is one pillar in each block of 64 by 64 cells, and not in its middle.
 #[test]
-fn a_plain_sixty_four_times_as_wide_takes_three_times_the_looks_for_a_ray() {
+fn a_plain_64_times_as_wide_takes_at_most_3_times_the_lookups() {
     let pillar = |column: u32, row: u32| {
         let moved = |by: u32| 16 + (column / 64 * 37 + row / 64 * 101 + by * 53) % 32;
         ((column % 64, row % 64) == (moved(0), moved(1))).then_some('#')

@@ -104,7 +104,7 @@ fn things(count: u32, definition: impl Fn(u32) -> String) -> String {
 }
 
 #[test]
-fn a_sheet_is_decoded_once_for_each_way_to_divide_it() {
+fn a_sheet_is_decoded_once_per_frame_count() {
     let files = LargePictures::new();
     let map = things(900, |index| {
         format!("{{ sprite = \"a.png\", frames = {}, reach = 2 }}", 1 << (index % 3))
@@ -114,7 +114,7 @@ fn a_sheet_is_decoded_once_for_each_way_to_divide_it() {
 }
 
 #[test]
-fn the_texels_of_all_pictures_are_limited() {
+fn the_total_number_of_texels_is_limited() {
     let files = LargePictures::new();
     let sheets = things(900, |index| format!("{{ sprite = \"{index}.png\" }}"));
     let faults = read_with(&files, &sheets, SMALL_MAP).unwrap_err();
@@ -142,7 +142,7 @@ fn lamps(side: usize, lamp: &str) -> String {
 }
 
 #[test]
-fn the_cells_that_lamps_light_are_limited() {
+fn the_number_of_cells_lit_by_lamps_is_limited() {
     let lamp = r#"{ sprite = "lamp", light = 1, reach = 32 }"#;
     assert!(read(&lamps(100, lamp), SMALL_MAP).is_ok());
     insta::assert_snapshot!(read(&lamps(103, lamp), SMALL_MAP).unwrap_err(), @r#"
@@ -184,7 +184,7 @@ fn lifts_and_spikes(lifts: usize, spikes: usize) -> String {
 }
 
 #[test]
-fn the_cells_that_one_step_of_a_game_moves_are_limited() {
+fn the_number_of_cells_moved_by_one_step_is_limited() {
     assert!(read(&lifts_and_spikes(512, 512), SMALL_MAP).is_ok());
     insta::assert_snapshot!(read(&lifts_and_spikes(513, 0), SMALL_MAP).unwrap_err());
     insta::assert_snapshot!(read(&lifts_and_spikes(1, 513), SMALL_MAP).unwrap_err());

@@ -20,7 +20,7 @@ fn jump_onto(thing: &str) -> [f64; 2] {
 }
 
 #[test]
-fn a_low_thing_is_jumped_onto_and_not_walked_onto() {
+fn a_low_thing_can_be_jumped_onto_but_not_walked_onto() {
     assert_eq!(jump_onto("sprite = \"table\""), [0.0, 0.42]);
     assert_eq!(jump_onto("sprite = \"barrel\""), [0.0, 0.58]);
     assert_eq!(jump_onto("sprite = \"bones\", blocks = true, height = 0.1"), [0.0, 0.1]);

@@ -39,7 +39,7 @@ fn drawn(world: &World) -> String {
 }
 
 #[test]
-fn a_map_says_all_that_a_world_is() {
+fn a_map_describes_a_whole_world() {
     let world = map::parse_str(VALID).unwrap();
     assert_eq!(world.title(), "Two rooms");
     assert_eq!(world.ceiling(), Ceiling::Sky);
@@ -55,7 +55,7 @@ fn a_map_says_all_that_a_world_is() {
 }
 
 #[test]
-fn one_cell_without_walls_or_an_exit_is_a_map() {
+fn one_cell_without_walls_or_an_exit_is_a_valid_map() {
     let world = map::parse_str("grid = '@'\nthings.'@'.start = -4.5e2").unwrap();
     assert_eq!((world.grid().width(), world.grid().height()), (1, 1));
     assert_eq!(world.start().heading.degrees(), 270.0);
@@ -63,20 +63,20 @@ fn one_cell_without_walls_or_an_exit_is_a_map() {
 }
 
 #[test]
-fn line_ends_and_marks_of_other_systems_change_nothing() {
+fn crlf_and_a_byte_order_mark_change_nothing() {
     let world = map::parse_str(VALID).unwrap();
     let other = format!("\u{feff}{}", VALID.replace('\n', "\r\n"));
     assert_eq!(map::parse_str(&other).unwrap(), world);
 }
 
 #[test]
-fn a_kind_of_tile_that_is_not_drawn_is_left_out() {
+fn unused_kinds_of_tiles_are_left_out() {
     let text = VALID.replace("[things]", "\"%\" = { wall = \"unused.png\" }\n[things]");
     assert_eq!(map::parse_str(&text).unwrap(), map::parse_str(VALID).unwrap());
 }
 
 #[test]
-fn a_map_may_have_the_largest_number_of_kinds_of_walls() {
+fn a_map_may_have_the_maximum_number_of_wall_kinds() {
     let characters: String = ('\u{4e00}'..).take(254).collect();
     let mut text = format!("grid = '{characters}@'\nthings.'@'.start = 0\n[tiles]\n");
     for wall in characters.chars() {
@@ -120,7 +120,7 @@ fn exit_is_within_reach(world: &World) -> bool {
 }
 
 #[test]
-fn doors_keys_and_glass_are_as_in_the_map() {
+fn doors_keys_and_glass_match_the_map() {
     let world = map::parse_str(
         r##"
 grid = '''
@@ -176,7 +176,7 @@ impl TextureFiles for RedFiles {
 }
 
 #[test]
-fn a_texture_is_read_once_and_only_where_it_is_used() {
+fn a_texture_is_read_once_and_only_if_used() {
     let text = VALID
         .replace("\"brick\"", "\"a.png\"")
         .replace("\"#a04030\"", "\"a.png\"")
@@ -237,7 +237,7 @@ proptest! {
     }
 
     #[test]
-    fn a_grid_comes_out_as_it_was_drawn(rows in rows()) {
+    fn a_grid_reads_as_drawn(rows in rows()) {
         let grid = rows.join("\n");
         let text = format!(
             "grid = '''\n{grid}\n'''\nthings.'@'.start = 0\n\

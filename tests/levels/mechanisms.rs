@@ -47,7 +47,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn what_moves_never_goes_into_anybody(
+    fn moving_tiles_never_enter_a_player(
         cells in prop::collection::vec(prop::sample::select(CELLS), SIDE * SIDE),
         ends in (-1.0..=1.0, -1.0..=1.0),
         room in 0.5..1.2,

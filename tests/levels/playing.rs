@@ -30,7 +30,7 @@ fn reach(world: &World, gait: Gait) -> Reach<'_> {
 }
 
 #[test]
-fn a_script_leads_through_each_to_its_exit() {
+fn a_script_leads_through_each_map_to_its_exit() {
     for (name, map, text) in WALKS {
         let script = Script::parse(text, name).unwrap_or_else(|faults| panic!("{faults}"));
         let mut game = Game::new(map::parse_str(map).unwrap());

@@ -5,7 +5,7 @@ use cellcaster::game::{Game, Input, Intent, Intents, MultiplayerRules, PlayerCol
 use cellcaster::map;
 
 #[test]
-fn a_step_of_eight_players_allocates_nothing_after_a_while() {
+fn a_step_with_eight_players_soon_allocates_nothing() {
     let hall = format!("#{}#\n", ".".repeat(20)).repeat(12);
     let edge = "#".repeat(22);
     let grid = format!("{edge}\n#{}@..G#\n{hall}{edge}", ".".repeat(16));

@@ -43,7 +43,7 @@ fn circling() -> Intents {
 }
 
 #[test]
-fn patrols_allocate_nothing_once_their_ways_are_known() {
+fn patrols_allocate_nothing_once_their_paths_are_known() {
     let level = builtin::LEVELS.iter().find(|level| level.name == "barracks").unwrap();
     let mut game = Game::new(level.world().unwrap());
     (0..GROWS).for_each(|_| game.step(Intents::new()));
@@ -66,7 +66,7 @@ fn guards_on_duty_and_asleep_allocate_nothing() {
 /// Guards share their path searches, of which there are at most twelve at once, and each search has
 /// two lists.
 #[test]
-fn guards_who_search_allocate_two_lists_for_each_search() {
+fn each_search_by_a_guard_allocates_two_lists() {
     let mut game = Game::new(rooms(30, ""));
     let run = [Intent::Forward, Intent::Run].into_iter().collect();
     let mut has_been_wary = false;
@@ -100,7 +100,7 @@ fn most_work(mut game: Game) -> u64 {
 }
 
 #[test]
-fn cells_that_nobody_touches_cost_a_step_nothing() {
+fn untouched_cells_cost_a_step_nothing() {
     let kinds = [
         ("m", "p", "p.plate = 'a'\nm = { moves_to = 1, switch = 'a' }\n"),
         (".", "c", "c.crumbles = -3\n"),
@@ -114,7 +114,7 @@ fn cells_that_nobody_touches_cost_a_step_nothing() {
 }
 
 #[test]
-fn the_largest_crowd_of_all_that_moves_stays_within_the_work_of_a_step() {
+fn the_largest_moving_crowd_stays_within_the_work_limit_of_a_step() {
     let rows = ["GGms".repeat(128), "ms".repeat(192), "p".repeat(512)];
     let width = 520;
     let rows = rows.map(|row| format!("{row:.<width$}")).join("\n");

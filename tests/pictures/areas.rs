@@ -106,7 +106,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_pixel_has_the_light_of_the_walls_that_cover_it(
+    fn a_pixel_mixes_the_light_of_the_walls_that_cover_it(
         position in (1.1..8.9, 1.1..7.9),
         degrees in 0.0..360.0,
     ) {
@@ -149,7 +149,7 @@ fn several_threads_draw_the_same_areas() {
 }
 
 #[test]
-fn walls_have_smooth_ends_by_area_only() {
+fn only_area_filtering_smooths_wall_ends() {
     let world = world();
     let camera = Camera::new(
         (2.3, 3.4).into(),

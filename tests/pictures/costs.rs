@@ -70,7 +70,7 @@ fn a_texture_on_the_floor_alone_costs_the_floor_alone() {
 }
 
 #[test]
-fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
+fn a_gradient_reads_no_texel_and_a_panorama_one_per_pixel() {
     let gradient = explained(&gallery("gradient")).stats.sky;
     assert_eq!((gradient.texels, gradient.pixels), (0, PIXELS / 2));
     let panorama = explained(&gallery("panorama")).stats.sky;
@@ -78,7 +78,7 @@ fn a_gradient_reads_no_texel_and_a_panorama_one_a_pixel() {
 }
 
 #[test]
-fn opaque_tiles_keep_one_hit_a_column() {
+fn opaque_tiles_keep_one_hit_per_column() {
     for name in ["flat", "floor", "doors"] {
         let world = gallery(name);
         let camera = world.start_camera(FieldOfView::default());
@@ -108,7 +108,7 @@ fn a_still_door_costs_the_same_as_a_wall() {
 }
 
 #[test]
-fn what_is_not_level_costs_what_is_in_view_of_it() {
+fn uneven_cells_cost_only_what_is_in_view() {
     let map = |height: f64, heading: u32| {
         let text = format!(
             "grid = '''\n############\n#...s..@...#\n#..........#\n############\n'''\n\
@@ -158,7 +158,7 @@ fn a_single_lamp_costs_the_pixels_that_it_covers() {
 }
 
 #[test]
-fn lamplight_reads_and_writes_nothing_more() {
+fn lamplight_adds_no_reads_or_writes() {
     let lit = gallery("lamps");
     let text = include_str!("../../maps/gallery/lamps.toml");
     let sprites =
@@ -254,7 +254,7 @@ fn explaining_draws_the_same_frame() {
 }
 
 #[test]
-fn no_feature_allocates_once_the_first_frame_is_drawn() {
+fn no_feature_allocates_after_the_first_frame() {
     for entry in std::fs::read_dir("maps/gallery").unwrap() {
         let world = match map::load_level(&entry.unwrap().path()).unwrap() {
             Level::Grid(world) => world,
@@ -309,7 +309,7 @@ fn pixels_of(world: &World) -> Frame {
 }
 
 #[test]
-fn clear_glass_costs_what_open_floor_does() {
+fn clear_glass_costs_as_much_as_open_floor() {
     for (clear, open) in
         with_panes("glass = '#80c0ff', opacity = 0").iter().zip(&with_panes("light = 1"))
     {
@@ -319,7 +319,7 @@ fn clear_glass_costs_what_open_floor_does() {
 }
 
 #[test]
-fn opaque_glass_and_opaque_mirrors_cost_what_a_wall_does() {
+fn opaque_glass_and_mirrors_cost_as_much_as_a_wall() {
     for pane in ["glass = '#80c0ff', opacity = 1", "mirror = '#80c0ff', opacity = 1"] {
         let walls = with_panes("wall = '#80c0ff'");
         for (opaque, wall) in with_panes(pane).iter().zip(&walls) {
@@ -340,7 +340,7 @@ fn a_clear_mirror_has_no_tint_to_draw() {
 }
 
 #[test]
-fn textures_that_nothing_shows_are_not_made() {
+fn unseen_textures_are_not_made() {
     let world = map::load(Path::new("maps/museum.toml")).unwrap();
     assert_eq!(world.mip_levels_made(), 0);
     let ray = Ray::new(world.start().cell.center(), (1.0, 0.3).into()).unwrap();

@@ -140,7 +140,7 @@ fn a_very_close_wall_shows_the_texels_at_eye_height() {
 }
 
 #[test]
-fn a_distance_of_zero_has_no_sign() {
+fn a_distance_of_zero_is_never_negative() {
     let world = map::load(Path::new("maps/gallery/stripes.toml")).unwrap();
     let mut frame = Frame::new(FrameSize::new(64, 40).unwrap(), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();

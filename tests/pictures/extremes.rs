@@ -131,7 +131,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(4096))]
 
     #[test]
-    fn an_extreme_view_leaves_nothing_of_the_picture_before(
+    fn an_extreme_view_leaves_no_trace_of_the_previous_picture(
         before in any::<prop::sample::Index>(),
         level in any::<prop::sample::Index>(),
         views in [view(), view()],

@@ -69,7 +69,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(192))]
 
     #[test]
-    fn a_figure_in_the_middle_of_a_cell_is_the_thing(
+    fn a_figure_in_the_middle_of_a_cell_looks_like_the_thing(
         (cells, way) in (0..TILES.len()).prop_flat_map(|way| {
             let kinds = ['.', '.', '.', '.', '#'].iter().chain(&THINGS).chain(TILES[way]);
             let kinds: Vec<char> = kinds.copied().collect();
@@ -139,7 +139,7 @@ fn a_figure_behind_the_viewer_shows_in_a_mirror() {
 }
 
 #[test]
-fn a_figure_behind_glass_is_tinted_and_one_before_it_is_not() {
+fn only_a_figure_behind_glass_is_tinted() {
     let picture = |tile: char, x: f64| {
         let mut world = world(&room_with(tile, Cell { column: 4, row: 3 }));
         let figure = figure_at(&world, x, 3.5);
@@ -152,7 +152,7 @@ fn a_figure_behind_glass_is_tinted_and_one_before_it_is_not() {
 }
 
 #[test]
-fn figures_at_one_place_have_an_order_of_their_own() {
+fn figures_in_one_place_have_a_fixed_order() {
     let mut world = world(&room_with('.', Cell { column: 1, row: 1 }));
     let camera = camera_at(1.5, 3.5, 0.0);
     let one = figure_at(&world, 4.2, 3.5);

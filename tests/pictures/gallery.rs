@@ -45,7 +45,7 @@ fn every_feature_is_explained_as_it_was() {
 }
 
 #[test]
-fn every_example_on_the_page_about_maps_is_a_map() {
+fn every_example_on_the_map_page_is_valid() {
     let page = fs::read_to_string("docs/maps.md").unwrap();
     let examples: Vec<&str> = page
         .split("```toml\n")
@@ -112,13 +112,13 @@ fn assert_golden(map: &str, name: &str, options: &[&str]) {
 }
 
 #[test]
-fn a_ramp_of_sixteen_shades_is_for_maps_of_both_kinds() {
+fn a_ramp_of_sixteen_shades_draws_both_kinds_of_maps() {
     assert_golden("spheres", "spheres_ramp", &["--glyphs", "ramp"]);
     assert_golden("doors", "doors_ramp", &["--glyphs", "ramp"]);
 }
 
 #[test]
-fn doors_stand_back_between_their_jambs() {
+fn doors_are_set_back_between_their_jambs() {
     assert_golden("doors", "doors_at_an_angle", &["--camera", "2.5,4.2,308"]);
     assert_golden("doors", "doors_from_the_front", &["--camera", "2.7,2.5,0"]);
 }
@@ -136,7 +136,7 @@ fn several_cubes_of_glass_blend() {
 }
 
 #[test]
-fn pitched_pictures_are_the_level_one_moved() {
+fn pitched_pictures_shift_the_level_one() {
     assert_golden("looking", "looking_up", &["--pitch", "14"]);
     assert_golden("looking", "looking_down", &["--pitch", "-14"]);
     assert_golden("looking", "looking_from_below", &["--eye", "0.2"]);

@@ -87,7 +87,7 @@ fn difference(one: &Picture, other: &Picture) -> usize {
 }
 
 #[test]
-fn kinds_are_told_apart_at_any_distance_and_depth() {
+fn kinds_can_be_told_apart_at_any_distance_and_depth() {
     for (depth, from_room, from_others) in DEPTHS {
         let mut shown = String::new();
         for (index, distance) in DISTANCES.into_iter().enumerate() {

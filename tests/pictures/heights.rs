@@ -503,7 +503,7 @@ proptest! {
 }
 
 #[test]
-fn a_ceiling_goes_on_over_a_step_at_the_centres_of_pixels() {
+fn a_ceiling_continues_over_a_step_at_pixel_centres() {
     // The point half a cell above the eye and half a cell to its side is at the centre of some
     // pixel.
     let grid = "##########\n#BBBBBBBB#\n#@AAAAAAA#\n#BBBBBBBB#\n##########\n#0########";

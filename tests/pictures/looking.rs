@@ -31,7 +31,7 @@ proptest! {
     /// The picture of a camera that looks up is the level picture moved down by some rows, bit for
     /// bit.
     #[test]
-    fn a_pitched_picture_is_the_level_one_moved_by_rows(
+    fn a_pitched_picture_is_the_level_one_shifted_by_rows(
         index in 0..WORLDS,
         place in any::<prop::sample::Index>(),
         degrees in 0.0..360.0,

@@ -222,7 +222,7 @@ proptest! {
 
     /// Every picture ends, even with the camera inside a mirror or touching one.
     #[test]
-    fn any_camera_among_mirrors_is_drawn(
+    fn any_view_among_mirrors_can_be_drawn(
         position in (-2.0..6.0, -2.0..6.0),
         is_on_a_line in any::<bool>(),
         degrees in prop_oneof![0.0..360.0, (0..8).prop_map(|eighth| 45.0 * f64::from(eighth))],

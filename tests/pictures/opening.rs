@@ -134,7 +134,7 @@ fn a_locked_door_asks_for_its_key() {
 }
 
 #[test]
-fn everything_that_is_seen_to_change_makes_another_revision() {
+fn every_visible_change_makes_a_new_revision() {
     let mut game = corridor();
     walk(&mut game, 20, &[Intent::Forward]);
     for _ in 0..400 {
@@ -160,7 +160,7 @@ proptest! {
     }
 
     #[test]
-    fn waiting_is_a_number_of_steps(degrees in 0..360, wants in wants()) {
+    fn waiting_equals_taking_as_many_steps(degrees in 0..360, wants in wants()) {
         let mut game = game(&ROOMS, degrees);
         for (held, steps) in wants {
             walk(&mut game, steps, &held);

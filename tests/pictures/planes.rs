@@ -139,7 +139,7 @@ fn most_pixels_are_certain() {
 
 /// From the middle of a cell, some pixels show exactly the line between floor and wall.
 #[test]
-fn the_foot_of_a_wall_is_as_dark_as_the_floor_before_it() {
+fn the_foot_of_a_wall_is_as_dark_as_the_floor_in_front() {
     const ROOM: &str = r##"
 light = 0.5
 floor = "#ffffff"
@@ -165,7 +165,7 @@ things."@".start = 0
 
 /// The floor and the ceiling of a cell in the middle of a corridor are visible.
 #[test]
-fn floor_and_ceiling_of_a_cell_show_around_a_thing() {
+fn floor_and_ceiling_show_around_a_door_glass_or_mask() {
     const FLOOR: Rgb = Rgb::new(200, 10, 10);
     const CEILING: Rgb = Rgb::new(10, 10, 200);
     for tile in ["door = \"oak\"", "glass = \"#808080\", opacity = 0.0", "mask = \"fence\""] {

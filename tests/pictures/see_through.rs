@@ -43,7 +43,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_number_of_faces_is_blended_in_order(
+    fn any_number_of_faces_blends_in_order(
         position in (1.0..8.0, 1.0..6.0),
         degrees in 0.0..360.0,
         field_of_view in 30.0..=120.0,

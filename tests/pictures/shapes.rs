@@ -230,7 +230,7 @@ fn a_ray_that_starts_inside_a_pillar_leaves_it() {
 }
 
 #[test]
-fn a_pillar_that_touches_the_edges_of_its_cell_is_met_there() {
+fn a_pillar_touching_its_cells_edges_is_hit_there() {
     let pillar = "pillar = \"brick\", radius = 0.5";
     assert_eq!(hit(pillar, (0.0, 1.5), (1.0, 0.0)), Some((2.0, Side::X)));
     assert_eq!(hit(pillar, (2.5, 0.0), (0.0, 1.0)), Some((1.0, Side::Y)));
@@ -241,7 +241,7 @@ fn a_pillar_that_touches_the_edges_of_its_cell_is_met_there() {
 }
 
 #[test]
-fn a_line_is_met_at_its_tips_and_not_along_itself() {
+fn a_line_is_hit_at_its_tips_but_not_along_itself() {
     let diagonal = "diagonal = \"brick\", from = \"north-west\"";
     assert_eq!(hit(diagonal, (1.0, 0.0), (1.0, 1.0)), None);
     let across = hit(diagonal, (3.0, 1.0), (-1.0, 1.0));
@@ -257,7 +257,7 @@ fn a_line_is_met_at_its_tips_and_not_along_itself() {
 }
 
 #[test]
-fn rays_of_any_size_and_from_anywhere_end() {
+fn rays_of_any_size_from_anywhere_end() {
     let world = map::parse_str(MAP).unwrap();
     for far in [1e9, 1e15, 1e99, 1e101, 1e300] {
         for scale in [5e-324, 1e-300, 1.0, 1e300] {

@@ -65,7 +65,7 @@ fn finer_glyphs_look_as_they_did() {
 }
 
 #[test]
-fn json_has_the_cells_of_the_widget() {
+fn json_contains_the_widgets_cells() {
     const MUSEUM: &str = "tests/maps/museum.toml";
     let json: Value =
         serde_json::from_slice(&output_of(&["snapshot", MUSEUM, "--format", "json"])).unwrap();
@@ -220,7 +220,7 @@ fn extreme_pictures_are_drawn() {
 }
 
 #[test]
-fn a_closed_pipe_ends_it_quietly() {
+fn a_closed_pipe_ends_the_command_quietly() {
     let mut child = cellcaster(&["snapshot", "--size", "4096x500", "--format", "json"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -234,7 +234,7 @@ fn a_closed_pipe_ends_it_quietly() {
 }
 
 #[test]
-fn mistakes_are_one_sentence_each() {
+fn each_mistake_is_reported_in_one_sentence() {
     let mistakes: [&[&str]; 25] = [
         &["--size", "80"],
         &["--size", "0x24"],

@@ -92,7 +92,7 @@ proptest! {
 
     /// A point on the sphere is chosen first, so that its distance is known.
     #[test]
-    fn a_sphere_of_any_size_is_hit_at_the_distance_that_was_chosen(
+    fn a_sphere_of_any_size_is_hit_at_the_chosen_distance(
         outwards in direction(),
         aside in direction(),
         radius in power_of_ten(-9.0..9.0),
@@ -115,7 +115,7 @@ proptest! {
     }
 
     #[test]
-    fn hits_are_on_the_surface_and_nothing_is_before_them(
+    fn hits_are_on_the_nearest_surface(
         shape in shape(),
         origin in point(10.0),
         direction in direction(),
@@ -177,7 +177,7 @@ proptest! {
     }
 
     #[test]
-    fn any_scene_and_any_camera_is_drawn(
+    fn any_scene_can_be_drawn_from_any_camera(
         center in [-1e9..=1e9, -1e9..=1e9, -1e9..=1e9],
         radius in power_of_ten(-9.0..9.0),
         field_of_view in prop_oneof![Just(1e-320), Just(180.0_f64.next_down()), 1.0..170.0],
@@ -206,7 +206,7 @@ fn a_small_body_costs_few_tests() {
 
 /// A pixel of a checkered floor shows the mean over the hits of rays through the pixel.
 #[test]
-fn a_checkered_floor_is_the_mean_over_each_pixel() {
+fn a_checkered_floor_averages_over_each_pixel() {
     const SAMPLES: u32 = 24;
     let floor = BodyShape::Plane(Plane::new(DVec3::ZERO, DVec3::Z).unwrap());
     let texture = SolidTexture::Checker([Rgb::BLACK, Rgb::WHITE], Scale::ONE);

@@ -13,7 +13,7 @@ use ratatui::widgets::{StatefulWidget, Widget};
 
 /// A texture takes memory when it is first visible.
 #[test]
-fn drawing_a_frame_allocates_nothing_but_new_textures_after_the_first() {
+fn only_new_textures_allocate_after_the_first_frame() {
     for level in builtin::LEVELS {
         let world = level.world().unwrap();
         let mut camera = world.start_camera(FieldOfView::default());

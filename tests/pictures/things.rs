@@ -76,7 +76,7 @@ proptest! {
 
     /// Each pixel is computed separately: it shows the thing, or else the picture without it.
     #[test]
-    fn its_pixels_are_those_of_a_calculation_for_each(
+    fn a_things_pixels_match_a_separate_calculation(
         x in 1.3..4.5,
         y in 1.3..4.7,
         aside in -30.0..30.0,
@@ -102,7 +102,7 @@ proptest! {
 
     /// The same as above, for a figure at any place.
     #[test]
-    fn the_pixels_of_a_figure_are_those_of_a_calculation_for_each(
+    fn a_figures_pixels_match_a_separate_calculation(
         x in 1.3..4.5,
         y in 1.3..4.7,
         place in (1.0..7.0, 1.0..5.0),
@@ -156,7 +156,7 @@ const TALLER_THAN_THE_ROOM: [&str; 3] = [
 proptest! {
     /// A thing reaches neither through the ceiling nor through the floor, in either way of drawing.
     #[test]
-    fn what_is_taller_than_the_room_is_cut_off(
+    fn a_thing_taller_than_the_room_is_cut_off(
         x in prop_oneof![2.1..7.9, (3..8).prop_map(|line| f64::from(line) + 1e-7)],
         y in 2.1..5.9,
         degrees in 0.0..360.0,
@@ -267,7 +267,7 @@ fn a_symmetrical_scene_is_symmetrical() {
 }
 
 #[test]
-fn a_thing_behind_a_grate_shows_through_its_holes_only() {
+fn a_thing_behind_a_grate_shows_only_through_its_holes() {
     let grid = "#######\n#.....#\n#@..%t#\n#.....#\n#######\n";
     let [with, without] = with_and_without(grid, "sprite = 'column'");
     let camera = camera((1.5, 2.5), 0.0);
@@ -284,7 +284,7 @@ fn a_thing_behind_a_grate_shows_through_its_holes_only() {
 }
 
 #[test]
-fn a_thing_before_a_grate_hides_it() {
+fn a_thing_in_front_of_a_grate_hides_it() {
     let grid = "#######\n#.....#\n#@.t%.#\n#.....#\n#######\n";
     let [with, without] = with_and_without(grid, "sprite = 'column'");
     let camera = camera((1.5, 2.5), 0.0);
@@ -296,7 +296,7 @@ fn a_thing_before_a_grate_hides_it() {
 }
 
 #[test]
-fn a_barrel_is_in_the_way_and_bones_are_not() {
+fn a_barrel_blocks_the_way_and_bones_do_not() {
     let reached = |thing: &str| {
         let [world, _] = with_and_without("########\n#@.t...#\n########\n", thing);
         let mut game = Game::new(world);
@@ -324,7 +324,7 @@ fn a_lamp_lights_cells_in_line_of_sight() {
 }
 
 #[test]
-fn a_picture_changes_when_its_next_frame_is_due_and_not_before() {
+fn a_picture_changes_only_when_its_next_frame_is_due() {
     let [world, _] = with_and_without("######\n#@.t.#\n######\n", "sprite = 'torch'");
     let camera = camera((1.5, 1.5), 0.0);
     let mut renderer = Renderer::new();

@@ -63,7 +63,7 @@ fn views(world: &World) -> [Camera; 2] {
 }
 
 #[test]
-fn a_frame_is_the_same_by_however_many_threads() {
+fn any_number_of_threads_draws_the_same_frame() {
     for (name, world) in worlds() {
         for camera in views(&world) {
             let mut expected = frame();
@@ -84,7 +84,7 @@ fn a_frame_is_the_same_by_however_many_threads() {
 }
 
 #[test]
-fn threads_are_for_large_pictures() {
+fn only_large_pictures_use_threads() {
     let world = &worlds()[0].1;
     let camera = world.start_camera(FieldOfView::default());
     let mut small = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);

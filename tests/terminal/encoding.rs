@@ -466,7 +466,7 @@ proptest! {
 }
 
 #[test]
-fn a_resting_picture_becomes_exact_in_frames_of_about_one_size() {
+fn a_resting_picture_becomes_exact_in_frames_of_similar_size() {
     let size = Size::new(80, 24);
     let mut screens = Screens::new(Way::Backend, size, Fidelity::LOW);
     // The two gradients differ by less than the tolerance, so nothing is sent for the second one.

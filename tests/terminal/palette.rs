@@ -173,7 +173,7 @@ fn any_history() -> impl Strategy<Value = History> {
 
 proptest! {
     #[test]
-    fn the_terminal_shows_what_the_writer_says(
+    fn the_terminal_shows_what_the_writer_reports(
         history in any_history(),
         tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
     ) {
@@ -193,7 +193,7 @@ proptest! {
 
 proptest! {
     #[test]
-    fn a_palette_of_ones_own_shows_what_the_writer_says(
+    fn a_redefined_palette_shows_what_the_writer_reports(
         history in any_history(),
         tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
     ) {
@@ -276,7 +276,7 @@ fn tour(world: World) -> [f64; 3] {
 }
 
 #[test]
-fn a_palette_of_ones_own_is_near_true_colour_in_every_level() {
+fn a_redefined_palette_is_near_true_colour_in_every_level() {
     let mut bytes = Vec::new();
     for level in builtin::LEVELS {
         let [mean, first, ratio] = tour(level.world().unwrap());
@@ -291,7 +291,7 @@ fn a_palette_of_ones_own_is_near_true_colour_in_every_level() {
 
 /// There are more colours than palette entries, frame after frame.
 #[test]
-fn entries_are_used_again_for_other_colours() {
+fn palette_entries_are_reused_for_other_colours() {
     let size = Size::new(60, 20);
     for fidelity in [Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW] {
         let mut screen = Screen::new(size, fidelity);

@@ -97,7 +97,7 @@ fn answers_are_never_seen_as_keys() {
 }
 
 #[test]
-fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
+fn the_mouse_uses_pixels_once_the_terminal_reports_their_number() {
     let mut player = start(Speaks::Kitty);
     player.wait_for("KeyReleases(true)");
     player.send("\x1b[109u");
@@ -123,7 +123,7 @@ fn the_mouse_is_in_pixels_as_soon_as_the_terminal_says_how_many_there_are() {
 
 /// Apple's Terminal prints the last character of a query (DECRQM) that it does not understand.
 #[test]
-fn what_a_terminal_prints_of_a_query_is_erased() {
+fn query_text_printed_by_a_terminal_is_erased() {
     const QUERY: &str = "\x1b[?1016$p";
     let written = |environment: &[(&str, &str)]| {
         let environment = [&[(ROLE, "yes")], environment].concat();
@@ -141,7 +141,7 @@ fn what_a_terminal_prints_of_a_query_is_erased() {
 }
 
 #[test]
-fn the_focus_is_told_of() {
+fn focus_changes_are_reported() {
     let mut player = start(Speaks::Plain);
     player.send("\x1b[O");
     player.wait_for("FocusLost");
@@ -161,7 +161,7 @@ fn a_panic_in_another_thread_ends_the_session() {
 }
 
 #[test]
-fn a_program_that_hangs_is_ended_all_the_same() {
+fn a_signal_ends_a_hanging_program() {
     let mut player = start(Speaks::Kitty);
     player.wait_for("KeyReleases(true)");
     player.send("\x1b[104u");

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_has_a_row_for_each_method_and_a_value_for_each_column() {
+    fn a_table_has_a_row_per_method_and_a_value_per_column() {
         let world = builtin::LEVELS[0].world().unwrap();
         let mut parts = Vec::new();
         let tables = report(&plan(), Some(&world), |part| parts.push(part)).unwrap();
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_no_set_without_a_name() {
+    fn an_unknown_set_has_no_report() {
         let plan = Plan { set: Some("nobody's".to_owned()), ..plan() };
         assert!(report(&plan, None, |_| ()).is_none());
         assert!(set_names().len() > 3);

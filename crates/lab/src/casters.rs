@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_name_is_read_and_written() {
+    fn every_name_round_trips() {
         for name in Method::NAMES {
             let method: Method = name.parse().unwrap();
             let written = method.to_string();
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_name_has_an_error_with_the_reason() {
+    fn an_error_about_a_bad_name_says_why() {
         let error = |text: &str| text.parse::<Method>().unwrap_err().to_string();
         let errors = [
             "bresenham",

@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_is_within_the_range() {
+    fn points_are_clamped_to_the_range() {
         let diagram = Diagram { columns: [0, 1], range: [0.5, 8.0] };
         let point = |cost, error| diagram.point(&Row::new([""; 3], vec![cost, error]));
         let count = Value::Count(3);

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn the_walk_gets_about() {
+    fn the_walk_visits_many_cells() {
         let world = plain_scene();
         let cameras = walk(&world, 240);
         let cells: std::collections::HashSet<_> = cameras

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_many_as_the_burst_come_at_once_and_then_as_many_as_the_rate_allows() {
+    fn a_burst_passes_at_once_and_the_rest_at_the_rate() {
         let mut bucket = Bucket::new(200.0, 300.0, Duration::ZERO);
         let mut taken = |milliseconds| {
             let now = Duration::from_millis(milliseconds);

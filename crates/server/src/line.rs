@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_left_of_what_a_terminal_would_obey() {
+    fn control_characters_are_removed() {
         let line = |text| Line::of(text, 40).map(|line| line.to_string());
         assert_eq!(line("\x1b[31mred\x07\n"), Some("[31mred".to_owned()));
         assert_eq!(line(" \t\u{7f}\u{202e}\u{301}"), None);

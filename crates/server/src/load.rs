@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn late_steps_count_whatever_the_threads_do() {
+    fn late_steps_lower_the_rate_even_if_threads_are_idle() {
         let mut governor = Governor::new();
         let late = Sample { busy: 0.1, lateness: Duration::from_millis(40) };
         assert!(rate(governor.decide(late, 30)) < 25.0);
@@ -187,7 +187,7 @@ mod tests {
 
     /// Each frame a second costs the share `cost` of the processor.
     #[test]
-    fn the_rate_settles_where_the_threads_are_busy_but_not_full() {
+    fn the_rate_settles_when_threads_are_busy_but_not_full() {
         for cost in [0.01, 0.05, 0.09] {
             let (mut governor, mut frames) = (Governor::new(), 30.0);
             for decision in 0..400 {

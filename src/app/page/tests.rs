@@ -54,7 +54,7 @@ fn text_is_cut_before_entries() {
 }
 
 #[test]
-fn the_selection_goes_around_and_digits_select() {
+fn the_selection_wraps_and_digits_select() {
     let mut menu = menu();
     select(&mut menu, Key::Up);
     assert_eq!(menu.choice(), Some(5));
@@ -109,7 +109,7 @@ fn every_line_can_be_reached_in_any_window() {
 }
 
 #[test]
-fn a_help_that_fits_does_not_scroll() {
+fn help_that_fits_does_not_scroll() {
     let mut help = HelpScroll::default();
     let text = shown_help(80, 24, &mut help);
     assert_eq!(help.last(), 0, "{text}");

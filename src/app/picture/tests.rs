@@ -5,7 +5,7 @@ use super::*;
 use crate::render::{FrameSize, PixelAspect};
 
 #[test]
-fn a_note_is_shown_whole_where_there_is_room() {
+fn a_note_is_shown_whole_if_there_is_room() {
     let note = "The warden sleeps at the third bell.\nThe lamp by the stair is mine: put it out.";
     for (columns, rows) in [(80, 23), (40, 11), (20, 12)] {
         let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
@@ -60,7 +60,7 @@ fn sounds_from_one_direction_are_side_by_side() {
 }
 
 #[test]
-fn any_direction_and_window_is_possible() {
+fn any_direction_and_window_size_can_be_drawn() {
     for (columns, rows) in [(80, 23), (20, 5), (19, 5), (20, 3), (1, 1)] {
         for tenth in 0..3600 {
             let heading = f64::from(tenth * 7) / 10.0;
@@ -106,7 +106,7 @@ fn a_blow_reddens_the_side_that_it_comes_from() {
 }
 
 #[test]
-fn without_colours_the_side_is_characters() {
+fn without_colours_characters_mark_the_side() {
     let area = Rect::new(0, 0, 20, 6);
     let mut buffer = Buffer::empty(area);
     draw_edge(&mut buffer, area, &hurt(Some(0.0)), Heading::from_degrees(90.0).unwrap());
@@ -119,7 +119,7 @@ fn without_colours_the_side_is_characters() {
 }
 
 #[test]
-fn the_direction_of_view_is_in_the_middle() {
+fn the_view_direction_is_in_the_middle() {
     let strip = |degrees| strip(Heading::from_degrees(degrees).unwrap(), 31);
     insta::assert_snapshot!([0.0, 45.0, 90.0, 180.0, 262.0, 270.0, 359.9].map(strip).join("\n"));
     for (degrees, letter) in [(0.0, 'E'), (90.0, 'S'), (180.0, 'W'), (270.0, 'N')] {

@@ -14,7 +14,7 @@ fn faults(text: &str) -> String {
 }
 
 #[test]
-fn an_empty_file_is_the_default() {
+fn an_empty_file_gives_the_defaults() {
     assert_eq!(parse(""), Configuration::default());
 }
 

@@ -56,7 +56,7 @@ fn the_goal_is_more_important_than_the_title() {
 }
 
 #[test]
-fn stats_have_room_in_80_columns() {
+fn stats_fit_in_80_columns() {
     let stats = "30 fps  272 kB/s  0 ms  fidelity exact";
     let line = line(&[
         (Part::Title, "The Museum of Walls", "The Museum of Walls"),
@@ -71,7 +71,7 @@ fn stats_have_room_in_80_columns() {
 }
 
 #[test]
-fn stats_take_no_room_from_the_player() {
+fn stats_never_displace_the_players_state() {
     let line = line(&[
         (Part::Health, "♥♥♥♥♡♡", "♥♥♥♥♡♡"),
         (Part::Alarm, "ALARM", "ALARM: warden"),
@@ -96,7 +96,7 @@ fn stats_take_no_room_from_the_player() {
 }
 
 #[test]
-fn any_width_is_possible() {
+fn any_width_can_be_drawn() {
     let line = line(&[(Part::Title, "Cellar", "Cellar"), (Part::Help, "?", "? help")]);
     for columns in 0..10 {
         shown(&line, columns);

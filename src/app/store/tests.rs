@@ -131,7 +131,7 @@ fn shown(store: &Store) -> String {
 }
 
 #[test]
-fn what_is_kept_is_there_in_the_next_game() {
+fn stored_data_survives_a_restart() {
     let folder = Folder::new();
     let mut store = sound(&folder.0);
     fill(&mut store);
@@ -185,7 +185,7 @@ fn files_of_older_versions_are_read() {
 }
 
 #[test]
-fn the_better_result_stays() {
+fn the_better_result_is_kept() {
     let folder = Folder::new();
     let mut store = sound(&folder.0);
     let mut improved = |steps, rank| {
@@ -230,7 +230,7 @@ fn only_the_first_try_of_a_day_counts() {
 }
 
 #[test]
-fn a_saved_game_takes_the_place_of_its_own_one_only() {
+fn a_saved_game_replaces_only_its_own_earlier_version() {
     let folder = Folder::new();
     let mut store = sound(&folder.0);
     let game = saved("1 s forward\n");
@@ -272,7 +272,7 @@ fn a_saved_game_takes_the_place_of_its_own_one_only() {
 }
 
 #[test]
-fn where_there_is_no_room_a_game_is_not_saved_and_none_is_lost() {
+fn a_full_store_refuses_a_game_and_loses_none() {
     let mut store = Store::in_memory();
     for level in 0..MAX_SAVES {
         assert!(store.has_room_for(saved_in(level).save.id()));

@@ -113,7 +113,7 @@ fn drawn(rig: &mut Rig, depth: ColorDepth, (columns, rows): (u16, u16)) -> Vec<u
 }
 
 #[test]
-fn screens_look_as_they_did_in_all_colours() {
+fn screens_look_unchanged_in_all_colours() {
     let screens = vec![
         ("title", titled(Offers::default(), Store::in_memory())),
         ("hud", struck()),

@@ -125,7 +125,7 @@ fn pairs() -> impl Iterator<Item = (Key, Key, bool)> {
 }
 
 #[test]
-fn adjust_then_go() {
+fn a_tap_before_a_hold_is_recognized() {
     for (adjusts, goes, _) in pairs() {
         for apart in (60..=300).step_by(40) {
             // A finger may leave the first key only after another finger has pressed the second.
@@ -140,7 +140,7 @@ fn adjust_then_go() {
 }
 
 #[test]
-fn adjust_twice_then_go_then_adjust_again() {
+fn taps_around_a_hold_are_recognized() {
     for apart in [80, 140, 220, 300] {
         let times = [0, apart, 2 * apart, 2 * apart + 1800];
         check(
@@ -168,7 +168,7 @@ fn adjust_twice_then_go_then_adjust_again() {
 
 /// The two key presses overlap, or leave a short gap.
 #[test]
-fn turn_then_go_or_strike() {
+fn a_newer_key_takes_over_from_a_held_turn() {
     for next in [1410, 1460, 1499, 1520, 1560, 1600] {
         check(
             &format!("→ held for 1500 ms, W after {next} ms"),
@@ -186,7 +186,7 @@ fn turn_then_go_or_strike() {
 }
 
 #[test]
-fn keys_pressed_together() {
+fn keys_pressed_together_are_both_held() {
     for (one, other, _) in pairs().filter(|&(.., are_opposed)| !are_opposed) {
         for apart in [0, 20, 40] {
             check(
@@ -202,7 +202,7 @@ fn keys_pressed_together() {
 }
 
 #[test]
-fn walk_and_then_turn_or_strafe_on_the_way() {
+fn turning_or_strafing_does_not_stop_a_walk() {
     for also in [RIGHT, LEFT, D, A] {
         check(
             &format!("W, then {also}"),
@@ -230,7 +230,7 @@ fn walk_and_then_turn_or_strafe_on_the_way() {
 }
 
 #[test]
-fn walk_then_stop_and_then_adjust() {
+fn a_key_tapped_after_a_walk_is_one_tap() {
     check(
         "W, then S to stop",
         &[(W, 0..1500), (S, 1500..1500 + TAP)],
@@ -244,7 +244,7 @@ fn walk_then_stop_and_then_adjust() {
 }
 
 #[test]
-fn jumps() {
+fn jumps_do_not_disturb_other_keys() {
     check(
         "W, and Space on the run",
         &[(W, 0..1900), (SPACE, 1500..1500 + TAP)],

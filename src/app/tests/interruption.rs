@@ -64,7 +64,7 @@ fn q_is_answered_between_two_bands() {
 }
 
 #[test]
-fn what_ends_the_program_or_changes_the_window_comes_first_and_other_keys_wait() {
+fn only_quitting_suspending_and_resizing_interrupt_a_picture() {
     for event in [Event::Quit(QuitReason::Terminated), Event::Suspend, Event::Resized] {
         assert_eq!(render(&mut spheres().app, event, 1), (Rendered::Interrupted, 2));
     }
@@ -82,7 +82,7 @@ fn what_ends_the_program_or_changes_the_window_comes_first_and_other_keys_wait()
 }
 
 #[test]
-fn after_a_new_size_nothing_partial_is_shown() {
+fn after_a_resize_no_partial_picture_is_shown() {
     let mut rig = spheres();
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
     rig.app.terminal_changed(TerminalLook::default());
@@ -97,7 +97,7 @@ fn slow() -> Duration {
 }
 
 #[test]
-fn steps_that_take_long_slow_the_game_down_and_leave_room_for_keys() {
+fn slow_steps_slow_the_game_down_and_leave_time_for_keys() {
     let steps_in_a_second = |machine_time| {
         let mut rig = Rig::new(floor(), None);
         rig.app.machine_time = machine_time;

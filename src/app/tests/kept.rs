@@ -80,7 +80,7 @@ fn left_and_continued(rig: Rig, folder: &Folder, offers: Offers) -> (Game, Rig) 
 }
 
 #[test]
-fn a_game_that_is_left_goes_on_exactly_where_it_was() {
+fn a_game_resumes_exactly_where_it_was_left() {
     let folder = Folder::new("left");
     let mut rig = playing_builtin(folder.store());
     play_about(&mut rig);
@@ -91,7 +91,7 @@ fn a_game_that_is_left_goes_on_exactly_where_it_was() {
 }
 
 #[test]
-fn a_game_in_an_own_map_goes_on_unless_the_map_has_changed() {
+fn a_game_in_the_players_own_map_resumes_unless_it_changed() {
     let folder = Folder::new("own");
     let mut rig = playing_own(DANGER, folder.store());
     rig.tap(W, 30);
@@ -114,7 +114,7 @@ fn a_game_in_an_own_map_goes_on_unless_the_map_has_changed() {
 }
 
 #[test]
-fn results_of_an_own_map_are_kept_with_a_script_that_repeats_them() {
+fn results_in_the_players_own_map_are_kept_with_their_script() {
     let mut rig = won();
     let key = map_key("danger.toml", DANGER);
     let best = rig.app.store.best(&key, Difficulty::Normal).unwrap();
@@ -134,7 +134,7 @@ fn results_of_an_own_map_are_kept_with_a_script_that_repeats_them() {
 }
 
 #[test]
-fn the_best_run_walks_along_and_can_be_switched_off() {
+fn the_ghost_walks_the_best_run_and_can_be_switched_off() {
     let mut store = Store::in_memory();
     let level = builtin::LEVELS[0].name;
     let tally = Tally { steps: 3600, ..Tally::default() };
@@ -160,7 +160,7 @@ fn the_best_run_walks_along_and_can_be_switched_off() {
 }
 
 #[test]
-fn switching_the_ghost_says_so_and_the_map_shows_it() {
+fn switching_the_ghost_is_announced_and_shown_on_the_map() {
     let mut rig = playing_own(DANGER, Store::in_memory());
     let status = |rig: &mut Rig| text(&mut rig.app, 120, 24).lines().last().unwrap().to_owned();
     for said in ["The ghost is off", "The ghost is on: you have no best run here yet"] {
@@ -194,7 +194,7 @@ fn switching_the_ghost_says_so_and_the_map_shows_it() {
 }
 
 #[test]
-fn the_ghost_changes_the_pixels_where_it_stands_and_no_others() {
+fn the_ghost_changes_only_the_pixels_where_it_stands() {
     const MEETING: &str = r##"
 grid = '''
 ##########

@@ -230,7 +230,7 @@ impl Rig {
 }
 
 #[test]
-fn cistern_and_observatory_are_played_to_the_exit() {
+fn cistern_and_observatory_can_be_played_to_the_exit() {
     let files =
         [("cistern", CISTERN, CISTERN_SCRIPT), ("observatory", OBSERVATORY, OBSERVATORY_SCRIPT)];
     for (name, map, script) in files {

@@ -87,7 +87,7 @@ pub(crate) fn text(app: &mut App, columns: u16, rows: u16) -> String {
 }
 
 #[test]
-fn the_dead_say_what_happened_and_go_on_at_once() {
+fn the_death_screen_names_the_cause_and_offers_a_retry() {
     let mut rig = dead();
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("killed by spikes") && shown.contains("> Try again"), "{shown}");
@@ -102,7 +102,7 @@ fn the_dead_say_what_happened_and_go_on_at_once() {
 }
 
 #[test]
-fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
+fn a_dead_player_can_restart_or_leave_to_the_title() {
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Restart the level");
@@ -138,7 +138,7 @@ pub(crate) fn won() -> Rig {
 }
 
 #[test]
-fn the_end_of_a_level_tells_the_rank() {
+fn the_end_of_a_level_shows_the_rank() {
     let mut rig = won();
     let shown = text(&mut rig.app, 80, 24);
     for wanted in ["you found the way out", "rank: ", "the par time of 0:30", "gold: 50 of 50"] {
@@ -147,7 +147,7 @@ fn the_end_of_a_level_tells_the_rank() {
 }
 
 #[test]
-fn the_status_line_says_what_gold_there_is_and_what_is_needed() {
+fn the_status_line_shows_the_gold_found_and_needed() {
     const GOLD: &str = r##"
 title = "Vault"
 treasure_needed = 50
@@ -198,7 +198,7 @@ fn a_note_is_read_where_it_hangs() {
 }
 
 #[test]
-fn best_times_are_in_the_list_of_levels_by_difficulty() {
+fn the_level_list_shows_best_times_by_difficulty() {
     let mut store = Store::in_memory();
     let level = builtin::LEVELS[0].name;
     let tally = Tally { steps: 65 * 60, ..Tally::default() };
@@ -213,7 +213,7 @@ fn best_times_are_in_the_list_of_levels_by_difficulty() {
 }
 
 #[test]
-fn settings_change_by_enter_and_arrows_and_are_kept() {
+fn enter_and_arrows_change_settings_and_they_are_kept() {
     let mut rig = titled(Offers::default(), Store::in_memory());
     rig.choose("Settings");
     rig.choose("Compass");
@@ -267,7 +267,7 @@ fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
 }
 
 #[test]
-fn the_bell_rings_when_the_player_is_hurt_and_once() {
+fn the_bell_rings_once_when_the_player_is_hurt() {
     let mut rig = dead();
     assert!(rig.app.watch.take_ring());
     assert!(!rig.app.watch.take_ring());

@@ -91,7 +91,7 @@ fn every_screen_can_be_drawn_in_every_small_window_after_every_other() {
 }
 
 #[test]
-fn panels_stay_in_areas_of_every_small_size() {
+fn panels_stay_within_every_small_area() {
     let mut rig = danger();
     let screen = Rect::new(0, 0, 90, 30);
     for size in windows() {

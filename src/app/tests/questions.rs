@@ -36,7 +36,7 @@ fn at_the_exit(rate: Option<Rate>, key: Key, milliseconds: u64) -> Rig {
 }
 
 #[test]
-fn a_repetition_confirms_nothing_and_a_fresh_press_does() {
+fn only_a_fresh_press_confirms() {
     for rate in [None, Some((250, 15)), Some((500, 30)), Some((660, 40))] {
         for milliseconds in (20..1500).step_by(70) {
             for key in [SPACE, ENTER] {
@@ -111,7 +111,7 @@ fn wait_for_death(rig: &mut Rig) -> u64 {
 const KEYBOARDS: [Option<Rate>; 4] = [None, Some((250, 15)), Some((500, 30)), Some((660, 40))];
 
 #[test]
-fn keys_that_are_held_at_a_death_do_nothing_on_the_panel() {
+fn keys_held_at_death_do_nothing_on_the_panel() {
     for rate in KEYBOARDS {
         let lives = wait_for_death(&mut on_spikes(rate));
         let letters = ['w', 's', 'r', 'l', 'd', ' '].map(Key::Char);
@@ -137,7 +137,7 @@ fn keys_that_are_held_at_a_death_do_nothing_on_the_panel() {
 }
 
 #[test]
-fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
+fn a_panel_waits_for_held_keys_to_be_released_or_one_second() {
     for (released, answered, is_answered) in [
         (Some(100), 300, false),
         (Some(100), 600, true),
@@ -180,7 +180,7 @@ fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
 }
 
 #[test]
-fn on_a_result_only_enter_and_the_arrows_act_and_the_selection_stops_at_both_ends() {
+fn a_result_obeys_only_enter_and_arrows_and_does_not_wrap() {
     let dead = |rate| {
         let mut rig = on_spikes(rate);
         wait_for_death(&mut rig);
@@ -230,7 +230,7 @@ fn on_a_result_only_enter_and_the_arrows_act_and_the_selection_stops_at_both_end
 }
 
 #[test]
-fn escape_closes_help_and_pause_and_leaving_is_asked_once() {
+fn escape_closes_help_and_pause_and_leaving_asks_once() {
     for rate in [None, Some((500, 30))] {
         let mut rig = start(rate);
         for opens in ['?', 'p'] {

@@ -70,7 +70,7 @@ fn a_guard_who_moves_outside_the_view_costs_no_frame() {
 }
 
 #[test]
-fn a_guard_who_stands_in_view_costs_a_frame_only_when_they_turn() {
+fn a_guard_standing_in_view_costs_a_frame_only_when_turning() {
     let grid = "
 #########
 #@....g.#
@@ -113,7 +113,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
-    fn a_screen_that_is_not_out_of_date_shows_the_game_as_it_is(
+    fn an_up_to_date_screen_shows_the_current_game(
         keys in prop::collection::vec(
             (prop::sample::select(&[Key::Left, Key::Right, Key::Up, W, Key::Char('e')][..]), 20..700_u64),
             6,

@@ -53,7 +53,7 @@ fn saved_levels(rig: &Rig) -> Vec<(&str, Difficulty)> {
 }
 
 #[test]
-fn a_game_in_a_level_that_has_changed_can_begin_anew() {
+fn a_game_in_a_changed_level_can_start_over() {
     let mut rig = playing("New game", Offers::default());
     leave(&mut rig);
     let saved = newest(&rig).unwrap();
@@ -87,7 +87,7 @@ fn a_game_in_a_level_that_has_changed_can_begin_anew() {
 }
 
 #[test]
-fn a_descent_that_is_left_goes_on_once() {
+fn a_saved_descent_resumes_only_once() {
     let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
     for (label, name) in
         [("Endless", "Endless on normal"), ("Daily run", "Daily run of 2026-11-22")]
@@ -112,7 +112,7 @@ fn a_descent_that_is_left_goes_on_once() {
 }
 
 #[test]
-fn each_level_and_difficulty_has_a_saved_game_and_the_newest_is_the_first() {
+fn each_level_and_difficulty_has_a_save_and_the_newest_is_first() {
     let mut rig = playing("New game", Offers::default());
     leave(&mut rig);
     rig.choose("New game");
@@ -156,7 +156,7 @@ fn quit(mut rig: Rig) -> Store {
 }
 
 #[test]
-fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
+fn a_level_with_a_saved_game_asks_before_replacing_it() {
     let mut rig = started("cellar", Store::in_memory());
     assert_eq!(rig.app.screen(), AppScreen::Playing, "nothing is saved, and nothing is asked");
     walk(&mut rig);
@@ -198,7 +198,7 @@ fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
 }
 
 #[test]
-fn a_game_that_goes_on_is_recorded_from_the_start_of_its_level() {
+fn a_resumed_game_is_recorded_from_the_start_of_its_level() {
     let mut rig = started("cellar", Store::in_memory());
     walk(&mut rig);
     let mut rig = started("cellar", quit(rig));
@@ -218,7 +218,7 @@ fn a_game_that_goes_on_is_recorded_from_the_start_of_its_level() {
 }
 
 #[test]
-fn the_next_level_of_the_campaign_asks_too_and_is_offered_beside_saved_games() {
+fn the_next_campaign_level_asks_too_and_is_listed_with_saved_games() {
     let mut store = Store::in_memory();
     let tally = Tally { steps: 3600, ..Tally::default() };
     let run = Run { tally, rank: Rank::Thief, script: String::new() };
@@ -238,7 +238,7 @@ fn the_next_level_of_the_campaign_asks_too_and_is_offered_beside_saved_games() {
 }
 
 #[test]
-fn a_saved_game_is_removed_from_the_list_after_a_question() {
+fn removing_a_saved_game_from_the_list_asks_first() {
     let mut rig = playing("New game", Offers::default());
     leave(&mut rig);
     rig.choose("Endless");
@@ -273,7 +273,7 @@ fn full() -> Store {
 }
 
 #[test]
-fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
+fn a_full_store_asks_first_and_the_game_says_it_is_not_saved() {
     let ids = |rig: &Rig| rig.app.store.saves().map(Save::id).collect::<Vec<SaveId>>();
     let mut rig = started("cellar", full());
     let before = ids(&rig);
@@ -310,7 +310,7 @@ fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
 }
 
 #[test]
-fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
+fn the_daily_run_asks_first_and_resumes_as_the_same_try() {
     let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
     // A start from the shell asks the same question as the title does.
     let opening = InitialState::Daily(offers());
@@ -365,7 +365,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
 }
 
 #[test]
-fn a_map_in_a_file_goes_on_wherever_it_lies() {
+fn a_game_in_a_map_file_resumes_from_any_folder() {
     let file = "/somewhere/else/pit.toml";
     let own = |text: &str| {
         let level = Level::from(parse_str(text).unwrap());
@@ -403,7 +403,7 @@ fn a_map_in_a_file_goes_on_wherever_it_lies() {
 }
 
 #[test]
-fn settings_are_kept_unless_a_flag_or_a_file_gives_them() {
+fn settings_are_kept_unless_a_flag_or_a_file_sets_them() {
     let thirty = Duration::from_secs(1) / 30;
     let mut rig = titled(Offers::default(), Store::in_memory());
     rig.choose("Settings");

@@ -55,7 +55,7 @@ fn the_first_screen_says_what_to_do() {
 }
 
 #[test]
-fn help_scrolls_where_it_does_not_fit() {
+fn help_scrolls_if_it_does_not_fit() {
     for (columns, rows) in SIZES {
         let mut app = app("museum", ascii(MapDisplay::Seen));
         press(&mut app, Key::Char('?'));
@@ -96,7 +96,7 @@ fn the_goal_is_shown_until_the_player_has_acted_for_a_while() {
 }
 
 #[test]
-fn the_share_seen_grows() {
+fn the_explored_share_grows() {
     let size = (120, 40);
     let mut app = app("cellar", ascii(MapDisplay::Seen));
     text(&mut app, size);

@@ -94,7 +94,7 @@ fn table() -> String {
 }
 
 #[test]
-fn the_effect_of_keys_by_keyboard() {
+fn key_effects_match_the_table_for_each_keyboard() {
     insta::assert_snapshot!(table());
 }
 

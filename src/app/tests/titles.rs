@@ -57,7 +57,7 @@ fn a_level_plays_itself_behind_the_title() {
 }
 
 #[test]
-fn a_new_game_begins_at_a_difficulty_and_returns_to_the_title() {
+fn a_new_game_starts_at_the_chosen_difficulty_and_returns_to_title() {
     let mut rig = title();
     rig.choose("New game");
     assert_eq!(rig.app.screen(), AppScreen::NewGame);
@@ -94,7 +94,7 @@ fn escape_and_backspace_go_back_one_screen_and_the_selection_stays() {
 }
 
 #[test]
-fn a_digit_chooses_and_a_repetition_chooses_nothing() {
+fn a_digit_chooses_and_its_repetition_does_not() {
     let mut rig = title();
     rig.tap(Key::Char('2'), 30);
     rig.wait(700);
@@ -113,7 +113,7 @@ fn a_digit_chooses_and_a_repetition_chooses_nothing() {
 }
 
 #[test]
-fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
+fn the_players_own_map_is_played_or_its_faults_are_shown() {
     let mut rig = title();
     rig.choose("My maps");
     rig.choose("bad.toml");
@@ -140,7 +140,7 @@ fn faults_of_an_own_map_are_said_and_a_map_without_faults_is_played() {
 }
 
 #[test]
-fn the_exit_of_a_level_leads_to_the_next_one() {
+fn the_exit_of_a_level_leads_to_the_next_level() {
     let way_out = |title: &str| {
         let text = include_str!("../../../tests/maps/way_out.toml");
         Level::from(parse_str(&text.replace("Way out", title)).unwrap())
@@ -164,7 +164,7 @@ fn the_exit_of_a_level_leads_to_the_next_one() {
 }
 
 #[test]
-fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
+fn the_first_title_picture_loads_one_level_and_lists_no_maps() {
     use std::cell::Cell;
     use std::rc::Rc;
     let searches = Rc::new(Cell::new(0));

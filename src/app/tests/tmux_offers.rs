@@ -29,7 +29,7 @@ fn shows(rig: &mut Rig, words: &str) -> bool {
 }
 
 #[test]
-fn only_a_terminal_that_is_known_to_show_more_has_the_offer() {
+fn only_terminals_known_to_show_more_get_the_offer() {
     for (answer, source, is_offered) in [
         ("title|kitty(0.42.1)|xterm-kitty", ColorSource::Tmux, true),
         ("title|kitty(0.42.1)|xterm-kitty", ColorSource::NoColor, false),
@@ -49,7 +49,7 @@ fn only_a_terminal_that_is_known_to_show_more_has_the_offer() {
 }
 
 #[test]
-fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
+fn tmux_is_told_once_and_only_after_confirmation() {
     let mut rig = title_in_tmux();
     rig.choose(OFFER);
     assert!(shows(&mut rig, "tmux set -as terminal-features ',xterm-kitty:RGB'"));
@@ -73,7 +73,7 @@ fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
 }
 
 #[test]
-fn a_failure_is_a_sentence() {
+fn a_failure_is_reported_in_one_sentence() {
     let mut rig = title_in_tmux();
     rig.choose(OFFER);
     rig.choose("Tell tmux");
@@ -82,7 +82,7 @@ fn a_failure_is_a_sentence() {
 }
 
 #[test]
-fn an_answer_of_tmux_leaves_the_selected_entry_selected() {
+fn an_answer_from_tmux_keeps_the_selection() {
     let mut rig = titled(Offers::default(), Store::in_memory());
     rig.tap(Key::End, 30);
     assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Leave"));
@@ -93,7 +93,7 @@ fn an_answer_of_tmux_leaves_the_selected_entry_selected() {
 }
 
 #[test]
-fn the_panel_is_whole_in_40_columns() {
+fn the_panel_fits_in_40_columns() {
     let mut rig = title_in_tmux();
     rig.choose(OFFER);
     let text = missions::text(&mut rig.app, 40, 12);

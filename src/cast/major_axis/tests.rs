@@ -128,7 +128,7 @@ const HALL: u32 = 120;
 proptest! {
     /// However tiles have moved, rays that leap hit the same cells as rays that do not.
     #[test]
-    fn it_hits_the_same_cells_as_the_walk_where_tiles_move(
+    fn it_hits_the_same_cells_as_the_walk_when_tiles_move(
         moving in prop::collection::vec(
             (0..HALL, 2..HALL, prop::sample::select(&['s', 'w', 'd', 'u', 'c'][..])),
             0..8,
@@ -263,7 +263,7 @@ mod along_beams {
 
     /// It computes one position for each strip, and a few more where the beam has a solid cell.
     #[test]
-    fn it_computes_few_positions_where_it_passes_a_pillar() {
+    fn passing_a_pillar_takes_few_lookups() {
         let mut grid = grid([1024, 100], &[(WALL, (700, 50), (1, 1))]);
         grid.measure_with_beams(|_| false);
         for (y, met) in [(50.5, Some(700)), (49.5, None), (48.5, None), (40.5, None)] {

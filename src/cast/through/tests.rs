@@ -82,7 +82,7 @@ proptest! {
 }
 
 #[test]
-fn a_thin_wall_is_hit_by_the_smallest_component() {
+fn a_ray_with_the_smallest_component_hits_a_thin_wall() {
     let ray = Ray::new(DVec2::new(1.25, 1.0), DVec2::new(1.0, 5e-324)).unwrap();
     let hit = meet_shape(&ray, CELL, Outline::Line(Line::North)).unwrap();
     assert_eq!((hit.t, hit.u), (0.0, 0.75));
@@ -123,7 +123,7 @@ fn a_pillar_is_hit_from_any_distance() {
 
 proptest! {
     #[test]
-    fn far_pillars_are_hit_by_the_rays_that_rational_arithmetic_says(
+    fn far_pillars_are_hit_as_rational_arithmetic_says(
         exponent in 90..308,
         angle in 0.0..7.0_f64,
         aside in -0.6..0.6,

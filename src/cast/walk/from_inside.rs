@@ -106,7 +106,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_enters_the_cells_of_a_walk(
+        fn it_enters_the_same_cells_as_a_walk(
             origin in (-1.0..6.0, -1.0..5.0),
             on_lines in any::<[bool; 2]>(),
             direction in (-1.0..1.0, -1.0..1.0),

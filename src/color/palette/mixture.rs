@@ -556,7 +556,7 @@ mod tests {
     }
 
     #[test]
-    fn no_palette_colour_and_no_shade_is_much_nearer_than_the_look() {
+    fn no_palette_colour_or_shade_is_much_nearer_than_the_look() {
         for look in LOOKS {
             let (depth, ink) = look;
             let limits =
@@ -607,7 +607,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_keeps_the_colours_at_its_left_and_an_edge_its_halves() {
+    fn a_cell_reuses_the_colours_to_its_left_except_at_an_edge() {
         let mut mixer = Mixer::new(ColorDepth::Indexed256, ShadeInk::Dots);
         let pair = |look| match look {
             CellMixture::Shade(_, pair) | CellMixture::Parts(pair) => pair,

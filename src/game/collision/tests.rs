@@ -122,7 +122,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn never_inside_a_wall_and_never_through_one(
+    fn a_body_never_enters_or_crosses_a_wall(
         (grid, start) in grid_and_start(),
         radius in any_radius(),
         displacements in prop::collection::vec(displacement(), 1..40),
@@ -138,7 +138,7 @@ proptest! {
     }
 
     #[test]
-    fn the_path_to_a_contact_is_free_and_ends_at_a_wall(
+    fn the_path_to_a_contact_is_clear_and_ends_at_a_wall(
         (grid, start) in grid_and_start(),
         radius in any_radius(),
         detour in displacement(),
@@ -162,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn speed_is_only_lost(
+    fn sliding_never_adds_speed(
         (mut grid, start) in grid_and_start(),
         displacement in displacement(),
         velocity in displacement(),
@@ -225,7 +225,7 @@ proptest! {
 }
 
 #[test]
-fn fits_through_what_is_exactly_as_wide() {
+fn a_body_fits_through_a_gap_of_its_exact_width() {
     let grid =
         sketch(&["#######", "#.....#", "###.###", "#.....#", "###.###", "#.....#", "#######"]);
     let widest = radius(0.5);
@@ -246,7 +246,7 @@ fn fits_through_what_is_exactly_as_wide() {
 }
 
 #[test]
-fn what_touches_is_clear_and_the_map_has_an_edge() {
+fn touching_a_wall_or_the_map_edge_is_clear() {
     let grid = sketch(&["..#"]);
     let quarter = radius(0.25);
     assert!(is_clear(&grid, DVec2::new(1.75, 0.5), quarter));
@@ -265,7 +265,7 @@ fn a_radius_is_at_most_half_a_cell() {
 }
 
 #[test]
-fn a_joint_of_a_wall_is_no_corner() {
+fn a_wall_joint_is_not_a_corner() {
     let felt = |rows: &[&str]| {
         let grid = Grid::sketch(rows).unwrap();
         let room = OpenCell { obstacles: &grid, column: 1, row: 1, radius: Radius(0.25) };
@@ -359,7 +359,7 @@ mod shapes {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn never_inside_a_shape_and_never_through_one(
+        fn a_body_never_enters_or_crosses_a_shape(
             (room, start) in any_room(QUARTER),
             displacements in prop::collection::vec(displacement(), 1..30),
         ) {
@@ -379,7 +379,7 @@ mod shapes {
         }
 
         #[test]
-        fn speed_is_only_lost(
+        fn sliding_never_adds_speed(
             (room, start) in any_room(QUARTER),
             displacement in displacement(),
             velocity in displacement(),
@@ -409,7 +409,7 @@ mod shapes {
 
         /// A wall of diagonals has joints, and doubles cannot represent positions on its sides.
         #[test]
-        fn diagonals_are_slid_along_without_a_catch(
+        fn sliding_along_a_diagonal_does_not_catch(
             x in 0.3..1.5,
             stride in 0.001_f64..0.2,
             push in 0.0..1.0,
@@ -438,7 +438,7 @@ mod shapes {
     }
 
     #[test]
-    fn a_pillar_as_wide_as_its_cell_leaves_no_way_beside_a_wall() {
+    fn a_pillar_as_wide_as_its_cell_leaves_no_gap_beside_a_wall() {
         let widest = Outline::Pillar(PillarRadius::new(0.5).unwrap());
         let room = Room::empty().with(3, 0, widest);
         let end = moved(&room, DVec2::new(1.5, 0.25), DVec2::new(50.0, 0.0));

@@ -23,7 +23,7 @@ fn is_out_of_reach_inside(top: &str, grid: &str, tiles: &str, things: &str) -> b
 }
 
 #[test]
-fn what_is_walled_in_is_out_of_reach() {
+fn a_walled_in_exit_is_out_of_reach() {
     assert!(!is_out_of_reach("@..X", ""));
     assert!(is_out_of_reach("@.#X", ""));
     // There is no path between the corners of two walls.
@@ -33,26 +33,26 @@ fn what_is_walled_in_is_out_of_reach() {
 }
 
 #[test]
-fn nobody_starts_on_a_roof() {
+fn the_start_is_never_on_a_roof() {
     let text = "ceiling_height = 1.5\ngrid = '@.#X'\n[tiles]\n'#'.wall = 'brick'\n[things]\n\
                 '@'.start = 0\nX.exit = true";
     assert!(is_exit_out_of_reach(&map::parse_str(text).unwrap()));
 }
 
 #[test]
-fn a_map_without_an_exit_has_none_out_of_reach() {
+fn a_map_without_an_exit_has_no_exit_out_of_reach() {
     assert!(!is_out_of_reach("@#.", ""));
 }
 
 #[test]
-fn a_locked_door_needs_a_key_that_can_be_reached() {
+fn a_locked_door_needs_a_reachable_key() {
     let door = "'+' = { door = 'oak', key = 'brass' }";
     assert!(!is_out_of_reach("#####\n@.+.X\nk####", door));
     assert!(!is_out_of_reach("######\n@k.+.X\n######", door));
 }
 
 #[test]
-fn who_jumps_gets_so_high_and_so_far() {
+fn a_jump_has_a_limited_height_and_length() {
     let climb = |height: f64| is_out_of_reach("@.hX", &format!("'h'.floor_height = {height}"));
     assert!(!climb(0.66) && climb(0.67));
     let gap = |cells: usize| {
@@ -63,7 +63,7 @@ fn who_jumps_gets_so_high_and_so_far() {
 }
 
 #[test]
-fn secret_walls_are_open() {
+fn secret_walls_count_as_open() {
     let secret = "'%'.secret = 'brick'";
     assert!(!is_out_of_reach_inside("", "####\n@.%X\n####", secret, ""));
     // The roof above the secret wall is not a path for a player who starts inside.
@@ -71,14 +71,14 @@ fn secret_walls_are_open() {
 }
 
 #[test]
-fn a_floor_that_crumbles_does_not_come_back() {
+fn a_crumbled_floor_does_not_come_back() {
     let floors = "'c'.crumbles = -3\n'p'.floor_height = -3";
     assert!(!is_out_of_reach("@.c.X", floors));
     assert!(is_out_of_reach("@.ppppppcX", floors));
 }
 
 #[test]
-fn a_switch_needs_a_lever_or_a_plate_in_reach() {
+fn a_switch_needs_a_reachable_lever_or_plate() {
     let inside =
         |grid: &str, tiles: &str, things: &str| is_out_of_reach_inside("", grid, tiles, things);
     let door = "'+' = { door = 'metal', switch = 'gate' }\n'p'.plate = 'gate'";
@@ -108,7 +108,7 @@ fn a_lift_carries_to_both_ends() {
 }
 
 #[test]
-fn an_exit_may_ask_for_treasure_in_reach() {
+fn an_exit_may_need_reachable_treasure() {
     let asks = |worth: u32, grid: &str| {
         let top = format!("treasure_needed = {worth}");
         is_out_of_reach_inside(&top, grid, "", "'t'.treasure = 50")

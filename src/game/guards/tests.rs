@@ -150,7 +150,7 @@ fn a_player_behind_a_guard_is_not_seen() {
 }
 
 #[test]
-fn a_player_in_the_light_at_eight_cells_is_noticed_first_and_followed_later() {
+fn a_lit_player_at_eight_cells_is_noticed_then_followed() {
     let mut scene = corridor(0);
     let noticed = scene.steps_until(600, |scene| scene.mood(0) == Mood::Wondering).unwrap();
     assert!(scene.has_sounded(SoundKind::Wonder));
@@ -162,7 +162,7 @@ fn a_player_in_the_light_at_eight_cells_is_noticed_first_and_followed_later() {
 }
 
 #[test]
-fn nobody_is_followed_within_half_a_second_of_being_noticed() {
+fn guards_follow_no_sooner_than_half_a_second_after_noticing() {
     for column in 2..11 {
         let mut scene = corridor(0);
         scene.put(f64::from(column) + 1.3, 1.5);
@@ -175,7 +175,7 @@ fn nobody_is_followed_within_half_a_second_of_being_noticed() {
 }
 
 #[test]
-fn face_to_face_there_is_no_hiding() {
+fn a_player_face_to_face_cannot_hide() {
     let mut scene = corridor(0);
     scene.put(2.5, 1.5);
     scene.target.visibility = 0;
@@ -192,7 +192,7 @@ fn a_player_in_the_dark_is_not_seen_from_afar() {
 }
 
 #[test]
-fn the_nearer_and_the_brighter_the_sooner() {
+fn near_and_bright_players_are_noticed_sooner() {
     let steps = |x: f64, visibility| {
         let mut scene = corridor(0);
         scene.put(x, 1.5);
@@ -206,7 +206,7 @@ fn the_nearer_and_the_brighter_the_sooner() {
 }
 
 #[test]
-fn doors_and_smoke_hide_and_glass_and_masks_do_not() {
+fn doors_and_smoke_hide_a_player_and_glass_and_masks_do_not() {
     let alarmed = |between: char, clouds: &[Cloud]| {
         let rows = format!("##########\n#W..{between}..@.#\n##########");
         let mut scene = Scene::new(&rows, r#""W" = { guard = "warden", heading = 0 }"#);
@@ -224,7 +224,7 @@ fn doors_and_smoke_hide_and_glass_and_masks_do_not() {
 }
 
 #[test]
-fn the_dead_are_let_be() {
+fn guards_leave_a_dead_player_alone() {
     let mut scene = corridor(0);
     scene.steps_until(600, Scene::is_alarmed).unwrap();
     scene.target.is_alive = false;
@@ -233,7 +233,7 @@ fn the_dead_are_let_be() {
 }
 
 #[test]
-fn a_guard_who_has_fallen_is_seen_and_woken() {
+fn a_guard_sees_and_wakes_a_fallen_guard() {
     let mut scene = Scene::new(
         "##########\n#W....L..#\n#.......@#\n##########",
         "\"W\" = { guard = \"warden\", heading = 0 }\n\"L\" = { guard = \"listener\", heading = 0 }",
@@ -247,7 +247,7 @@ fn a_guard_who_has_fallen_is_seen_and_woken() {
 }
 
 #[test]
-fn who_is_stunned_gets_up_alone() {
+fn a_stunned_guard_gets_up_unaided() {
     let mut scene = corridor(0);
     scene.target.is_alive = false;
     scene.guards.stun(0, 100);
@@ -288,7 +288,7 @@ fn used(rows: &[String]) -> String {
 }
 
 #[test]
-fn a_noise_is_heard_through_a_doorway_and_not_through_a_wall() {
+fn a_noise_is_heard_through_a_doorway_but_not_through_a_wall() {
     for (doorway, is_heard) in [('.', true), ('#', false), ('+', false)] {
         let mut scene = rooms('W', doorway);
         let knock = Sound { by: Source::Object, ..scene.sound(SoundKind::Knock, 8) };
@@ -299,7 +299,7 @@ fn a_noise_is_heard_through_a_doorway_and_not_through_a_wall() {
 }
 
 #[test]
-fn a_guard_turns_to_a_noise_first_and_then_goes_there_and_comes_back() {
+fn a_guard_turns_to_a_noise_then_investigates_and_returns() {
     let mut scene = rooms('W', '.');
     scene.target.is_alive = false;
     let at_first = scene.guard(0).position;
@@ -319,7 +319,7 @@ fn a_guard_turns_to_a_noise_first_and_then_goes_there_and_comes_back() {
 }
 
 #[test]
-fn sleepers_are_woken_by_noise_nearby_only_and_rest_until_then() {
+fn only_nearby_noise_wakes_sleepers() {
     let mut scene = rooms('S', '.');
     scene.target.is_alive = false;
     scene.steps_until(5, |scene| scene.guards.are_at_rest()).unwrap();
@@ -331,7 +331,7 @@ fn sleepers_are_woken_by_noise_nearby_only_and_rest_until_then() {
 }
 
 #[test]
-fn a_listener_follows_steps_and_not_silence() {
+fn a_listener_follows_footsteps_but_not_silence() {
     let mut scene = rooms('L', '.');
     scene.put(4.5, 2.5);
     for _ in 0..300 {
@@ -352,7 +352,7 @@ fn a_listener_follows_steps_and_not_silence() {
 }
 
 #[test]
-fn a_shout_brings_those_who_hear_it_but_not_on_easy() {
+fn a_shout_brings_guards_in_earshot_except_on_easy() {
     for (difficulty, comes) in [(Difficulty::Easy, false), (Difficulty::Normal, true)] {
         let mut scene = Scene::with_rules(
             "#############\n#@...A.#...W#\n#......#....#\n#...........#\n#############",
@@ -370,7 +370,7 @@ fn a_shout_brings_those_who_hear_it_but_not_on_easy() {
 }
 
 #[test]
-fn what_a_player_hears_of_guards_is_weaker_behind_doors() {
+fn guards_sound_weaker_behind_doors() {
     use crate::game::sound::Hearing;
     for (doorway, strength) in [('.', Some(1)), ('+', None), ('#', None)] {
         let scene = rooms('W', doorway);
@@ -392,7 +392,7 @@ fn what_a_player_hears_of_guards_is_weaker_behind_doors() {
 // Walking.
 
 #[test]
-fn a_patrol_goes_round_and_returns_to_it() {
+fn a_patrol_circles_and_resumes_after_a_noise() {
     let mut scene = Scene::new(
         "###########\n#W..a.....#\n#.###.###.#\n#.###.###b#\n#...c....@#\n###########",
         "\"W\" = { guard = \"warden\", heading = 0, patrol = \"abc\" }\n\
@@ -415,7 +415,7 @@ fn a_patrol_goes_round_and_returns_to_it() {
 }
 
 #[test]
-fn stairs_are_climbed_and_pits_and_water_avoided() {
+fn guards_climb_stairs_and_avoid_pits_and_water() {
     let mut scene = Scene::new(
         "#########\n#W.012h.#\n#.p~~~~.#\n#@......#\n#########",
         "\"W\" = { guard = \"warden\", heading = 0 }",
@@ -438,7 +438,7 @@ fn stairs_are_climbed_and_pits_and_water_avoided() {
 }
 
 #[test]
-fn guards_who_meet_in_a_corridor_pass() {
+fn guards_pass_each_other_in_a_corridor() {
     let mut scene = Scene::new(
         "##########\n#V......W#\n####@#####\n##########",
         "\"V\" = { guard = \"warden\", heading = 0 }\n\"W\" = { guard = \"archer\", heading = 180 }",
@@ -453,7 +453,7 @@ fn guards_who_meet_in_a_corridor_pass() {
 }
 
 #[test]
-fn far_guards_walk_as_well() {
+fn far_guards_walk_too() {
     let mut scene = Scene::new(
         &format!("{0}\n#W{1}@#\n{0}", "#".repeat(60), ".".repeat(56)),
         "\"W\" = { guard = \"warden\", heading = 0 }",
@@ -500,7 +500,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn guards_are_never_in_anything_solid_or_in_what_they_avoid(
+    fn guards_never_enter_solid_or_avoided_cells(
         rows in maze(8),
         name in kind(),
         moves in prop::collection::vec((0..1000_usize, 1..40_u32, 0..5_u32), 1..12),
@@ -542,7 +542,7 @@ proptest! {
 
     /// A guard who follows a reachable player comes nearer every two seconds, or is already near.
     #[test]
-    fn nobody_is_stuck_while_following(
+    fn a_following_guard_never_gets_stuck(
         walls in prop::collection::vec(prop::bool::weighted(0.3), 100),
         name in prop::sample::select(vec!["warden", "hound", "listener"]),
     ) {
@@ -609,7 +609,7 @@ fn warning(name: &str) -> u32 {
 }
 
 #[test]
-fn blows_are_told_at_least_24_steps_before() {
+fn blows_are_announced_at_least_24_steps_ahead() {
     for name in ["warden", "lantern", "hound", "archer"] {
         assert!(warning(name) >= 24, "{name}");
     }
@@ -617,7 +617,7 @@ fn blows_are_told_at_least_24_steps_before() {
 }
 
 #[test]
-fn who_steps_aside_is_not_hit() {
+fn a_player_who_steps_aside_is_not_hit() {
     let mut scene = Scene::new("########\n#W.@...#\n#......#\n########", WARDEN);
     scene.put(2.4, 1.5);
     scene.steps_until(900, |scene| scene.mood(0) == Mood::Attacking).unwrap();
@@ -678,7 +678,7 @@ fn a_hound_follows_the_trail_around_a_corner_and_stops_at_a_door() {
 }
 
 #[test]
-fn an_archer_keeps_away_and_shoots_along_the_line() {
+fn an_archer_keeps_its_distance_and_shoots_along_the_line() {
     let mut scene = Scene::new(
         "##############\n#....A..@....#\n#............#\n##############",
         r#""A" = { guard = "archer", heading = 0 }"#,
@@ -704,7 +704,7 @@ fn an_archer_keeps_away_and_shoots_along_the_line() {
 }
 
 #[test]
-fn a_bearer_of_a_lantern_rings_before_anything_else() {
+fn a_lantern_bearer_rings_the_bell_first() {
     let mut scene = Scene::new(
         "###########\n#N..@.....#\n#.........#\n#######.###\n#.........#\n#.......A.#\n###########",
         "\"N\" = { guard = \"lantern\", heading = 0 }\n\"A\" = { guard = \"archer\", heading = 90 }",
@@ -731,7 +731,7 @@ fn a_guard_who_loses_a_player_searches_and_gives_up() {
 }
 
 #[test]
-fn guards_give_up_who_cannot_reach_a_player() {
+fn guards_who_cannot_reach_a_player_give_up() {
     let mut scene = Scene::new("##########\n#W..p..@.#\n#...p....#\n##########", WARDEN);
     scene.steps_until(600, Scene::is_alarmed).unwrap();
     scene.steps_until(900, |scene| scene.mood(0) == Mood::Searching).unwrap();
@@ -750,7 +750,7 @@ fn a_push_stops_a_blow() {
 }
 
 #[test]
-fn tools_find_the_guards_before_the_player() {
+fn tools_find_the_guard_in_front_of_the_player() {
     let scene = Scene::new("########\n#@.W...#\n########", WARDEN);
     let near = |direction, reach| {
         scene.guards.guard_near(&scene.world, scene.target.position, direction, reach, 0.5)

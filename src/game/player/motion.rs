@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn right_is_south_for_who_looks_east() {
+    fn right_is_south_when_looking_east() {
         let east = Heading::from_degrees(0.0).unwrap();
         let strafe = [Intent::StrafeRight].into_iter().collect();
         assert_eq!(wanted_velocity(east, strafe), DVec2::new(0.0, WALK));

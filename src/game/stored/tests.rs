@@ -46,7 +46,7 @@ fn assert_same(one: &Game, other: &Game) {
 }
 
 #[test]
-fn every_script_that_wins_goes_on_from_any_step() {
+fn every_winning_script_resumes_from_any_step() {
     for (number, level) in (0..).zip(LEVELS) {
         for difficulty in Difficulty::ALL {
             let rules = Rules { difficulty, seed: 0 };
@@ -109,7 +109,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn several_players_play_on(
+    fn games_with_several_players_resume(
         level in prop::sample::select(LEVELS),
         has_script: bool,
         has_guards in prop::bool::weighted(0.8),
@@ -123,12 +123,12 @@ proptest! {
     }
 
     #[test]
-    fn players_with_everything_play_on(seed: u64, steps in 0..1200_usize) {
+    fn games_in_a_map_with_everything_resume(seed: u64, steps in 0..1200_usize) {
         played(crate::map::parse_str(EVERYTHING).unwrap(), Vec::new(), seed, steps);
     }
 
     #[test]
-    fn a_player_dies_and_goes_on(seed: u64, steps in 0..3600_usize) {
+    fn a_game_resumes_after_a_death(seed: u64, steps in 0..3600_usize) {
         let world = crate::map::parse_str(EVERYTHING).unwrap();
         let mut random = SplitMix64::new(seed);
         let rules = Rules { difficulty: Difficulty::ALL[random.below(3)], seed };
@@ -150,7 +150,7 @@ fn a_generated_level_is_not_stored() {
 }
 
 #[test]
-fn other_games_are_refused_with_a_sentence() {
+fn a_different_game_is_refused_with_a_sentence() {
     let world = |index: usize| LEVELS[index].world().unwrap();
     let game = Game::new(world(0));
     let bytes = game.stored().unwrap();

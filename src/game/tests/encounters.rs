@@ -56,7 +56,7 @@ fn bolts_end_at_walls_and_closed_doors() {
 }
 
 #[test]
-fn a_guard_who_is_awake_pushes_a_player_away_and_one_who_sleeps_does_not() {
+fn only_a_guard_who_is_awake_pushes_a_player_away() {
     let rows = ["#######", "#.....#", "#..@..#", "#.....#", "#######"];
     for (name, degrees) in
         KINDS.into_iter().flat_map(|name| [0.0, 90.0, 200.0].map(|it| (name, it)))
@@ -86,7 +86,7 @@ proptest! {
     /// From any position in a corridor with guards, a walking player gets past them in either
     /// direction.
     #[test]
-    fn no_guard_holds_a_player(
+    fn no_guard_traps_a_player(
         kinds in prop::collection::vec(prop::sample::select(&KINDS[..]), 2),
         column in 1..12_usize,
         ducks in any::<bool>(),
@@ -116,7 +116,7 @@ proptest! {
 }
 
 #[test]
-fn a_guard_and_a_player_who_meet_in_a_corridor_pass_and_the_guard_turns_and_strikes() {
+fn a_guard_met_in_a_corridor_passes_then_turns_and_strikes() {
     let rows = ["###############", "#@......g.....#", "###############"];
     for (name, walk) in KINDS.into_iter().flat_map(|name| {
         [&[Intent::Forward][..], &[Intent::Forward, Intent::Run]].map(|walk| (name, walk))
@@ -188,7 +188,7 @@ fn a_lift_carries_a_guard_both_ways() {
 }
 
 #[test]
-fn a_guard_falls_with_a_floor_that_crumbles() {
+fn a_guard_falls_with_a_crumbling_floor() {
     for duty in DUTIES {
         let mut stage = on_a_floor("floor = 'wood', crumbles = -3", duty, "l = { pebbles = 1 }");
         stage.play(150, &[]);

@@ -4,7 +4,7 @@ use super::*;
 use crate::world::{Difficulty, Supply};
 
 #[test]
-fn treasure_says_its_worth_and_opens_the_exit() {
+fn treasure_reports_its_worth_and_opens_the_exit() {
     let things =
         "a = { treasure = 10 }\nb = { treasure = 50 }\nc = { treasure = 100 }\nX = { exit = true }";
     let rows = ["@aX.b.c"];
@@ -50,7 +50,7 @@ fn pit(difficulty: Difficulty) -> Stage {
 }
 
 #[test]
-fn a_dead_player_goes_on_from_the_checkpoint() {
+fn a_dead_player_resumes_from_the_checkpoint() {
     for (difficulty, treasure, column) in [(Difficulty::Normal, 5, 4), (Difficulty::Hard, 0, 0)] {
         let mut stage = pit(difficulty);
         stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
@@ -71,7 +71,7 @@ fn a_dead_player_goes_on_from_the_checkpoint() {
 }
 
 #[test]
-fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
+fn an_easy_game_has_harmless_falls_and_keeps_finds() {
     let mut stage = pit(Difficulty::Easy);
     stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
     assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
@@ -102,7 +102,7 @@ fn a_checkpoint_is_lit_once_it_is_reached() {
 }
 
 #[test]
-fn a_retry_gives_back_the_checkpoint_but_not_the_clock_the_alarms_and_the_deaths() {
+fn a_retry_restores_the_checkpoint_but_not_clock_alarms_or_deaths() {
     let rows = ["@.c.a....vv", "###########", "..g........"];
     let things = "a = { treasure = 30 }\nc = { checkpoint = true }\ng = { guard = 'warden', heading = 0, wander = 4 }";
     let mut stage = Stage::new(&rows, "v = { floor_height = -12 }", things);
@@ -124,7 +124,7 @@ fn a_retry_gives_back_the_checkpoint_but_not_the_clock_the_alarms_and_the_deaths
 }
 
 #[test]
-fn no_checkpoint_is_reached_under_alarm() {
+fn no_checkpoint_is_reached_during_an_alarm() {
     let things = "c = { checkpoint = true }\nw = { guard = 'warden', heading = 180 }";
     let mut stage = Stage::new(&["@..c....w."], "", things);
     stage.steps_until(600, &[], |stage| stage.game.alarm() == Alarm::Raised).unwrap();
@@ -134,7 +134,7 @@ fn no_checkpoint_is_reached_under_alarm() {
 }
 
 #[test]
-fn in_a_hard_game_the_exit_is_closed_while_the_alarm_is_raised() {
+fn an_alarm_closes_the_exit_in_a_hard_game() {
     let rows = ["##########", "#@.X...w.#", "##########"];
     let things = "X = { exit = true }\nw = { guard = 'warden', heading = 180 }";
     for difficulty in Difficulty::ALL {

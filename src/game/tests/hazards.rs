@@ -79,7 +79,7 @@ fn the_nearest_spikes_are_heard_half_a_second_before_they_come_out() {
 }
 
 #[test]
-fn who_jumps_over_spikes_is_not_hurt() {
+fn jumping_over_spikes_does_not_hurt() {
     let rows = ["@.s......"];
     let (things, difficulty) = ("s = { spikes = 1 }", Difficulty::Normal);
     let mut stage = Stage::with_header("par = 60\nceiling = 'sky'", &rows, "", things, difficulty);
@@ -120,7 +120,7 @@ proptest! {
     /// blow from outside the view kills only three seconds after the first such blow by the same
     /// guard.
     #[test]
-    fn nobody_is_killed_from_outside_the_view_without_a_warning(
+    fn no_blow_from_outside_the_view_kills_without_a_warning(
         blows in prop::collection::vec((0..3_usize, 0.0..360.0, 20..200_usize), 1..20),
     ) {
         let mut stage = Stage::new(&["@"], "", "");

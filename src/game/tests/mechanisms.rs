@@ -6,7 +6,7 @@ use crate::world::SwitchId;
 const LIFT: &str = "l = { floor_height = 0, ceiling = 'sky', moves_to = 2, switch = 'lift' }";
 
 #[test]
-fn a_lever_moves_a_floor_with_those_on_it() {
+fn a_lever_moves_a_floor_and_everyone_on_it() {
     let mut stage = Stage::new(&["@Lll."], LIFT, "L = { lever = 'lift' }");
     stage.press(Intent::Open);
     stage.press(Intent::Open);
@@ -37,7 +37,7 @@ fn a_lever_moves_a_floor_with_those_on_it() {
 }
 
 #[test]
-fn a_floor_that_rises_under_a_low_ceiling_stops() {
+fn a_floor_rising_under_a_low_ceiling_stops() {
     let tiles = "l = { floor_height = 0, ceiling_height = 1.4, moves_to = 1, switch = 'lift' }";
     let mut stage = Stage::new(&["@.l.L"], tiles, "L = { lever = 'lift' }");
     let floor = |stage: &Stage| stage.game.world().floor_at(Cell { column: 2, row: 0 });
@@ -56,7 +56,7 @@ fn a_floor_that_rises_under_a_low_ceiling_stops() {
 }
 
 #[test]
-fn a_plate_is_on_while_somebody_stands_on_it_and_a_door_with_it() {
+fn an_occupied_plate_is_on_and_opens_its_door() {
     let tiles =
         "p = { plate = 'gate', floor = '#808080' }\nG = { door = 'metal', switch = 'gate' }";
     let rows = ["########", "#@.p..G.", "########"];
@@ -91,7 +91,7 @@ fn a_secret_wall_sinks_for_good_and_is_counted() {
 }
 
 #[test]
-fn a_wall_does_not_rise_while_somebody_is_in_its_place() {
+fn a_wall_does_not_rise_while_its_cell_is_occupied() {
     let rows = ["######", "#@pGp#", "######"];
     let tiles =
         "p = { plate = 'gate', floor = '#808080' }\nG = { wall = 'brick', switch = 'gate' }";
@@ -128,7 +128,7 @@ fn a_floor_crumbles_after_it_has_cracked() {
 }
 
 #[test]
-fn who_runs_crosses_a_floor_that_crumbles() {
+fn a_runner_crosses_a_crumbling_floor() {
     let mut stage = Stage::new(&["@....cccc....."], "c = { floor = 'wood', crumbles = -3 }", "");
     stage.play(150, &[Intent::Forward, Intent::Run]);
     assert!(stage.cell().column > 9 && stage.game.feet() == 0.0);

@@ -121,7 +121,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn any_intents_leave_a_valid_state_and_the_same_one_again(
+    fn any_intents_give_a_valid_and_repeatable_state(
         script in play(),
         difficulty in difficulty(),
     ) {
@@ -141,7 +141,7 @@ proptest! {
     }
 
     #[test]
-    fn waiting_is_as_many_steps(
+    fn waiting_equals_taking_as_many_steps(
         script in play(),
         difficulty in difficulty(),
         is_night in any::<bool>(),
@@ -171,7 +171,7 @@ proptest! {
     }
 
     #[test]
-    fn a_game_that_was_saved_goes_on_as_if_it_had_not(before in play(), after in play()) {
+    fn a_saved_game_resumes_as_if_never_interrupted(before in play(), after in play()) {
         let mut game = everything(Difficulty::Normal);
         let mut text = Vec::new();
         let mut recorder = ScriptWriter::new(&mut text);

@@ -5,7 +5,7 @@ use crate::game::tools::Missile;
 use crate::world::Supply;
 
 #[test]
-fn a_pebble_lands_six_cells_ahead_and_a_stretch_throws_one() {
+fn a_pebble_lands_six_cells_ahead_and_a_held_key_throws_once() {
     let mut stage = Stage::new(&["@.............."], "", "");
     stage.play(30, &[Intent::Throw]);
     assert_eq!(stage.game.supplies(Supply::Pebbles), 2);
@@ -67,7 +67,7 @@ fn a_dart_stuns_a_guard_at_the_other_end_of_a_corridor() {
 }
 
 #[test]
-fn a_dart_that_misses_knocks_where_it_ends() {
+fn a_missed_dart_makes_a_noise_where_it_lands() {
     let rows = ["########", "#@.....#", "#####..#", "####..g#", "########"];
     let mut stage = armed(&rows, "g = { guard = 'warden', heading = 90 }");
     stage.press(Intent::Shoot);
@@ -80,7 +80,7 @@ fn a_dart_that_misses_knocks_where_it_ends() {
 }
 
 #[test]
-fn a_dart_flies_neither_through_a_door_nor_through_smoke_at_a_guard() {
+fn a_dart_hits_no_guard_through_a_door_or_smoke() {
     let guard = "g = { guard = 'archer', heading = 0 }";
     let rows = ["##########", "#@..+..g.#", "##########"];
     let mut stage = armed(&rows, guard);
@@ -141,7 +141,7 @@ fn a_guard_loses_a_player_in_smoke() {
 }
 
 #[test]
-fn a_pebble_lures_a_guard_through_a_shut_door_and_a_hound_not() {
+fn a_pebble_lures_a_guard_through_a_shut_door_but_not_a_hound() {
     // The player stands in a niche that is not visible from behind the door.
     let rows = ["##############", "#.....+g.....#", "#@############", "##############"];
     for (name, comes) in [("warden", true), ("archer", true), ("hound", false)] {
@@ -180,7 +180,7 @@ fn a_push_makes_a_guard_stagger_back_and_lose_the_blow() {
 }
 
 #[test]
-fn a_push_wakes_a_guard_who_sleeps_only_if_it_does_not_stun() {
+fn a_push_wakes_a_sleeping_guard_unless_it_stuns() {
     for (name, degrees, is_down) in
         [("warden", 180, false), ("warden", 0, true), ("archer", 180, true)]
     {

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cloud_stays_for_its_time() {
+    fn a_cloud_lasts_its_full_time() {
         let mut smoke = Smoke::default();
         smoke.add(DVec2::new(2.5, 2.5), 0.0);
         (1..STEPS).for_each(|_| smoke.step());

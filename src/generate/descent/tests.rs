@@ -74,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn an_office_is_no_garden(seed: u64, floor in 1..16_u32) {
+    fn an_office_has_few_wide_open_areas(seed: u64, floor in 1..16_u32) {
         prop_assume!(kind(seed, floor) == Generator::Office);
         let world = descent(seed, floor).unwrap();
         let is_opaque = |column: u32, row: u32| {
@@ -90,7 +90,7 @@ proptest! {
     }
 
     #[test]
-    fn the_same_seed_is_the_same_floor(seed: u64, floor in floors()) {
+    fn the_same_seed_gives_the_same_floor(seed: u64, floor in floors()) {
         let world = descent(seed, floor).unwrap();
         prop_assert_eq!(&world, &descent(seed, floor).unwrap());
         prop_assert_ne!(&world, &descent(seed, floor % 16 + 1).unwrap());
@@ -103,7 +103,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn guards_begin_apart_and_out_of_sight(seed: u64, floor in floors()) {
+    fn guards_start_apart_and_out_of_sight(seed: u64, floor in floors()) {
         let world = descent(seed, floor).unwrap();
         let start = world.start().cell.center();
         prop_assert!(world.guards().iter().any(|post| post.from == Difficulty::Easy));
@@ -152,7 +152,7 @@ fn floors_grow_harder() {
 /// Scripts recorded on a floor must stay valid, so this snapshot may change only with a new version
 /// of the descent.
 #[test]
-fn floors_stay_as_they_are() {
+fn floors_never_change() {
     let drawn = [(20_261_122, 1), (20_261_122, 2), (20_261_122, 3), (7, 9)]
         .map(|(seed, floor)| drawing(&descent(seed, floor).unwrap()));
     insta::assert_snapshot!(drawn.join("\n"));

@@ -55,7 +55,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn there_is_a_way_out(
+    fn every_level_has_a_reachable_exit(
         generator in generator(),
         seed: u64,
         columns in prop_oneof![8_u32..40, 60_u32..100],
@@ -84,7 +84,7 @@ proptest! {
     }
 
     #[test]
-    fn all_hubs_are_connected_with_their_neighbours(
+    fn all_hubs_connect_to_their_neighbours(
         generator in generator(),
         seed: u64,
         column in prop_oneof![-5_i64..5, Just(31_250_000_i64), Just(i64::MAX >> 5), any::<i64>()],

@@ -44,7 +44,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn who_starts_is_in_the_middle(generator in generator(), seed: u64, site in site()) {
+    fn the_start_is_in_the_middle(generator in generator(), seed: u64, site in site()) {
         let (window, world) = opened(generator, seed, site);
         let (column, row) = start_cell(&world);
         prop_assert!(MIDDLE.contains(&column) && MIDDLE.contains(&row));
@@ -52,7 +52,7 @@ proptest! {
     }
 
     #[test]
-    fn a_window_shows_the_same_however_it_got_there(
+    fn a_window_shows_the_same_whatever_its_path(
         generator in generator(),
         seed: u64,
         site in site(),
@@ -71,7 +71,7 @@ proptest! {
     }
 
     #[test]
-    fn nobody_sees_a_window_move(
+    fn moving_a_window_changes_no_picture(
         generator in generator(),
         seed: u64,
         site in site(),
@@ -102,7 +102,7 @@ proptest! {
 }
 
 #[test]
-fn nobody_starts_in_a_door() {
+fn the_start_is_never_in_a_door() {
     let level = Generator::Office.level(7, Extent::Endless).unwrap();
     let home = level.chunk(ChunkIndex::default());
     let cells = (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)));
@@ -116,7 +116,7 @@ fn nobody_starts_in_a_door() {
 }
 
 #[test]
-fn a_level_with_an_end_has_nothing_outside() {
+fn a_finite_level_has_nothing_outside() {
     let level = Generator::Maze.level(7, Extent::new(64, 64).unwrap()).unwrap();
     for (column, row) in [(-1, 5), (5, -40), (200, 5), (i64::MAX, i64::MIN)] {
         assert_eq!(Window::open(level.clone(), Site { column, row }), None);

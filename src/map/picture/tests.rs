@@ -34,7 +34,7 @@ fn texels(bytes: &[u8]) -> [(Rgb, u8); 2] {
 }
 
 #[test]
-fn gray_of_every_depth() {
+fn gray_of_every_depth_decodes() {
     let expected = [(Rgb::WHITE, OPAQUE), (Rgb::BLACK, OPAQUE)];
     for (depth, samples) in [
         (BitDepth::One, [0b1000_0000].as_slice()),
@@ -48,13 +48,13 @@ fn gray_of_every_depth() {
 }
 
 #[test]
-fn gray_with_alpha() {
+fn gray_with_alpha_decodes() {
     let bytes = encoded(ColorType::GrayscaleAlpha, BitDepth::Eight, &[7, 0, 9, 255]);
     assert_eq!(texels(&bytes), [(Rgb::new(7, 7, 7), CLEAR), (Rgb::new(9, 9, 9), OPAQUE)]);
 }
 
 #[test]
-fn colour_with_and_without_alpha() {
+fn colours_decode_with_and_without_alpha() {
     let (left, right) = (Rgb::new(1, 2, 3), Rgb::new(4, 5, 6));
     let bytes = encoded(ColorType::Rgb, BitDepth::Eight, &[1, 2, 3, 4, 5, 6]);
     assert_eq!(texels(&bytes), [(left, OPAQUE), (right, OPAQUE)]);
@@ -66,7 +66,7 @@ fn colour_with_and_without_alpha() {
 }
 
 #[test]
-fn a_palette_with_and_without_alpha() {
+fn palettes_decode_with_and_without_alpha() {
     let (left, right) = (Rgb::new(4, 5, 6), Rgb::new(1, 2, 3));
     let bytes = encoded_with(ColorType::Indexed, BitDepth::One, &[0b1000_0000], |encoder| {
         encoder.set_palette(PALETTE);
@@ -80,7 +80,7 @@ fn a_palette_with_and_without_alpha() {
 }
 
 #[test]
-fn a_palette_that_ends_within_a_colour_is_an_error() {
+fn a_palette_that_ends_mid_colour_is_an_error() {
     for length in 3..=3 * 256 {
         let palette = vec![7; length];
         let bytes = encoded_with(ColorType::Indexed, BitDepth::Eight, &[0, 0], |encoder| {
@@ -95,7 +95,7 @@ fn a_palette_that_ends_within_a_colour_is_an_error() {
 }
 
 #[test]
-fn one_clear_colour() {
+fn one_colour_can_be_transparent() {
     let samples = [1, 2, 3, 4, 5, 6];
     let bytes = encoded_with(ColorType::Rgb, BitDepth::Eight, &samples, |encoder| {
         encoder.set_trns([0, 1, 0, 2, 0, 3].as_slice());
@@ -104,7 +104,7 @@ fn one_clear_colour() {
 }
 
 #[test]
-fn the_largest_picture_of_the_longest_texels() {
+fn the_largest_picture_decodes() {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, MAX_SIDE, MAX_SIDE);
     encoder.set_color(ColorType::Rgba);
@@ -118,7 +118,7 @@ fn the_largest_picture_of_the_longest_texels() {
 
 proptest! {
     #[test]
-    fn a_damaged_picture_is_a_texture_or_an_error(
+    fn a_damaged_picture_gives_a_texture_or_an_error(
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         cut in any::<prop::sample::Index>(),
     ) {

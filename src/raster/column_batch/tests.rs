@@ -67,7 +67,7 @@ proptest! {
         prop_assert!(frame.rows().eq(shown));
     }
     #[test]
-    fn faces_repeat_their_texels_and_show_a_part_of_them(
+    fn faces_repeat_and_crop_their_texels(
         columns in prop::collection::vec((0.1..20.0, 0.0..1.0, face()), 1..200),
         texels in prop::sample::select(&[1_u32, 2, 3, 8, 48, 64, 256, 300][..]),
         side in prop::sample::select(&[Side::X, Side::Y][..]),

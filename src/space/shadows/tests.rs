@@ -26,7 +26,7 @@ fn body() -> impl Strategy<Value = Body> {
 
 proptest! {
     #[test]
-    fn the_tree_and_the_boxes_leave_out_no_shadow(
+    fn the_tree_and_the_boxes_miss_no_shadow(
         bodies in prop::collection::vec(body(), 0..30),
         toward in point(3),
         points in prop::collection::vec(point(14), 1..LANES),

@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mosaic_and_its_inverse_have_one_shape() {
+    fn a_mosaic_and_its_inverse_share_one_shape() {
         let all = (0..=u8::MAX).map(Mosaic::octants).chain((0..64).map(Mosaic::sextants));
         for mosaic in all {
             let ((shape, is_inverse), (other, is_other_inverse)) =
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn overlaps_are_those_of_the_dots() {
+    fn overlaps_match_the_dots() {
         let shape = |mask| MosaicShape::of(Mosaic::octants(mask)).0;
         let (upper, left) = (shape(0x0F), shape(0x55));
         assert_eq!(upper.overlap(left), Overlap { straight: [6, 6], crossed: [6, 6] });

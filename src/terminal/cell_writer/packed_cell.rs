@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_stays_a_panel() {
+    fn a_panel_stays_recognizable_in_ascii() {
         let panel = ["┌──┐", "│→↗│", "└──┘"];
         let shown = panel.map(|row| {
             row.chars()

@@ -510,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn near_motions_are_short() {
+    fn motions_to_near_cells_are_short() {
         let from = Position::new(10, 5);
         for (x, y, expected) in [
             (10, 5, ""),
@@ -535,7 +535,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_motion_arrives(from in (0..=120_u16, 0..40_u16), to in (0..120_u16, 0..40_u16)) {
+        fn every_motion_reaches_its_target(from in (0..=120_u16, 0..40_u16), to in (0..120_u16, 0..40_u16)) {
             let mut screen = vt100::Parser::new(
                 40.try_into().unwrap(),
                 120.try_into().unwrap(),

@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_stand_still_are_not_moved() {
+    fn still_cells_are_not_moved() {
         let shift = best(&row("abcdefghij|MAP|"), &row("bcdefghijk|MAP|")).unwrap();
         assert_eq!(shift, Shift { columns: 0..10, by: 1, way: ShiftDirection::Left });
     }

@@ -16,7 +16,7 @@ use super::*;
 use crate::tui::canvas::Canvas;
 
 #[test]
-fn a_block_that_spares_a_colour_is_taken() {
+fn a_block_that_saves_a_colour_change_is_chosen() {
     let [a, b] = [Color::Rgb(1, 2, 3), Color::Rgb(4, 5, 6)];
     let cells = [colored("▀", a, b), colored("▄", a, b), colored("█", a, b), colored(" ", a, a)];
     insta::assert_snapshot!(readable(&cells));
@@ -34,7 +34,7 @@ proptest! {
 
     /// A picture that turns: stretches of rows move by some columns from frame to frame.
     #[test]
-    fn cells_that_move_sideways_are_right(
+    fn cells_that_move_sideways_are_drawn_correctly(
         cells in any_pixels(160),
         moves in prop::collection::vec((0..4_usize, 0..40_usize, 0..40_usize, 0..9_usize), 1..8),
     ) {
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn a_frame_without_a_change_writes_nothing(
+    fn an_unchanged_frame_writes_nothing(
         content in any_size().prop_flat_map(any_buffer)
     ) {
         let (mut terminal, screen) = terminal(content.area.as_size());
@@ -93,7 +93,7 @@ proptest! {
 
 proptest! {
     #[test]
-    fn a_resting_picture_is_exact_within_ten_frames(
+    fn a_resting_picture_becomes_exact_within_ten_frames(
         history in prop::collection::vec(any_pixels(24), 1..4),
         tolerance: u8,
     ) {
@@ -118,7 +118,7 @@ proptest! {
 }
 
 #[test]
-fn only_differences_from_the_cell_before_are_sent() {
+fn only_differences_from_the_previous_cell_are_sent() {
     let (red, blue) = (Color::Rgb(200, 0, 0), Color::Rgb(0, 0, 200));
     let row = [
         colored("o", red, blue),
@@ -171,7 +171,7 @@ fn modifiers_are_switched_one_by_one_except_intensity() {
 }
 
 #[test]
-fn control_characters_in_a_cell_reach_no_terminal() {
+fn control_characters_in_a_cell_never_reach_the_terminal() {
     let bytes = bytes_of(&[colored("\x1b]0;mine\x07", Color::Red, Color::Reset)]);
     assert!(!bytes.contains("mine"), "{bytes:?}");
 }
@@ -222,7 +222,7 @@ fn glyphs_without_ids_are_shown() {
 }
 
 #[test]
-fn a_window_of_no_size_is_drawn_without_an_error() {
+fn an_empty_window_is_drawn_without_an_error() {
     let screen = Screen::new(Size::new(1, 1));
     let mut terminal = Terminal::new(CellWriter::new(screen, Size::ZERO)).unwrap();
     terminal.draw(|_| ()).unwrap();
@@ -230,7 +230,7 @@ fn a_window_of_no_size_is_drawn_without_an_error() {
 
 /// A blinking cell does not keep the others from becoming exact.
 #[test]
-fn rows_that_rest_become_exact_while_another_changes() {
+fn resting_rows_become_exact_while_another_changes() {
     let size = Size::new(40, 6);
     let (mut terminal, screen) = terminal(size);
     terminal.backend_mut().set_fidelity(Fidelity::LOW);
@@ -289,7 +289,7 @@ fn assert_shown_in_turn(history: &[Buffer]) {
 }
 
 #[test]
-fn a_wide_character_that_was_covered_does_not_return() {
+fn a_covered_wide_character_does_not_return() {
     assert_shown_in_turn(&[row(" 語  z"), row("字  z"), row("a   z"), row("    z")]);
     assert_shown_in_turn(&[row("語語語"), row(" 語語"), row("  語"), row("   a"), row("語語語")]);
 }
@@ -333,7 +333,7 @@ const UNFIT: [&str; 10] = [
 ];
 
 #[test]
-fn a_text_that_is_unfit_for_a_cell_is_a_space() {
+fn text_unfit_for_a_cell_becomes_a_space() {
     for unfit in UNFIT {
         let size = Size::new(6, 1);
         let cells = [
@@ -384,7 +384,7 @@ fn any_character_can_be_drawn_alone() {
 
 /// Terminals that shape Arabic show two letters in one cell, and others give one letter two cells.
 #[test]
-fn a_width_that_terminals_dispute_moves_no_other_cell() {
+fn a_disputed_width_moves_no_other_cell() {
     let size = Size::new(20, 1);
     let mut sent = Vec::new();
     let mut writer = CellWriter::new(&mut sent, size);
@@ -409,7 +409,7 @@ fn a_width_that_terminals_dispute_moves_no_other_cell() {
 }
 
 #[test]
-fn a_wide_character_in_the_last_column_is_a_space() {
+fn a_wide_character_in_the_last_column_becomes_a_space() {
     let size = Size::new(6, 2);
     let screen = Screen::new(size);
     let mut writer = CellWriter::new(screen.clone(), size);
@@ -528,7 +528,7 @@ proptest! {
     }
 
     #[test]
-    fn the_cursor_is_moved_right_in_a_window_of_another_size(
+    fn the_cursor_is_placed_correctly_in_a_resized_window(
         sizes in prop::collection::vec((1..12_u16, 1..8_u16), 2..5),
         cells in any_pixels(96),
         place in (0..12_u16, 0..8_u16),

@@ -97,7 +97,7 @@ fn a_key_wakes_a_terminal_that_has_stopped_answering() {
 }
 
 #[test]
-fn an_answer_that_is_lost_shifts_the_others_until_the_next_fence() {
+fn a_lost_answer_shifts_the_others_until_the_next_fence() {
     let mut flow = answered_once();
     let mut now = SECOND;
     flow.sent(now, 1000, Request::Status);
@@ -192,7 +192,7 @@ proptest! {
     /// However answers are delayed or lost, few frames are unanswered, and after a key a frame or a
     /// fence is sent within the longest timeout.
     #[test]
-    fn the_window_is_never_exceeded_and_never_closed_for_ever(
+    fn the_window_is_never_exceeded_and_never_stays_closed(
         events in prop::collection::vec(event(), 0..200),
     ) {
         let mut flow = Flow::new(false);
@@ -227,7 +227,7 @@ proptest! {
 }
 
 #[test]
-fn on_a_slow_link_frames_are_fresh_and_many() {
+fn on_a_slow_link_frames_are_fresh_and_frequent() {
     let mut line = Simulation::of_one(50 * MILLISECOND, MEGABIT, Frames::all_of(40_000));
     line.walk(5 * SECOND);
     let settled = line.players[0].shown_since(2 * SECOND);
@@ -240,7 +240,7 @@ fn on_a_slow_link_frames_are_fresh_and_many() {
 }
 
 #[test]
-fn on_a_fast_link_every_frame_is_exact_and_in_time() {
+fn on_a_fast_link_every_frame_is_exact_and_on_time() {
     for delay in [Duration::ZERO, MILLISECOND, 40 * MILLISECOND] {
         let mut line = Simulation::of_one(delay, 10e6, Frames::all_of(60_000));
         line.walk(3 * SECOND);
@@ -253,7 +253,7 @@ fn on_a_fast_link_every_frame_is_exact_and_in_time() {
 /// Rejected: the quotient of bytes and busy time. It mistakes jitter for slowness: 0 to 100 ms each way made most
 /// frames as coarse as possible.
 #[test]
-fn jitter_is_not_taken_for_slowness() {
+fn jitter_is_not_mistaken_for_slowness() {
     for (jitter, frames_per_second) in [(50, 28), (100, 17)] {
         let jitter = jitter * MILLISECOND;
         let conditions = Conditions { delay: 20 * MILLISECOND, jitter, rate: UNLIMITED };
@@ -269,7 +269,7 @@ fn jitter_is_not_taken_for_slowness() {
 }
 
 #[test]
-fn frames_are_exact_again_when_the_link_has_become_fast() {
+fn frames_become_exact_again_when_the_link_becomes_fast() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 100_000.0, Frames::all_of(40_000));
     line.walk(5 * SECOND);
     assert!(line.players[0].flow.fidelity() > Fidelity::EXACT);
@@ -281,7 +281,7 @@ fn frames_are_exact_again_when_the_link_has_become_fast() {
 /// Rejected: removing frames after a timeout. Their late answers made a link of 100 ms look like a link of 0 to 17
 /// ms, as long as anything moved.
 #[test]
-fn after_a_stall_answers_belong_to_their_frames() {
+fn answers_match_their_frames_after_a_stall() {
     let mut line = Simulation::of_one(50 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
     line.walk(10 * SECOND);
     line.conditions.rate = 1000.0;
@@ -299,7 +299,7 @@ fn after_a_stall_answers_belong_to_their_frames() {
 
 /// Rejected: sending frames to a link that does not answer. 30 s of frames waited for it.
 #[test]
-fn no_frames_queue_before_a_link_that_has_become_slow() {
+fn no_frames_queue_when_a_link_becomes_slow() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 10.0 * MEGABIT, Frames::CITADEL);
     line.walk(10 * SECOND);
     let before = line.players[0].shown_since(Duration::ZERO).len();
@@ -313,7 +313,7 @@ fn no_frames_queue_before_a_link_that_has_become_slow() {
 }
 
 #[test]
-fn two_sessions_share_a_link_in_time() {
+fn two_sessions_share_a_link_fairly() {
     let conditions =
         Conditions { delay: 30 * MILLISECOND, jitter: Duration::ZERO, rate: 2.0 * MEGABIT };
     let mut line = Simulation::new(conditions, &[Frames::CITADEL; 2]);
@@ -334,7 +334,7 @@ fn little_is_in_flight_when_a_link_becomes_slow() {
 
 /// The tables in the documentation equal the current results of the simulation.
 #[test]
-fn the_documented_tables_are_those_of_this_policy() {
+fn the_documented_tables_match_this_policy() {
     let documented = include_str!("../../../docs/links.md").replace("\r\n", "\n");
     for table in [scenarios::table(), scenarios::table_of_drops()] {
         println!("{table}");
@@ -411,7 +411,7 @@ impl FrameSource for Game {
 /// Before fidelity applied to palettes and characters, 256 colours reached 12 frames per second, and characters
 /// reached 8.
 #[test]
-fn in_every_depth_and_glyph_mode_a_megabit_carries_twenty_frames_a_second() {
+fn a_megabit_carries_twenty_frames_a_second_in_every_mode() {
     let link = Conditions { delay: 50 * MILLISECOND, jitter: Duration::ZERO, rate: MEGABIT };
     for (glyphs, depth) in [
         (GlyphSet::Half, ColorDepth::True),

@@ -141,14 +141,14 @@ fn settle(decoder: &mut Decoder) -> Vec<TerminalInput> {
 }
 
 #[test]
-fn every_unit_has_its_meaning() {
+fn every_sequence_decodes_to_its_meaning() {
     for (text, expected) in vocabulary() {
         assert_eq!(decode([text.as_bytes()]), Vec::from_iter(expected), "{text:?}");
     }
 }
 
 #[test]
-fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
+fn a_palette_entry_is_reported_in_one_to_four_digits() {
     let entry = |color| vec![TerminalInput::Answer(Answer::PaletteEntry(color))];
     for (text, expected) in [
         ("\x1b]4;255;rgb:1212/abab/5656\x1b\\", entry([0x1212, 0xabab, 0x5656])),
@@ -183,7 +183,7 @@ fn two_escapes_are_two_keys() {
 }
 
 #[test]
-fn alt_with_a_character_that_starts_sequences_is_a_key_after_the_wait() {
+fn alt_with_a_sequence_starter_is_a_key_after_the_wait() {
     for (text, character) in [("\x1b[", '['), ("\x1bO", 'o'), ("\x1bP", 'p'), ("\x1b]", ']')] {
         let mut decoder = Decoder::default();
         decoder.feed(text.as_bytes(), |input| panic!("{input:?} came too early"));

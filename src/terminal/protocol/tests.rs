@@ -28,7 +28,7 @@ fn draw(protocol: &mut Protocol, character: char) {
 const ANSWERS: &[u8] = b"\x1b[0n\x1b[?62;22c";
 
 #[test]
-fn what_is_taken_is_given_back() {
+fn every_enabled_mode_is_restored() {
     let mut protocol = begun("xterm-kitty");
     let now = Duration::from_millis(20);
     assert!(sent(&mut protocol, now).starts_with(ENTERED));
@@ -112,7 +112,7 @@ fn a_terminal_that_reads_nothing_is_sent_nothing() {
 }
 
 #[test]
-fn an_answered_frame_is_followed_by_the_next() {
+fn the_next_frame_follows_an_answered_one() {
     let mut protocol = begun("xterm");
     sent(&mut protocol, Duration::ZERO);
     protocol.receive(ANSWERS, Duration::from_millis(10));
@@ -131,7 +131,7 @@ fn an_answered_frame_is_followed_by_the_next() {
 }
 
 #[test]
-fn the_frames_that_the_terminal_shows_are_counted() {
+fn shown_frames_are_counted() {
     let mut protocol = begun("xterm");
     sent(&mut protocol, Duration::ZERO);
     protocol.receive(ANSWERS, Duration::from_millis(10));
@@ -155,7 +155,7 @@ fn the_frames_that_the_terminal_shows_are_counted() {
 }
 
 #[test]
-fn bytes_wait_for_the_caller_before_the_next_frame() {
+fn the_next_frame_waits_until_the_caller_takes_the_bytes() {
     let mut protocol = begun("xterm");
     let now = Duration::from_millis(10);
     protocol.receive(ANSWERS, now);
@@ -209,7 +209,7 @@ fn depths(protocol: &mut Protocol) -> Vec<ColorDepth> {
 }
 
 #[test]
-fn a_terminal_of_256_colours_that_proves_its_palette_shows_all() {
+fn a_256_colour_terminal_with_a_proven_palette_shows_all_colours() {
     let mut protocol = begun("xterm-256color");
     let now = Duration::from_millis(20);
     sent(&mut protocol, now);
@@ -226,7 +226,7 @@ fn a_terminal_of_256_colours_that_proves_its_palette_shows_all() {
 }
 
 #[test]
-fn the_answer_for_24_bit_colours_comes_before_a_palette_of_ones_own() {
+fn a_24_bit_answer_takes_precedence_over_redefining_the_palette() {
     let mut protocol = begun("xterm-256color");
     let now = Duration::from_millis(20);
     sent(&mut protocol, now);
@@ -260,7 +260,7 @@ fn after(reports: &[[u16; 3]]) -> PaletteProbe {
 }
 
 #[test]
-fn a_palette_is_usable_that_is_defined_and_reset() {
+fn a_palette_is_usable_if_it_can_be_defined_and_reset() {
     assert_eq!(after(&[OWN, DEFINED, OWN]), PaletteProbe::Reset);
     for reports in [
         &[OWN][..],

@@ -371,14 +371,14 @@ mod tests {
     }
 
     #[test]
-    fn splits_of_random_cells_are_almost_the_best() {
+    fn splits_of_random_cells_are_nearly_optimal() {
         let excess =
             [excess::<4>(noise(20_000)), excess::<6>(noise(20_000)), excess::<8>(noise(20_000))];
         assert!(excess.into_iter().all(|excess| excess < 0.045), "{excess:?}");
     }
 
     #[test]
-    fn splits_of_frames_are_almost_the_best() {
+    fn splits_of_frames_are_nearly_optimal() {
         for name in ["cellar", "museum", "citadel", "treasury"] {
             let excess = excess(cells(name));
             assert!(excess < 0.009, "{name} {excess}");

@@ -49,7 +49,7 @@ fn with_releases_a_key_is_held_from_the_end_of_its_tap_to_its_release() {
 }
 
 #[test]
-fn a_tap_that_is_released_goes_on_to_its_end() {
+fn a_released_tap_runs_to_its_end() {
     let mut held = HeldKeys::default();
     held.set_reports_releases(true);
     press(&mut held, 'w', 0);
@@ -120,7 +120,7 @@ fn a_newer_key_does_not_end_an_older_one() {
 }
 
 #[test]
-fn pressing_a_key_again_releases_it_after_a_newer_key_ended_its_repetition() {
+fn pressing_again_releases_a_key_that_a_newer_one_interrupted() {
     let mut typist = Typist::new((500, 30));
     typist.press('w');
     typist.wait(1000, []);
@@ -200,7 +200,7 @@ fn a_jump_holds_keys_that_could_not_have_repeated_yet() {
 }
 
 #[test]
-fn a_jump_holds_no_other_key_than_the_one_that_gives_its_direction() {
+fn a_jump_holds_only_the_key_that_gives_its_direction() {
     let typed = |keys: &[(char, u64)]| {
         let mut typist = Typist::new((500, 30));
         for &(key, wait) in keys {
@@ -231,7 +231,7 @@ fn a_key_that_should_not_outlast_a_newer_one_is_released() {
 }
 
 #[test]
-fn a_key_is_down_since_its_press_until_its_release() {
+fn a_key_is_down_from_its_press_to_its_release() {
     for reports_releases in [false, true] {
         let mut held = HeldKeys::default();
         held.set_reports_releases(reports_releases);
@@ -267,7 +267,7 @@ fn jitter_releases_no_key_and_adds_no_tap() {
 }
 
 #[test]
-fn a_stalled_link_delivers_a_repetition_and_no_taps() {
+fn a_burst_after_a_stall_counts_as_repetition_not_taps() {
     let mut typist = Typist::new((500, 30));
     typist.press('w');
     typist.wait(1500, []);

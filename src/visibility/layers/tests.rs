@@ -28,7 +28,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn nothing_that_a_ray_passes_is_left_out(
+    fn no_thing_that_a_ray_meets_is_left_out(
         cells in prop::collection::vec(
             prop::sample::select(&['.', '.', '.', 'p', 'p', 'P', '#', 'l', 'M', 's'][..]),
             SIDE * SIDE,

@@ -20,7 +20,7 @@ fn inner(distance_field: &DistanceField) -> Vec<Vec<u16>> {
 }
 
 #[test]
-fn around_the_map_nothing_is_clear() {
+fn nothing_outside_the_map_is_clear() {
     let distance_field = of(&["....", "...#"]);
     assert_eq!(inner(&distance_field), [[1, 1, 1, 1], [1, 1, 1, 0]]);
     assert_eq!(distance_field.cells.iter().filter(|&&cell| cell != CodedDistance::NONE).count(), 7);
@@ -29,7 +29,7 @@ fn around_the_map_nothing_is_clear() {
 }
 
 #[test]
-fn far_is_rounded_down() {
+fn large_distances_round_down() {
     for (lines, coded) in [(0, 0), (1, 1), (128, 128), (159, 128), (160, 160), (4096, 4096)] {
         assert_eq!(CodedDistance::new(lines).lines(), coded);
     }
@@ -47,7 +47,7 @@ fn halls_are_worth_measuring_and_rooms_are_not() {
 proptest! {
     /// The distance is the distance to the nearest solid cell, found by brute force.
     #[test]
-    fn it_is_as_far_as_a_king_walks(
+    fn distances_match_brute_force(
         rows in prop::collection::vec("[.......#]{9}", 1..9_usize),
     ) {
         let drawn: Vec<&[u8]> = rows.iter().map(String::as_bytes).collect();

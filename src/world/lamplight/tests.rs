@@ -94,7 +94,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn light_is_the_sum_of_all_lamps_whatever_happened(
+    fn light_is_the_sum_of_all_lamps_after_any_events(
         cells in prop::collection::vec(
             prop::sample::select(&['.', '.', '.', '.', 't', 'l', '#', '%'][..]),
             (SIDE * SIDE) as usize,
@@ -138,7 +138,7 @@ proptest! {
 }
 
 #[test]
-fn where_everything_is_fully_lit_lamps_change_nothing() {
+fn lamps_change_nothing_in_a_fully_lit_world() {
     let text =
         "grid = '''\n#####\n#@..#\n#####\n'''\ntiles.'#'.wall = 'brick'\nthings.'@'.start = 0\n";
     let mut world = map::parse_str(text).unwrap();
@@ -200,7 +200,7 @@ mod lines {
     use crate::cast::{Ray, Walk};
 
     #[test]
-    fn a_reach_of_whole_cells_ends_before_the_last() {
+    fn a_reach_in_whole_cells_excludes_the_last() {
         let counts =
             [1.0, 1.5, 2.0, 4.0, 32.0].map(|cells| Reach::new(cells).unwrap().cell_count());
         assert_eq!(counts, [1, 9, 9, 45, 3205]);
@@ -225,7 +225,7 @@ mod lines {
 
     proptest! {
         #[test]
-        fn a_lamp_lights_what_a_straight_line_leads_to(
+        fn a_lamp_lights_cells_in_line_of_sight(
             width in 1_u32..24,
             solid in prop::collection::vec(prop::bool::weighted(0.2), 24 * 24),
             height in 1_u32..24,

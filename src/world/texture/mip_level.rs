@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chessboard_becomes_the_gray_of_the_same_light() {
+    fn a_chessboard_becomes_gray_of_equal_light() {
         let texels = (0..16).map(|index| if (index + index / 4) % 2 == 0 { 0 } else { 255 });
         let texels = texels.map(|gray| Rgb::new(gray, gray, gray)).collect();
         let levels = smaller(&MipLevel::new(size(4), size(4), texels, vec![]));
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn transparent_texels_have_no_influence_on_the_colour() {
+    fn transparent_texels_do_not_affect_the_colour() {
         let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::WHITE, Rgb::BLACK];
         let of_four = MipLevel::new(size(2), size(2), texels, vec![255, 0, 255, 0]);
         let level = &smaller(&of_four)[0];

@@ -149,7 +149,7 @@ fn the_first_three_levels_are_won_by_taps_in_a_plain_terminal() {
 }
 
 #[test]
-fn a_held_key_walks_for_as_long_as_it_repeats() {
+fn a_held_key_walks_as_long_as_it_repeats() {
     let data = folder("campaign-holding");
     let mut typist = begin(&data);
     typist.wait_to_see(LEVELS[0].goal);

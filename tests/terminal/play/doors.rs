@@ -3,7 +3,7 @@
 use super::game::{Game, Key};
 
 #[test]
-fn the_key_opens_the_door_and_behind_another_is_the_exit() {
+fn the_key_opens_one_door_and_the_exit_is_behind_another() {
     let game = Game::start_map("door");
     game.press(Key::Char('w'));
     game.wait_for("This door needs the brass key.");

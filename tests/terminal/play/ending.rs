@@ -32,7 +32,7 @@ const TAKEN: Modes = Modes {
 
 /// A key release arrives whenever the game ends, and must not reach the shell.
 #[test]
-fn q_and_escape_ask_and_leave_and_control_c_leaves() {
+fn q_and_escape_ask_before_leaving_and_control_c_leaves_at_once() {
     let (q, escape, enter) = (Key::Char('q').event(1), Key::Escape.event(1), Key::Enter.event(1));
     let released = Key::Char('q').event(3);
     let twice = format!("{q}{released}{q}");
@@ -52,7 +52,7 @@ fn q_and_escape_ask_and_leave_and_control_c_leaves() {
 }
 
 #[test]
-fn a_question_is_asked_before_leaving_and_escape_goes_on() {
+fn leaving_asks_first_and_escape_continues_the_game() {
     let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
     for _ in 0..2 {
         game.send("q");
@@ -71,7 +71,7 @@ fn a_question_is_asked_before_leaving_and_escape_goes_on() {
 }
 
 #[test]
-fn signals_end_it_in_the_middle_of_a_walk() {
+fn signals_end_the_game_in_the_middle_of_a_walk() {
     for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
         let mut game = Game::start();
         game.press(Key::Right);
@@ -85,7 +85,7 @@ fn signals_end_it_in_the_middle_of_a_walk() {
 
 /// Otherwise a shell would print the answer to the last request.
 #[test]
-fn a_terminal_that_answers_late_is_waited_for() {
+fn the_game_waits_for_a_late_answer() {
     for signal in [None, Some(Signal::TERM), Some(Signal::USR1)] {
         let mut game = Game::start();
         game.wait_for_releases();
@@ -103,7 +103,7 @@ fn a_terminal_that_answers_late_is_waited_for() {
 }
 
 #[test]
-fn it_ends_even_while_the_link_is_down() {
+fn the_game_ends_even_while_the_link_is_down() {
     let mut game = Game::start();
     game.press(Key::Right);
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
@@ -117,7 +117,7 @@ fn it_ends_even_while_the_link_is_down() {
 
 #[cfg(debug_assertions)]
 #[test]
-fn a_panic_gives_the_terminal_back_and_then_says_one_sentence() {
+fn a_panic_restores_the_terminal_and_then_prints_one_sentence() {
     const F12: &str = "\x1b[24~";
     let demand = [("CELLCASTER_PANIC", "1")];
     let mut game = Game::with(Speaks::Kitty, (120, 40), None, &[], &demand);
@@ -130,7 +130,7 @@ fn a_panic_gives_the_terminal_back_and_then_says_one_sentence() {
 }
 
 #[test]
-fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
+fn control_z_returns_to_the_shell_and_fg_repaints() {
     let script = "set -m; \"$0\" play cellar; echo stopped; read line; fg; echo ended";
     let arguments = ["-c", script, PROGRAM];
     let mut player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
@@ -153,7 +153,7 @@ fn control_z_gives_the_terminal_to_the_shell_and_fg_paints_it_again() {
 }
 
 #[test]
-fn control_z_does_nothing_where_no_shell_would_continue_it() {
+fn control_z_does_nothing_if_no_shell_could_resume_the_game() {
     let mut game = Game::start();
     game.wait_for_releases();
     game.send("\x1b[122;5u");
@@ -188,7 +188,7 @@ fn with_mouse() -> Game {
 
 /// Mouse motions arrive whenever the game ends, and must not reach the shell.
 #[test]
-fn the_mouse_is_given_back_however_it_ends() {
+fn the_mouse_is_released_however_the_game_ends() {
     type End = fn(&Game);
     let ends: [End; 5] = [
         |game| game.press(Key::Char('v')),
@@ -210,7 +210,7 @@ fn the_mouse_is_given_back_however_it_ends() {
 }
 
 #[test]
-fn the_mouse_is_given_back_for_a_while_and_taken_again() {
+fn the_mouse_is_released_on_suspend_and_taken_on_resume() {
     let game = with_mouse();
     game.send("\x1b[122;5u");
     game.wait_until("took the terminal again", |emulator| {
@@ -227,7 +227,7 @@ fn the_mouse_is_given_back_for_a_while_and_taken_again() {
 /// Kills the shell, which closes its terminal.
 #[cfg(target_os = "linux")]
 #[test]
-fn it_ends_when_the_terminal_is_gone() {
+fn the_game_ends_when_the_terminal_is_gone() {
     let arguments = ["-c", "\"$0\" play cellar; true", PROGRAM];
     let player = Player::start((80, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
     player.wait_for("? help");

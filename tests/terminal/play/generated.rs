@@ -18,7 +18,7 @@ fn start(options: &[&str]) -> Game {
 }
 
 #[test]
-fn the_status_line_tells_which_level_it_is_and_the_cell_that_one_is_in() {
+fn the_status_line_shows_the_level_and_the_players_cell() {
     let mut game = start(&[]);
     assert_eq!(game.look(whereabouts), "Maze 7  1, 1");
     game.press(Key::Char('w'));
@@ -34,7 +34,7 @@ fn the_status_line_tells_which_level_it_is_and_the_cell_that_one_is_in() {
 }
 
 #[test]
-fn a_thousand_million_cells_from_home_is_a_place_like_any() {
+fn a_place_a_billion_cells_away_is_like_any_other() {
     let mut game = start(&["--start", "1000000000,-1000000000"]);
     let place = game.look(whereabouts);
     assert!(place.starts_with("Maze 7  10000000") && place.contains(", -"), "{place}");

@@ -69,7 +69,7 @@ fn speaks_kitty(bytes: &[u8]) -> bool {
 }
 
 #[test]
-fn without_releases_repetition_walks_on_and_an_opposing_key_turns_back_at_once() {
+fn without_releases_repetition_walks_and_an_opposing_key_reverses() {
     const REPETITION: Duration = Duration::from_millis(30);
     let game = in_a_corridor(Speaks::Plain, &[]);
     let before = game.arrow();
@@ -125,7 +125,7 @@ fn wanted(name: &str, map: &str, plays: impl Fn(&Game)) -> Vec<Intents> {
 
 /// Five steps of walking are a quarter of a cell, and ten steps of aiming are 5 degrees.
 #[test]
-fn two_taps_are_twice_one_tap() {
+fn two_taps_move_twice_as_far_as_one() {
     let names =
         |steps: &[Intents], intent| steps.iter().filter(|step| step.contains(intent)).count();
     for taps in 1..=3 {
@@ -143,7 +143,7 @@ fn two_taps_are_twice_one_tap() {
 
 /// A turn key is tapped, and a walking key is held 80 to 140 ms later.
 #[test]
-fn to_adjust_and_then_go_turns_by_one_tap() {
+fn a_turn_tapped_before_walking_is_one_tap() {
     let map = test_map("floor");
     for steps_apart in 5..=8 {
         let name = format!("adjust_{steps_apart}.script");
@@ -167,7 +167,7 @@ fn to_adjust_and_then_go_turns_by_one_tap() {
 }
 
 #[test]
-fn the_keys_for_exact_turns_turn_exactly() {
+fn exact_turn_keys_turn_exactly() {
     let game = Game::with(Speaks::Plain, LARGE, Some("floor"), &[], &[]);
     game.send("oo");
     game.wait_for_picture(&["--camera", "7.5,7.5,10"]);
@@ -178,7 +178,7 @@ fn the_keys_for_exact_turns_turn_exactly() {
 }
 
 #[test]
-fn without_releases_one_walks_and_turns_in_a_circle() {
+fn without_releases_the_player_can_walk_in_a_circle() {
     // A machine that is too busy types too late, which counts as a release of the key.
     let places = (0..5).map(|_| circle()).find(|places| places.len() > 30 + HALF_TURN);
     let places = places.expect("this machine is too busy to type");
@@ -219,7 +219,7 @@ fn circle() -> Vec<DVec2> {
 
 /// The space key ends the repetition of W, which stays held until the player lands.
 #[test]
-fn without_releases_six_of_six_running_jumps_succeed() {
+fn without_releases_all_six_running_jumps_succeed() {
     // A cell has three columns on the map, and the pit begins at 6, so the jumps begin between 5
     // and 5.7 cells.
     for columns in [11, 11, 12, 12, 13, 13] {

@@ -43,7 +43,7 @@ fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
 const WITHOUT_ROOM: [&str; 4] = ["/bin/sh", "-c", "ulimit -f 0; exec \"$0\" \"$@\"", PROGRAM];
 
 #[test]
-fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {
+fn a_full_disk_is_reported_and_loses_no_stored_data() {
     let folder = empty("full");
     let progress = folder.join("progress.toml");
     play_daily(&folder, &[]);
@@ -66,7 +66,7 @@ fn a_full_disk_costs_a_sentence_and_nothing_that_was_kept() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_costs_a_sentence_and_no_game() {
+fn an_unwritable_folder_is_reported_and_the_game_goes_on() {
     let blocked = empty("blocked");
     // If the user is root, permissions stop nothing, so a file stands in the way.
     fs::write(blocked.join("runs"), "").unwrap();

@@ -14,7 +14,7 @@ fn turning() -> Game {
 }
 
 #[test]
-fn few_frames_are_on_their_way_and_lost_answers_do_not_end_the_game() {
+fn few_frames_are_in_flight_and_lost_answers_do_not_end_the_game() {
     let game = turning();
     game.lose_statuses(true);
     // Answers count as lost only after a while.
@@ -41,7 +41,7 @@ fn keys_act_while_the_link_is_stuck() {
 }
 
 #[test]
-fn after_a_stuck_link_the_newest_frame_comes_next() {
+fn the_newest_frame_comes_next_after_a_stuck_link() {
     let game = turning();
     game.set_reading(false);
     game.wait_until_full();
@@ -60,7 +60,7 @@ fn after_a_stuck_link_the_newest_frame_comes_next() {
 }
 
 #[test]
-fn a_terminal_that_answers_nothing_is_played_on() {
+fn the_game_plays_in_a_terminal_that_never_answers() {
     for speaks in [Speaks::Nothing, Speaks::Plain] {
         let game = Game::with(speaks, (80, 24), None, &[], &[]);
         for _ in 0..3 {
@@ -78,7 +78,7 @@ fn a_terminal_that_answers_nothing_is_played_on() {
 }
 
 #[test]
-fn stats_show_on_demand_and_rest_with_the_game() {
+fn stats_show_on_demand_and_stop_with_the_game() {
     let game = turning();
     assert!(!game.text().contains(" fps "));
     game.press(Key::Char('i'));

@@ -8,7 +8,7 @@ use crate::emulator::Speaks;
 use crate::player::Player;
 
 #[test]
-fn a_cyrillic_layout_plays_by_the_places_of_its_keys() {
+fn a_cyrillic_layout_plays_by_key_position() {
     let game = Game::with(Speaks::Kitty, (120, 40), Some("corridor"), &[], &[]);
     game.wait_for_releases();
     let before = game.arrow();
@@ -20,7 +20,7 @@ fn a_cyrillic_layout_plays_by_the_places_of_its_keys() {
 }
 
 #[test]
-fn a_letter_alone_is_known_by_its_place() {
+fn a_letter_alone_is_mapped_by_its_position() {
     for forward in ["ц", "ς"] {
         let game = Game::with(Speaks::Plain, (120, 40), Some("corridor"), &[], &[]);
         let before = game.arrow();
@@ -58,7 +58,7 @@ fn a_terminal_that_cannot_move_its_cursor_is_refused_with_a_sentence() {
 }
 
 #[test]
-fn without_utf8_in_the_locale_nothing_but_ascii_is_sent() {
+fn without_utf8_in_the_locale_only_ascii_is_sent() {
     for locale in [("LC_ALL", "C"), ("LANG", "de_DE.ISO-8859-1")] {
         let game = Game::with(Speaks::Kitty, (80, 24), None, &[], &[locale]);
         game.wait_for_releases();
@@ -70,14 +70,14 @@ fn without_utf8_in_the_locale_nothing_but_ascii_is_sent() {
 }
 
 #[test]
-fn glyphs_that_were_asked_for_are_sent_in_every_locale() {
+fn requested_glyphs_are_sent_in_every_locale() {
     let options = ["--glyphs", "half"];
     let game = Game::with(Speaks::Kitty, (80, 24), None, &options, &[("LC_ALL", "C")]);
     game.wait_for_picture(&[]);
 }
 
 #[test]
-fn the_help_says_why_there_are_not_all_colours() {
+fn the_help_says_why_colours_are_limited() {
     let environment = [("COLORTERM", "")];
     let game = Game::with(Speaks::Plain, (120, 40), None, &[], &environment);
     game.send("?");

@@ -22,7 +22,7 @@ fn page_up_looks_up_and_home_ahead_again() {
 }
 
 #[test]
-fn who_ducks_is_low_and_who_jumps_comes_down_again() {
+fn ducking_lowers_the_view_and_a_jump_comes_down_again() {
     let game = Game::start();
     game.press(Key::Char('c'));
     game.wait_for_picture(&["--eye", "0.3"]);

@@ -57,7 +57,7 @@ fn looking_up_ends_at_thirty_degrees() {
 }
 
 #[test]
-fn a_terminal_that_tells_pixels_turns_by_less_than_a_cell() {
+fn a_terminal_that_reports_pixels_turns_by_less_than_a_cell() {
     let game = Game::start();
     game.wait_for_releases();
     game.resize_in_pixels((80, 24), (640, 384));
@@ -71,7 +71,7 @@ fn a_terminal_that_tells_pixels_turns_by_less_than_a_cell() {
 }
 
 #[test]
-fn at_the_edge_the_player_turns_on_until_the_pointer_leaves_it() {
+fn the_player_keeps_turning_while_the_pointer_is_at_the_edge() {
     let game = Game::start();
     switch_on(&game);
     game.send(motion(70, 12));
@@ -84,7 +84,7 @@ fn at_the_edge_the_player_turns_on_until_the_pointer_leaves_it() {
 }
 
 #[test]
-fn what_is_off_turns_nothing() {
+fn a_mouse_that_is_off_turns_nothing() {
     let game = Game::start();
     game.wait_for_picture(&[]);
     assert!(!game.look(reports_the_mouse));
@@ -142,7 +142,7 @@ fn a_walk_by_mouse_replays_to_the_same_picture() {
 }
 
 #[test]
-fn who_loses_the_focus_lets_go_of_all_keys() {
+fn losing_focus_releases_all_keys() {
     let game = Game::with(Speaks::Kitty, (120, 40), Some("corridor"), &[], &[]);
     let before = game.arrow();
     game.press(Key::Char('w'));

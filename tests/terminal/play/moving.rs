@@ -25,7 +25,7 @@ fn forward_walks_up_to_the_wall_and_no_further() {
 }
 
 #[test]
-fn back_walks_back_and_arrow_keys_do_as_well() {
+fn the_back_key_walks_back_and_arrow_keys_work_too() {
     let game = Game::start();
     game.press(Key::Char('s'));
     game.wait_for_picture(&AT_THE_WALL_BEHIND);
@@ -48,7 +48,7 @@ fn strafing_goes_sideways_and_turns_nothing() {
 }
 
 #[test]
-fn a_wall_met_at_an_angle_is_slid_along() {
+fn the_player_slides_along_a_wall_met_at_an_angle() {
     let game = Game::start();
     game.press(Key::Char('a'));
     game.press(Key::Char('w'));

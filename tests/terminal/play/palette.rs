@@ -48,7 +48,7 @@ fn defines(text: &str) -> bool {
 }
 
 #[test]
-fn where_the_terminal_has_a_palette_the_picture_is_the_same_and_takes_fewer_bytes() {
+fn a_redefined_palette_shows_the_same_picture_in_fewer_bytes() {
     let games = [Speaks::Kitty, Speaks::Alacritty].map(|speaks| {
         let game = Game::with(speaks, (80, 24), None, &[], &[]);
         game.wait_for_releases();
@@ -70,7 +70,7 @@ fn where_the_terminal_has_a_palette_the_picture_is_the_same_and_takes_fewer_byte
 }
 
 #[test]
-fn the_palette_is_given_back_however_it_ends() {
+fn the_palette_is_restored_however_the_game_ends() {
     type End = fn(&Game);
     let ends: [End; 6] = [
         Game::leave,
@@ -131,7 +131,7 @@ fn a_multiplexer_is_not_probed() {
 
 /// Some terminals define entries but cannot reset them.
 #[test]
-fn a_palette_that_cannot_be_given_back_is_not_used() {
+fn a_palette_that_cannot_be_restored_is_not_used() {
     const OWN: &str = "\x1b]4;255;rgb:eeee/eeee/eeee\x07";
     const DEFINED: &str = "\x1b]4;255;rgb:1212/abab/5656\x07";
     for (last, is_used) in [(DEFINED, false), (OWN, true)] {

@@ -48,7 +48,7 @@ fn a_recording_holds_exactly_what_the_terminal_was_sent() {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_can_read_a_recording() {
+fn other_users_cannot_read_a_recording() {
     use std::os::unix::fs::PermissionsExt;
     for name in ["private.cast", "private.script"] {
         _ = fs::remove_file(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name));
@@ -73,7 +73,7 @@ fn a_killed_game_leaves_a_whole_file() {
 }
 
 #[test]
-fn a_full_disk_costs_the_recording_and_no_game() {
+fn a_full_disk_ends_the_recording_but_not_the_game() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     for name in ["full.cast", "full.script"] {
         let link = folder.join(name);

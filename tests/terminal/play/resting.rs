@@ -37,7 +37,7 @@ fn while_nothing_moves_nothing_is_written_and_the_processor_rests() {
 }
 
 #[test]
-fn what_flickers_is_drawn_when_it_does_and_only_while_it_is_in_view() {
+fn a_flickering_thing_is_drawn_only_while_in_view() {
     const FLICKERS: usize = 4;
     let game = Game::start_map("torch");
     game.wait_for_releases();
@@ -89,7 +89,7 @@ fn a_frame_takes_two_waits() {
 }
 
 #[test]
-fn what_others_do_out_of_view_is_looked_at_once_a_frame() {
+fn guards_out_of_view_are_checked_once_per_frame() {
     const REST: Duration = Duration::from_secs(2);
     let game = Game::with(Speaks::Kitty, (80, 24), Some("patrol"), &["--fps", "10"], &[]);
     game.wait_for_rest();

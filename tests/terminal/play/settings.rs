@@ -17,7 +17,7 @@ fn file(name: &str, text: &str) -> PathBuf {
 }
 
 #[test]
-fn a_named_configuration_moves_the_keys() {
+fn a_named_configuration_remaps_the_keys() {
     let azerty = file("azerty.toml", "preset = \"azerty\"\n");
     let options = ["--config", azerty.to_str().unwrap()];
     let game = Game::with(Speaks::Kitty, (80, 24), None, &options, &[]);
@@ -38,7 +38,7 @@ fn the_users_own_configuration_is_found() {
 }
 
 #[test]
-fn settings_of_a_file_hold_and_options_go_before_them() {
+fn options_take_precedence_over_settings_in_a_file() {
     let text = "glyphs = \"ascii\"\nminimap = \"off\"\nfov = 90\n";
     let config = file("settings.toml", text);
     let config = ["--config", config.to_str().unwrap()];
@@ -51,7 +51,7 @@ fn settings_of_a_file_hold_and_options_go_before_them() {
 }
 
 #[test]
-fn config_prints_a_file_that_says_the_same() {
+fn config_prints_an_equivalent_file() {
     let text = "preset = \"azerty\"\nfps = 60\ncolors = 16\n[keys]\nleave = \"f10\"\n";
     let written = file("written.toml", text);
     let config = |path: &PathBuf| {
@@ -82,7 +82,7 @@ fn a_bad_configuration_is_an_error_that_names_the_line() {
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_as_a_configuration_is_named_and_not_waited_for() {
+fn a_pipe_as_a_configuration_is_refused_without_waiting() {
     let pipe = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pipe.toml");
     _ = fs::remove_file(&pipe);
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -94,7 +94,7 @@ fn a_pipe_as_a_configuration_is_named_and_not_waited_for() {
 }
 
 #[test]
-fn a_bad_map_is_told_of_and_the_terminal_is_not_touched() {
+fn a_bad_map_is_reported_without_touching_the_terminal() {
     let map = file("bad_map.toml", "grid = '''\n#@#\n'''\n[things]\n\"@\" = { start = 0 }\n");
     let map = map.to_str().unwrap();
     let complaint = complaint_about(&["play", map]);

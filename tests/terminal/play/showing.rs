@@ -7,7 +7,7 @@ use super::game::{Game, Key};
 use crate::emulator::Speaks;
 
 #[test]
-fn it_starts_with_a_picture_a_minimap_and_a_status_line() {
+fn the_game_starts_with_a_picture_a_minimap_and_a_status_line() {
     for speaks in [Speaks::Nothing, Speaks::Plain, Speaks::Kitty] {
         let game = Game::with(speaks, (80, 24), None, &[], &[]);
         game.wait_for("Cellar");
@@ -24,7 +24,7 @@ fn a_terminal_that_says_it_has_all_colours_gets_them() {
 }
 
 #[test]
-fn the_picture_fills_the_window_whatever_size_it_gets() {
+fn the_picture_fills_a_window_of_any_size() {
     let game = Game::start();
     game.tap(Key::Char('m'));
     for (columns, rows) in [(120, 40), (33, 9), (500, 200), (20, 6), (80, 24)] {
@@ -35,7 +35,7 @@ fn the_picture_fills_the_window_whatever_size_it_gets() {
 }
 
 #[test]
-fn a_window_too_small_to_play_in_says_so_and_the_game_goes_on_in_a_larger_one() {
+fn a_window_too_small_says_so_and_the_game_resumes_when_it_grows() {
     let game = Game::start();
     game.resize(19, 5);
     game.wait_for("Too small to play:");
@@ -48,7 +48,7 @@ fn a_window_too_small_to_play_in_says_so_and_the_game_goes_on_in_a_larger_one() 
 }
 
 #[test]
-fn no_series_of_sizes_does_any_harm() {
+fn no_series_of_resizes_does_any_harm() {
     let mut game = Game::start();
     game.press(Key::Right);
     for size in 0..60 {
@@ -89,7 +89,7 @@ fn help_names_the_keys_until_it_is_closed() {
 }
 
 #[test]
-fn the_goal_shows_at_first_and_goes_when_the_player_has_moved() {
+fn the_goal_shows_until_the_player_has_moved() {
     let game = Game::start();
     game.wait_for("Find the way out");
     game.press(Key::Right);

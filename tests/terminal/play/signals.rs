@@ -36,7 +36,7 @@ fn end_by_each_signal(start: impl Fn() -> Player) {
 }
 
 #[test]
-fn signals_end_it_at_once_after_the_start() {
+fn signals_end_the_game_right_after_the_start() {
     end_by_each_signal(|| {
         let arguments = ["play", "cellar"];
         let player = Player::start((80, 24), Speaks::Kitty, PROGRAM, arguments, &ENVIRONMENT);
@@ -48,7 +48,7 @@ fn signals_end_it_at_once_after_the_start() {
 }
 
 #[test]
-fn signals_end_it_at_rest() {
+fn signals_end_the_game_at_rest() {
     end_by_each_signal(|| {
         let game = Game::start();
         game.wait_for_releases();
@@ -57,7 +57,7 @@ fn signals_end_it_at_rest() {
 }
 
 #[test]
-fn signals_end_it_in_motion() {
+fn signals_end_the_game_in_motion() {
     end_by_each_signal(|| {
         let game = Game::start();
         game.press(Key::Right);
@@ -67,7 +67,7 @@ fn signals_end_it_in_motion() {
 }
 
 #[test]
-fn signals_end_it_with_the_mouse() {
+fn signals_end_the_game_with_the_mouse_on() {
     end_by_each_signal(|| {
         let game = Game::start();
         game.press(Key::Char('v'));
@@ -79,7 +79,7 @@ fn signals_end_it_with_the_mouse() {
 }
 
 #[test]
-fn signals_end_it_in_a_terminal_that_answers_nothing() {
+fn signals_end_the_game_in_a_terminal_that_never_answers() {
     end_by_each_signal(|| Game::with(Speaks::Nothing, (80, 24), None, &[], &[]).into_player());
 }
 
@@ -87,7 +87,7 @@ fn signals_end_it_in_a_terminal_that_answers_nothing() {
 /// reports for them.
 #[cfg(target_os = "linux")]
 #[test]
-fn signals_without_a_name_end_it_with_their_number() {
+fn signals_without_a_name_end_the_game_with_their_number() {
     for number in [16, 29, 30].into_iter().chain(35..=64) {
         let game = Game::start();
         game.wait_for_releases();
@@ -102,7 +102,7 @@ fn signals_without_a_name_end_it_with_their_number() {
 /// The key for SIGQUIT is pressed while the terminal interprets keys.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_key_does_not_end_it_while_the_terminal_interprets_keys() {
+fn the_quit_key_does_not_end_the_game_while_keys_are_interpreted() {
     let mut game = Game::start();
     game.wait_for_releases();
     game.wait_for_rest();
@@ -140,7 +140,7 @@ fn flags_that_were_not_pushed_are_not_popped() {
 }
 
 #[test]
-fn it_ends_in_a_terminal_that_does_not_read() {
+fn signals_end_the_game_in_a_terminal_that_does_not_read() {
     for signal in [Signal::TERM, Signal::QUIT] {
         let mut game = Game::with(Speaks::Plain, (300, 100), None, &[], &[]);
         game.set_reading(false);
@@ -157,7 +157,7 @@ fn it_ends_in_a_terminal_that_does_not_read() {
 }
 
 #[test]
-fn after_a_storm_of_resizes_the_picture_is_whole() {
+fn the_picture_is_whole_after_a_storm_of_resizes() {
     let mut game = Game::start();
     for number in 0..400_u16 {
         game.resize(1 + number * 37 % 160, 1 + number * 23 % 50);

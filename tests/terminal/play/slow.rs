@@ -47,7 +47,7 @@ fn q_asks_before_a_slow_picture_is_complete_and_enter_leaves() {
 }
 
 #[test]
-fn control_c_and_signals_end_it_before_a_slow_picture_is_complete() {
+fn control_c_signals_and_resizes_interrupt_a_slow_picture() {
     let ends: [fn(&Player); 3] = [
         |player| player.send("\x03"),
         |player| player.signal(Signal::TERM),

@@ -64,7 +64,7 @@ fn choose(player: &Player, label: &str) {
 }
 
 #[test]
-fn from_the_title_to_a_death_a_second_try_and_out_again() {
+fn a_player_goes_from_the_title_to_a_death_a_retry_and_out() {
     for size in [(80, 24), (40, 12)] {
         let data = folder(&format!("title-{}", size.0));
         let maps = data.join("maps");
@@ -113,7 +113,7 @@ fn from_the_title_to_a_death_a_second_try_and_out_again() {
 }
 
 #[test]
-fn a_game_that_is_left_is_offered_again() {
+fn a_game_left_unfinished_is_offered_again() {
     let data = folder("left");
     let mut player = start(&data, (80, 24));
     choose(&player, "New game");
@@ -132,7 +132,7 @@ fn a_game_that_is_left_is_offered_again() {
 }
 
 #[test]
-fn a_map_that_is_started_by_its_path_is_saved_and_asked_about() {
+fn a_map_started_by_its_path_is_saved_and_asked_about() {
     let data = folder("by-path");
     let map = test_map("pit");
     let play = || {

@@ -78,7 +78,7 @@ fn has_true_color(emulator: &Emulator) -> bool {
 }
 
 #[test]
-fn tmux_is_told_when_the_player_says_so_and_then_sends_all_colours() {
+fn tmux_sends_all_colours_after_the_player_confirms() {
     const OFFER: &str = "24-bit colours in tmux";
     let Some(server) = Server::new() else { return };
     let mut player = server.client(&["new-session", PROGRAM]);

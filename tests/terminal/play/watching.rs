@@ -56,7 +56,7 @@ fn wait_for_words(player: &Player, text: &str) {
 }
 
 #[test]
-fn a_game_goes_on_in_the_map_as_it_is_saved() {
+fn a_game_continues_in_the_newly_saved_map() {
     let path = map("play");
     let mut player = start(&["play", "--watch"], &path);
     player.wait_for("First");
@@ -85,7 +85,7 @@ fn a_game_goes_on_in_the_map_as_it_is_saved() {
 }
 
 #[test]
-fn whoever_plays_keeps_their_place_while_there_is_one() {
+fn the_player_keeps_their_place_while_it_is_free() {
     let path = map("place");
     let mut player = start(&["play", "--watch"], &path);
     player.wait_for("? help");
@@ -118,7 +118,7 @@ fn whoever_plays_keeps_their_place_while_there_is_one() {
 }
 
 #[test]
-fn a_picture_is_drawn_again_when_the_map_or_its_texture_changes() {
+fn a_picture_is_redrawn_when_the_map_or_its_texture_changes() {
     let path = map("snapshot");
     let texture = path.with_file_name("wall.png");
     let textured = MAP.replace("\"#a04030\"", "\"wall.png\"");
@@ -159,7 +159,7 @@ fn a_picture_is_drawn_again_when_the_map_or_its_texture_changes() {
 }
 
 #[test]
-fn faults_go_to_standard_error_where_that_is_a_file() {
+fn faults_go_to_standard_error_if_it_is_a_file() {
     let path = map("pipe");
     let (out, err) = (path.with_file_name("out"), path.with_file_name("err"));
     let script = format!(

@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn one_colour_has_no_error_and_does_not_crawl() {
+    fn a_uniform_colour_has_no_error_and_does_not_crawl() {
         for filter in Filter::ALL {
             let means = means(&differences(&room("#000000", "#000000"), filter));
             assert!(means.iter().all(|&mean| mean < 1e-9), "{means:?}");
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_colours_have_errors_at_edges_only() {
+    fn plain_colours_have_errors_only_at_edges() {
         let differences = differences(&room("#ff0000", "#0000ff"), Filter::Mip);
         let [mean, at_edges, crawl] = means(&differences);
         let [of_textures, _] = differences.errors;
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn a_half_block_lights_one_half() {
+    fn a_half_block_lights_half_a_cell() {
         let mut cell = Cell::default();
         cell.set_char('▀').set_fg(Color::Rgb(200, 10, 0)).set_bg(Color::Indexed(16));
         assert_eq!((light(&cell, 0), light(&cell, 1)), ([200.0, 10.0, 0.0], [0.0; 3]));
@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn a_letter_lights_a_part() {
+    fn a_letter_lights_part_of_a_cell() {
         let mut cell = Cell::default();
         cell.set_char('#').set_fg(Color::Rgb(255, 255, 255)).set_bg(Color::Rgb(0, 0, 0));
         let [red, green, blue] = light(&cell, 0);
@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_have_little_more_than_half_the_error_and_crawl_of_mip_levels() {
+    fn areas_nearly_halve_the_error_and_crawl_of_mip_levels() {
         let level = builtin::LEVELS.iter().find(|level| level.name == "museum");
         let world = level.unwrap().world().unwrap();
         let shown = [Filter::Area, Filter::Mip].map(|filter| (DISPLAYS[0], filter));

@@ -192,7 +192,7 @@ mod tests {
     use cellcaster::map::builtin;
 
     #[test]
-    fn every_feature_has_cases_and_none_is_wrong_but_by_choice() {
+    fn only_features_that_approximate_by_design_are_wrong() {
         let world = builtin::LEVELS[0].world().unwrap();
         let table = table(&world, 1, 0);
         assert!(table.rows.len() >= 15);

@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arithmetic_is_that_of_doubles_where_those_are_exact() {
+    fn arithmetic_matches_exact_doubles() {
         let [a, b] = [-1.75, 0.375].map(FixedPoint::new);
         let results = [&a + &b, &a - &b, &a * &b, &a / &b, -&a].map(|number| number.to_f64());
         assert_eq!(results[..3], [-1.375, -2.125, -0.65625]);
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_series_is_the_exponential() {
+    fn the_series_converges_to_the_exponential() {
         for x in [0.0, 1e-9, 0.5, 1.0, 12.0, 40.0, 300.0] {
             let series = FixedPoint::new(x).exponential_of_minus().to_f64();
             let expected = libm::exp(-x);
@@ -142,7 +142,7 @@ mod tests {
     /// ln 2 is not a double. e to the power of minus the nearest double is therefore not exactly a
     /// half; the exponents differ by 2.319e-17.
     #[test]
-    fn the_exponential_is_more_than_a_double() {
+    fn the_exponential_is_more_precise_than_a_double() {
         let half = FixedPoint::new(std::f64::consts::LN_2).exponential_of_minus();
         let difference = (&half - &FixedPoint::new(0.5)).to_f64();
         assert!((difference - 0.5 * 2.319_046_813_846_3e-17).abs() < 1e-28, "{difference}");

@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_closed_form_is_exact_but_for_rounding() {
+    fn the_closed_form_is_exact_except_for_rounding() {
         // From soft to stiff.
         for rate in [1.0, 12.0, 1e3, 1e6, 1e9] {
             for step in [1e-4, 1e-3, 1e-2, 1.0 / 60.0, 0.1, 1.0, 10.0] {
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_the_orders() {
+    fn error_slopes_match_the_orders_of_the_integrators() {
         for (integrator, order) in Integrator::ALL.into_iter().zip([1.0, 2.0, 4.0, 1.0]) {
             for slope in slopes(integrator) {
                 assert!((slope.unwrap() - order).abs() < 0.2, "{integrator:?}: {slope:?}");
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn the_step_of_the_game_is_among_the_steps() {
+    fn the_steps_include_the_game_step() {
         let steps = |steps_per_second| -> Vec<String> {
             let rows = motions(12.0, steps_per_second, 0).rows.into_iter();
             let of_euler = rows.filter(|row| row.keys[1] == "Euler");
@@ -329,7 +329,7 @@ mod tests {
 
     /// The limits in Hairer and Wanner, "Solving Ordinary Differential Equations II" (1996), IV.2.
     #[test]
-    fn limits_of_stability_are_those_of_the_textbook() {
+    fn stability_limits_match_the_textbook() {
         let [euler, heun, runge_kutta, implicit, closed] =
             Integrator::ALL.map(Integrator::limit_of_stability);
         assert!((euler - 2.0).abs() < 1e-12 && (heun - 2.0).abs() < 1e-7);

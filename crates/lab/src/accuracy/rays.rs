@@ -325,7 +325,7 @@ mod tests {
     /// The double nearest to a number in general position is up to half a unit away, so the worst
     /// of many errors is nearly that.
     #[test]
-    fn rounding_is_an_error() {
+    fn rounding_counts_as_an_error() {
         for trial in trials() {
             let exact = trial.errors(&Method::Exact);
             assert!((0.4..2.0).contains(&exact.worst_ulps), "{exact:?}");
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_pictures_have_no_wrong_pixel_and_coarse_ones_have() {
+    fn only_coarse_pictures_have_wrong_pixels() {
         let museum = include_str!("../../../../tests/maps/museum.toml");
         let world = map::parse_str(museum).unwrap();
         let methods = ["exact", "march:0.2"].map(|name| name.parse().unwrap());

@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn simple_rays() {
+    fn simple_rays_have_known_hits() {
         let room = ["###", "#.#", "###"];
         for (origin, direction, cell, side, t, u) in [
             ((1.5, 1.25), (1.0, 0.0), (2, 1), Side::X, 0.5, 0.25),

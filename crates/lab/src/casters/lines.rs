@@ -305,7 +305,7 @@ mod tests {
     const ROOM: [&str; 3] = ["###", "#.#", "###"];
 
     #[test]
-    fn straight_ahead() {
+    fn straight_rays_hit_the_wall_ahead() {
         assert_eq!(cast(&ROOM, (1.5, 1.25), (1.0, 0.0)), Some(hit(2, 1, Side::X, 0.5, 0.25)));
         assert_eq!(cast(&ROOM, (1.5, 1.25), (-1.0, 0.0)), Some(hit(0, 1, Side::X, 0.5, 0.75)));
         assert_eq!(cast(&ROOM, (1.25, 1.5), (0.0, 1.0)), Some(hit(1, 2, Side::Y, 0.5, 0.75)));
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn off_the_map() {
+    fn rays_from_outside_hit_the_map_or_nothing() {
         assert_eq!(cast(&ROOM, (-7.0, 1.5), (2.0, 0.0)), Some(hit(0, 1, Side::X, 3.5, 0.5)));
         assert_eq!(cast(&ROOM, (-1e15, 1.5), (1.0, 0.0)), Some(hit(0, 1, Side::X, 1e15, 0.5)));
         assert_eq!(cast(&ROOM, (9.0, 9.5), (-1.0, -1.0)), Some(hit(2, 2, Side::Y, 6.5, 0.5)));
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_directions_are_directions() {
+    fn tiny_directions_are_valid() {
         let t = 0.5 / 1e-300;
         assert_eq!(cast(&ROOM, (1.5, 1.5), (1e-300, 0.0)), Some(hit(2, 1, Side::X, t, 0.5)));
         let subnormal = cast(&ROOM, (1.5, 1.5), (5e-324, 0.0)).unwrap();
@@ -357,7 +357,7 @@ mod tests {
     proptest! {
         /// The distance and the position on the face match the point where the ray meets the line.
         #[test]
-        fn a_hit_is_on_its_face(
+        fn a_hit_lies_on_its_face(
             origin in (1.0..6.0, 1.0..4.0),
             direction in (-1.0..1.0, -1.0..1.0),
         ) {

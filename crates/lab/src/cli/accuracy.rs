@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_replaces_what_stands_in_its_place() {
+    fn a_table_replaces_the_text_between_its_markers() {
         let run = Origin::this();
         let page = "Text.\n\n<!-- accuracy few -->\nold\n<!-- end -->\n\nMore.\n";
         let new = replaced(page, &run, &table()).unwrap();

@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn words_begin_and_figures_end_together() {
+    fn words_align_left_and_figures_align_right() {
         let mut bytes = Vec::new();
         write_aligned(&fruit(), &mut bytes).unwrap();
         let text = "fruit: Fruit in kilograms.\n\nkind      kg\napples     7\nfigs    12.5\n\n";
@@ -323,13 +323,13 @@ mod tests {
     }
 
     #[test]
-    fn pages_align_by_themselves() {
+    fn markdown_tables_are_not_padded() {
         let text = "| kind | kg |\n|---|---:|\n| apples | 7 |\n| figs | 12.5 |\n";
         assert_eq!(markdown(&fruit()), text);
     }
 
     #[test]
-    fn only_zero_is_zero() {
+    fn only_zero_prints_as_zero() {
         let figures = [
             Value::Count(0),
             Value::Share(0.0),
@@ -352,14 +352,14 @@ mod tests {
     }
 
     #[test]
-    fn a_command_can_be_repeated() {
+    fn a_printed_command_can_be_pasted() {
         let arguments = ["accuracy", "--set", "through corners"].map(str::to_owned);
         let repeated = "cellcaster-lab accuracy --set \"through corners\"";
         assert_eq!(command(arguments.into_iter()), repeated);
     }
 
     #[test]
-    fn a_machine_has_cores() {
+    fn the_machine_description_names_its_cores() {
         assert!(machine().contains(" core"));
     }
 }

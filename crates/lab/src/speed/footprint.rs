@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn linux_tells_how_much_it_is() {
+    fn linux_reports_the_peak_memory() {
         let mebibytes = peak_memory().unwrap() >> 20;
         assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
     }

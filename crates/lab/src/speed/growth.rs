@@ -341,7 +341,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_compared_within_their_group() {
+    fn times_are_compared_within_a_group() {
         let ratios: Vec<f64> =
             compared(vec![2.0, 1.0, 6.0, 9.0], 2).map(|(_, ratio)| ratio).collect();
         assert_eq!(ratios, [1.0, 0.5, 1.0, 1.5]);

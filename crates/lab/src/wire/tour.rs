@@ -381,7 +381,7 @@ mod tests {
     use cellcaster::map::builtin;
 
     #[test]
-    fn finer_glyphs_have_less_error_and_lower_fidelities_fewer_bytes() {
+    fn finer_glyphs_reduce_errors_and_lower_fidelities_reduce_bytes() {
         let level = builtin::LEVELS.iter().find(|level| level.name == "cellar").unwrap();
         let rate = NonZeroU32::new(5).unwrap();
         let table = report_glyphs(Size::new(40, 12), rate, [level.world().unwrap()]);

@@ -6,7 +6,7 @@ use crate::support::{complaint_about, output_of};
 use serde_json::Value;
 
 #[test]
-fn one_run_gives_all_figures_and_plots_of_them() {
+fn one_run_reports_and_plots_all_figures() {
     let plot = concat!(env!("CARGO_TARGET_TMPDIR"), "/speed.svg");
     let report = output_of(&["bench", "--seconds", "1", "--format", "json", "--plot", plot]);
     let report: Value = serde_json::from_slice(&report).unwrap();
@@ -108,7 +108,7 @@ fn has_a_footprint(report: &Value) {
 }
 
 #[test]
-fn a_table_is_for_people() {
+fn the_table_is_readable() {
     let table = String::from_utf8(output_of(&["bench", "--seconds", "1"])).unwrap();
     for word in ["classic", "1920x1080", "200x60", "stock", "Mbit/s", "first frame", "100000"] {
         assert!(table.contains(word), "no {word} in\n{table}");
@@ -121,7 +121,7 @@ fn a_table_is_for_people() {
 }
 
 #[test]
-fn mistakes_are_told() {
+fn mistakes_are_explained() {
     insta::assert_snapshot!(
         [
             complaint_about(&["bench", "cellar"]),

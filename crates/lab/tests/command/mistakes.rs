@@ -3,7 +3,7 @@
 use crate::support::complaint_about;
 
 #[test]
-fn mistakes_are_one_sentence_each() {
+fn each_mistake_prints_one_sentence() {
     let lines = [
         &["bench", "cellar"][..],
         &["bench", "--seconds", "0"],

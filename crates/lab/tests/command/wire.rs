@@ -49,7 +49,7 @@ fn figure(table: &Table, keys: [&str; 2], column: &str) -> f64 {
 /// The bytes and the errors of each of Cellcaster's encoders, as means over three levels. The
 /// figures are the report's, and are repeatable.
 #[test]
-fn three_levels_take_no_more_bytes_than_is_promised() {
+fn three_levels_stay_within_the_promised_bytes() {
     let reports = ["citadel", "museum", "observatory"].map(report);
     for (name, most, farthest) in [
         ("exact", 0.5405, 0.0),
@@ -71,7 +71,7 @@ fn three_levels_take_no_more_bytes_than_is_promised() {
 const SLACK: f64 = 1.05;
 
 #[test]
-fn a_frame_takes_no_more_bytes_than_is_promised() {
+fn frames_stay_within_the_promised_bytes() {
     let report = report("citadel");
     let all = |encoder, column| figure(&report, ["all", encoder], column);
     assert!(all("exact", "ratio") <= 0.53 * SLACK, "{report:?}");
@@ -107,7 +107,7 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
 /// A lower fidelity saves bytes, whatever the cells consist of. Without colours, nothing can be
 /// approximated.
 #[test]
-fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
+fn every_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
     use ColorDepth::{Indexed16, Indexed256, Mono, True};
     for (glyphs, depth, most) in [
         (GlyphSet::Half, Indexed256, [0.75, 0.50]),
@@ -134,7 +134,7 @@ fn palettes(levels: &[&'static str], depth: ColorDepth, frames_per_second: u32) 
 }
 
 #[test]
-fn shades_of_256_colours_look_like_true_colour() {
+fn dithered_256_colours_look_like_true_colour() {
     let table = palettes(&LEVELS, ColorDepth::Indexed256, 10);
     for level in LEVELS.into_iter().chain(["all"]) {
         let of = |method, column| figure(&table, [level, method], column);

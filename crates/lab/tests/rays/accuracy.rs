@@ -39,7 +39,7 @@ fn rows<'a>(report: &'a Value, table: &str) -> &'a [Value] {
 }
 
 #[test]
-fn the_exact_method_is_right_about_everything() {
+fn the_exact_method_is_always_right() {
     let report = json(&["--part", "rays", "--rays", "20", "--rounds", "1"]);
     for scene in ["rooms", "pillars", "corridors", "plain-4096"] {
         let exact = rows(&report, "rays").iter().find(|row| row["scene"] == scene).unwrap();
@@ -60,7 +60,7 @@ fn the_exact_method_is_right_about_everything() {
 
 /// The table, Markdown, CSV and SVG contain every row of JSON.
 #[test]
-fn every_format_holds_every_figure() {
+fn every_format_contains_every_figure() {
     let (csv, table, markdown) = (text("csv"), text("table"), text("markdown"));
     let report: Value = serde_json::from_slice(&report("json")).unwrap();
     let mut figures = 0;
@@ -114,7 +114,7 @@ fn a_plot_has_a_dot_for_each_method_in_each_panel() {
 }
 
 #[test]
-fn a_set_can_be_looked_at_alone() {
+fn one_set_can_be_reported_alone() {
     let report = json(&[
         "--part",
         "rays",
@@ -136,7 +136,7 @@ fn a_set_can_be_looked_at_alone() {
 }
 
 #[test]
-fn the_motion_is_that_of_the_requested_player() {
+fn the_motion_uses_the_requested_friction_and_step() {
     let report =
         json(&["--part", "motion", "--rounds", "0", "--friction", "7", "--steps-per-second", "25"]);
     let title = report["tables"]["motion"]["title"].as_str().unwrap();
@@ -150,7 +150,7 @@ fn the_motion_is_that_of_the_requested_player() {
 }
 
 #[test]
-fn a_report_without_times_is_the_same_in_every_run() {
+fn a_report_without_times_is_reproducible() {
     assert_eq!(report("json"), report("json"));
 }
 
@@ -202,27 +202,27 @@ fn assert_page_is_current(part: &str) {
 }
 
 #[test]
-fn the_page_has_the_rays_of_the_program() {
+fn the_page_has_the_current_ray_table() {
     assert_page_is_current("rays");
 }
 
 #[test]
-fn the_page_has_the_pictures_of_the_program() {
+fn the_page_has_the_current_picture_table() {
     assert_page_is_current("pictures");
 }
 
 #[test]
-fn the_page_has_the_motion_of_the_program() {
+fn the_page_has_the_current_motion_table() {
     assert_page_is_current("motion");
 }
 
 #[test]
-fn the_page_has_the_features_of_the_program() {
+fn the_page_has_the_current_feature_table() {
     assert_page_is_current("features");
 }
 
 #[test]
-fn mistakes_are_one_sentence_each() {
+fn each_mistake_prints_one_sentence() {
     let mistakes: [&[&str]; 13] = [
         &["--set", "nobody's"],
         &["--caster", "ddda"],

@@ -50,13 +50,13 @@ fn every_line_gets_an_answer() {
 }
 
 #[test]
-fn a_last_line_without_an_end_counts() {
+fn a_last_line_without_a_newline_counts() {
     assert_eq!(answers("2.5 2.5 1 0", 0).lines().count(), 1);
     assert_eq!(answers("", 0), "");
 }
 
 #[test]
-fn bytes_that_are_no_text_are_no_ray() {
+fn bytes_that_are_not_text_are_not_a_ray() {
     let output = run_with_input(&["cast", MAP], b"\xff\xfe 1 2 3\n2.5 2.5 1 0\n");
     let answers = String::from_utf8(output.stdout).unwrap();
     assert!(answers.lines().next().unwrap().starts_with(r#"{"error":"#));
@@ -64,7 +64,7 @@ fn bytes_that_are_no_text_are_no_ray() {
 }
 
 #[test]
-fn an_answer_comes_before_the_next_ray_is_asked_for() {
+fn each_answer_is_written_before_the_next_ray_is_read() {
     let mut child =
         lab(&["cast", MAP]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut rays = child.stdin.take().unwrap();

@@ -34,7 +34,7 @@ fn is_sane(grid: &Grid, hit: &Hit) -> bool {
 }
 
 #[test]
-fn every_method_on_every_stiff_set() {
+fn every_method_returns_sane_hits_for_every_stiff_set() {
     for Set { name, grid, rays } in accuracy::sets(1) {
         for method in methods() {
             // A million cells at a hundred steps each take too long for a test.
@@ -88,7 +88,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn every_method_on_adversarial_rays(seed in any::<u64>()) {
+    fn every_method_returns_sane_hits_for_adversarial_rays(seed in any::<u64>()) {
         let grid = Grid::sketch(&["#.....", "..#..#", ".#....", "......"]).unwrap();
         let mut random = SplitMix64::new(seed);
         let rays: Vec<Ray> = (0..10).map(|_| adversarial_ray(&grid, &mut random)).collect();

@@ -148,7 +148,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
     #[test]
-    fn a_ray_meets_the_leaf_that_arithmetic_says(
+    fn rays_through_doors_match_exact_arithmetic(
         part in part(),
         origin in origin(),
         target in (coordinate(), coordinate()),
@@ -169,7 +169,7 @@ proptest! {
 }
 
 #[test]
-fn a_closed_door_is_a_wall_that_is_set_back() {
+fn a_closed_door_is_a_recessed_wall() {
     let world = world(0.0);
     let camera = Camera::new(DVec2::new(2.5, 2.5), Heading::default(), FieldOfView::default());
     let mut renderer = Renderer::new();

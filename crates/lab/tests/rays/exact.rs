@@ -38,7 +38,7 @@ fn maze(random: &mut SplitMix64) -> Grid {
 }
 
 #[test]
-fn every_stiff_set() {
+fn every_stiff_set_matches_exact_arithmetic() {
     for set in accuracy::sets(1).into_iter().chain(accuracy::ordinary(1, 500)) {
         let faults: Vec<String> = set.rays.iter().filter_map(|ray| fault(&set.grid, ray)).collect();
         assert!(faults.is_empty(), "{}: {}\n{}", set.name, faults.len(), faults[0]);
@@ -49,7 +49,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn random_and_adversarial_rays(seed in any::<u64>()) {
+    fn random_and_adversarial_rays_match_exact_arithmetic(seed in any::<u64>()) {
         let mut random = SplitMix64::new(seed);
         let grid = maze(&mut random);
         for _ in 0..5 {
@@ -59,7 +59,7 @@ proptest! {
     }
 
     #[test]
-    fn any_doubles_at_all(
+    fn rays_of_any_doubles_match_exact_arithmetic(
         origin in (any::<f64>(), any::<f64>()),
         direction in (any::<f64>(), any::<f64>()),
         seed in any::<u64>(),
@@ -71,7 +71,7 @@ proptest! {
 }
 
 #[test]
-fn a_million_rays() {
+fn a_million_rays_match_exact_arithmetic() {
     let mut random = SplitMix64::new(2026);
     for _ in 0..10_000 {
         let grid = maze(&mut random);

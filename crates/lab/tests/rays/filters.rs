@@ -48,7 +48,7 @@ fn share_left(world: &World) -> f64 {
 }
 
 #[test]
-fn levels_turn_calmly() {
+fn levels_flicker_little_while_turning() {
     for level in ["cellar", "museum", "citadel", "cistern", "observatory"] {
         let world = map::load(format!("{ROOT}/tests/maps/{level}.toml").as_ref()).unwrap();
         let share = share_left(&world);
@@ -57,7 +57,7 @@ fn levels_turn_calmly() {
 }
 
 #[test]
-fn textures_far_away_turn_calmly() {
+fn distant_textures_flicker_little_while_turning() {
     for name in ["flat", "floor", "checker", "mip"] {
         let world = map::load(Path::new(&format!("{ROOT}/maps/gallery/{name}.toml"))).unwrap();
         let share = share_left(&world);

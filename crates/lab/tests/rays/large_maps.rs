@@ -203,7 +203,7 @@ fn fault(ray: &Ray, exact: &ExactRay, truth: Option<&Met>, hit: Option<&Hit>) ->
 }
 
 #[test]
-fn a_million_rays_on_large_maps() {
+fn a_million_rays_are_exact_on_large_maps() {
     const RAYS: usize = 250_000;
     let mut random = SplitMix64::new(4096);
     for spacing in [8, 64, 128, 1024] {
@@ -223,7 +223,7 @@ fn a_million_rays_on_large_maps() {
 }
 
 #[test]
-fn adversarial_rays_of_any_doubles_on_a_large_map() {
+fn adversarial_rays_are_exact_on_a_large_map() {
     const RAYS: usize = 600;
     let mut random = SplitMix64::new(7);
     let field = Field::new(128, &mut random);

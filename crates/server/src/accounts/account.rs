@@ -126,13 +126,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_time_is_later_than_a_database_can_hold() {
+    fn times_are_capped_at_what_a_database_can_store() {
         assert_eq!(UnixTime::new(u64::MAX).after(9), UnixTime::new(i64::MAX as u64));
     }
 
     proptest! {
         #[test]
-        fn a_key_has_one_text(bytes in any::<[u8; 32]>(), end in "[A-Za-z0-9+/=]{0,2}") {
+        fn each_key_has_one_text_form(bytes in any::<[u8; 32]>(), end in "[A-Za-z0-9+/=]{0,2}") {
             let key = AccountKey::new(bytes);
             let text = key.to_string();
             prop_assert_eq!(text.len(), "SHA256:".len() + 43);

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_network_of_an_address_is_that_of_its_owner() {
+    fn addresses_map_to_networks_of_one_owner() {
         for (address, network) in [
             ("192.0.2.77", "192.0.2.0/24"),
             ("::ffff:192.0.2.77", "192.0.2.0/24"),
@@ -181,7 +181,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_range_contains_what_begins_alike(address: IpAddr, other: IpAddr, length in 0..=128_u8) {
+        fn a_range_contains_addresses_with_its_prefix(address: IpAddr, other: IpAddr, length in 0..=128_u8) {
             if let Some(prefix) = AddressPrefix::new(address, length) {
                 prop_assert!(prefix.contains(address));
                 prop_assert_eq!(AddressPrefix::parse(&prefix.to_string()), Some(prefix));

@@ -569,7 +569,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_names_its_server_and_its_database() {
+    fn an_address_is_shown_as_its_server_and_database() {
         for (text, shown) in [
             ("postgres://ada:geheim@db.example.org/games", "\"games\" at db.example.org"),
             ("postgresql://ada:geheim@192.0.2.7:5433", "\"ada\" at 192.0.2.7"),
@@ -583,7 +583,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_address_is_refused_without_a_word_of_it() {
+    fn invalid_addresses_are_refused_without_quoting_them() {
         for text in [
             "postgres://",
             "postgres:///games",

@@ -74,7 +74,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_hour_has_more_than_the_rate_and_what_is_allowed_at_once(
+        fn no_hour_exceeds_the_rate_plus_the_burst(
             per_hour in 1..40_u32, at_once in 1..9_u32,
             pauses in prop::collection::vec(0..900_u64, 1..200),
         ) {
@@ -102,7 +102,7 @@ mod tests {
         }
 
         #[test]
-        fn no_time_that_was_kept_shuts_a_network_out_for_long(known: i64, now: u64) {
+        fn no_stored_time_blocks_a_network_for_long(known: i64, now: u64) {
             let origin = Origin::new([192, 0, 2, 7].into(), AccountRate::default());
             if let Err(AccountRefusal::TooManyAccounts { seconds }) =
                 origin.count(Some(known), UnixTime::new(now))

@@ -200,7 +200,7 @@ mod tests {
     ));
 
     #[test]
-    fn a_script_that_wins_is_a_run() {
+    fn a_winning_script_is_a_run() {
         let run = verify(WON, |_| None).unwrap();
         assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
         assert!(run.tally().steps > 0 && run.tally().steps <= MAX_SCRIPT_STEPS);
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_after_the_exit_does_not_count() {
+    fn input_after_the_exit_does_not_count() {
         let (run, longer) = (
             verify(WON, |_| None).unwrap(),
             verify(&format!("{WON}9 s back\n"), |_| None).unwrap(),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn other_scripts_are_refused_in_a_sentence() {
+    fn other_scripts_are_refused_with_a_sentence() {
         let shorter = WON.lines().take(6).collect::<Vec<_>>().join("\n");
         let steps = |count: u64| format!("level cellar\n{count} steps stand\n").repeat(1);
         let long = steps(MAX_SCRIPT_STEPS) + "1 step stand\n";

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_column_is_read_as_what_it_holds_and_as_nothing_else() {
+    fn a_column_is_read_only_as_its_own_type() {
         let bytes = Value::Blob(vec![1; 32]);
         let row = Row(vec![Value::Null, 7_i64.into(), "x".to_owned().into(), bytes]);
         assert_eq!(row.get::<Option<i64>>(0).unwrap(), None);

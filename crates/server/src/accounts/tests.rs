@@ -105,7 +105,7 @@ fn run(level: &str, steps: u64, rank: Rank) -> VerifiedRun {
 }
 
 #[test]
-fn a_key_is_an_account() {
+fn each_key_has_one_account() {
     with_each(|store| {
         assert_eq!(store.account(&key(1)).unwrap(), None);
         let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
@@ -125,7 +125,7 @@ fn a_key_is_an_account() {
 }
 
 #[test]
-fn a_name_is_of_one_account() {
+fn a_name_belongs_to_one_account() {
     with_each(|store| {
         store.create_account(None, &key(1), &name("Bill"), at(0)).unwrap();
         for other in ["Bill", "bILL", "BiIl", "bi11"] {
@@ -137,7 +137,7 @@ fn a_name_is_of_one_account() {
 }
 
 #[test]
-fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
+fn names_can_be_changed_after_a_while_and_stay_reserved() {
     with_each(|store| {
         let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
         let next = at(7);
@@ -164,7 +164,7 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
 }
 
 #[test]
-fn settings_are_kept_by_account() {
+fn settings_are_stored_per_account() {
     with_each(|store| {
         let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap().id;
         assert_eq!(store.settings(ada).unwrap(), AccountSettings::default());
@@ -227,7 +227,7 @@ fn a_ban_applies_until_it_ends() {
 }
 
 #[test]
-fn boards_have_the_best_run_of_each_account() {
+fn boards_list_the_best_run_of_each_account() {
     with_each(|store| {
         let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
             store.create_account(None, &key(number), &name(text), at(0)).unwrap().id
@@ -273,7 +273,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn names_of_accounts_are_told_from_each_other(texts in prop::collection::vec(
+    fn account_names_never_look_alike(texts in prop::collection::vec(
         "[a-cA-CIl1iOo0аАсС]{2,4}", 2..60
     )) {
         let mut store = HostStore::in_memory();

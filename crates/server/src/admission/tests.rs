@@ -69,7 +69,7 @@ fn logged_in_during(flood: u32, address_of: impl Fn(u32) -> IpAddr) -> f64 {
 }
 
 #[test]
-fn silent_connections_of_a_few_networks_keep_no_newcomer_out() {
+fn silent_connections_from_few_networks_block_no_newcomer() {
     let of_eight =
         |arrival: u32| Ipv4Addr::from_bits(0x0a00_0000 + ((arrival % 8) << 16) + arrival);
     for flood in [14, 140] {
@@ -120,7 +120,7 @@ fn the_oldest_connection_of_the_busiest_network_makes_room() {
 }
 
 #[test]
-fn who_was_displaced_does_not_log_in() {
+fn a_displaced_connection_cannot_log_in() {
     let limits = Limits { startups: 1, ..Limits::default() };
     let (mut admission, mut chance) = (Admission::new(limits), SplitMix64::new(1));
     let first = admission.arrive(address(1, 1), START, &mut chance).unwrap();
@@ -134,7 +134,7 @@ fn who_was_displaced_does_not_log_in() {
 /// Visitors who have logged in are counted apart from connections that have not, because the latter may be
 /// nobody.
 #[test]
-fn silent_connections_take_no_place_of_a_player() {
+fn silent_connections_do_not_displace_players() {
     let limits = Limits { connections: 2, startups: 3, ..Limits::default() };
     let (mut admission, mut chance) = (Admission::new(limits), SplitMix64::new(1));
     let mut arrive = |admission: &mut Admission, network| {
@@ -150,7 +150,7 @@ fn silent_connections_take_no_place_of_a_player() {
 }
 
 #[test]
-fn a_network_of_ipv6_counts_as_one_address() {
+fn an_ipv6_network_counts_as_one_address() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
     let of = |network: u16, host: u16| IpAddr::from([0x2001, 0xdb8, 0, network, 0, 0, 0, host]);
     for host in 0..8 {
@@ -164,7 +164,7 @@ fn a_network_of_ipv6_counts_as_one_address() {
 }
 
 #[test]
-fn a_refusal_names_its_limit_in_one_sentence() {
+fn a_refusal_states_its_limit_in_one_sentence() {
     let limits = Limits { per_key: 1, ..Limits::default() };
     for (refusal, part) in [
         (Refusal::Full, "at most 1200 connections at a time"),
@@ -189,7 +189,7 @@ fn key(number: u8) -> AccountKey {
 }
 
 #[test]
-fn one_address_has_eight_connections() {
+fn one_address_is_limited_to_eight_connections() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
     let mut ids = Vec::new();
     for _ in 0..8 {
@@ -204,7 +204,7 @@ fn one_address_has_eight_connections() {
 }
 
 #[test]
-fn one_key_has_three_connections_from_anywhere() {
+fn one_key_is_limited_to_three_connections() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
     let ids: Vec<ConnectionId> = (0..4)
         .map(|host| admission.arrive(address(host, 1), START, &mut chance).unwrap().id)
@@ -221,7 +221,7 @@ fn one_key_has_three_connections_from_anywhere() {
 
 /// A network that floods is nearly always refused, and is forgiven in time.
 #[test]
-fn failures_are_penalised_and_forgotten() {
+fn failures_are_penalised_and_later_forgiven() {
     let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
     let mut tries = |admission: &mut Admission, outcome, now| {
         let mut admitted = 0;
@@ -297,7 +297,7 @@ fn acts() -> impl Strategy<Value = Vec<Act>> {
 proptest! {
     /// Whatever happens, in whatever order, no count exceeds its limit, and all counts return to zero.
     #[test]
-    fn counts_are_exact(acts in acts(), seed: u64) {
+    fn counts_stay_within_limits_and_return_to_zero(acts in acts(), seed: u64) {
         let (mut admission, mut chance) = (admission(), SplitMix64::new(seed));
         let mut now = START;
         for act in acts {

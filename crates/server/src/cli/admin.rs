@@ -349,13 +349,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_as_wide_as_they_need() {
+    fn columns_are_as_wide_as_their_contents() {
         let rows = [["漢字", "1"], ["A\u{1b}", "22"]].map(|row| row.map(str::to_owned).to_vec());
         assert_eq!(table(&["name", "n"], rows.into_iter()), "name  n\n漢字  1\nA?    22\n");
     }
 
     #[test]
-    fn a_time_has_two_units() {
+    fn a_time_shows_at_most_two_units() {
         for (seconds, text) in
             [(59, "59s"), (61, "1m 1s"), (3661, "1h 1m"), (7 * 86_400 - 1, "6d 23h")]
         {

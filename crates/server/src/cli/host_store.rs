@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_begins_with_its_kind_and_is_not_shown() {
+    fn an_address_is_recognised_by_its_scheme_and_hidden() {
         for text in ["postgres://ada:geheim@host/games", "postgresql://ada:geheim@host"] {
             let database = StoreLocation::of(text.into());
             assert_eq!(database, StoreLocation::Address(text.to_owned()));

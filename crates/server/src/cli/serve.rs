@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_signal_is_told_from_the_first() {
+    fn the_second_signal_is_distinguished_from_the_first() {
         let signals = Signals::default();
         assert!(!is_ready(signals.first()));
         signal(&signals);
@@ -420,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn a_signal_after_an_operator_is_the_second_one() {
+    fn a_signal_after_a_drain_request_counts_as_the_second() {
         let signals = Signals::default();
         signals.drain().notify_one();
         assert!(is_ready(signals.first()));

@@ -86,7 +86,7 @@ mod tests {
     use crate::accounts::HostStore;
 
     #[test]
-    fn leases_that_are_renewed_at_the_same_time_are_one_call() {
+    fn simultaneous_renewals_are_one_call() {
         let (worker, mut queue) = StoreWorker::new(MAX_CALLS);
         let renewals = Arc::<Mutex<Vec<Renewal>>>::default();
         let host = "one".to_owned();

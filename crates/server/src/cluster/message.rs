@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_of_the_log_reads_as_it_is_written() {
+    fn log_messages_round_trip() {
         let check = Check { tick: 5_399, sum: u64::MAX };
         for message in [message(None, Vec::new()), message(Some(check), vec![leave(1)])] {
             assert_eq!(LogMessage::parse(&to_bytes(&message)), Ok(message));
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broadcast_reads_as_it_is_written() {
+    fn broadcasts_round_trip() {
         let name = Line::of("a b", NAME_COLUMNS).unwrap();
         let want = Command::Intents { seen: 3, intents: Intents::new() };
         let join = |is_kept| MemberWish::Join { name: name.clone(), is_kept };
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_reads_as_it_is_written() {
+    fn records_round_trip() {
         let header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
         let new = Record::new(header, true);
         let names = ["Mara", "a b"].map(|name| Line::of(name, NAME_COLUMNS).unwrap());
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_damaged_or_of_another_version_are_refused() {
+    fn damaged_bytes_and_other_versions_are_refused() {
         let good = message(None, vec![leave(1)]);
         let check = Check { tick: MAX_COUNT + 1, sum: 0 };
         for damaged in [

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn differences_of_maps_are_told_by_their_names() {
+    fn differing_maps_are_listed_by_name() {
         let moss = ("moss-2", "a");
         assert_eq!(told(&[], &[]), None);
         assert_eq!(told(&[moss], &[moss]), None);

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_is_applied_once_and_after_the_one_before() {
+    fn messages_are_applied_once_and_in_order() {
         let mut state = state();
         let first = message(&state, 1, None);
         assert_eq!(state.position(5, &first), Position::Next);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn another_checksum_is_a_difference() {
+    fn a_different_checksum_is_detected() {
         let mut state = state();
         for number in 1..=30 {
             let next = message(&state, 1, None);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_checkpoint_gives_the_replica_again() {
+    fn a_checkpoint_restores_the_replica() {
         let catalog = Arc::new(Catalog::builtin());
         let mut state = state();
         let next = message(&state, 3, None);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_no_room_reaches_are_refused() {
+    fn impossible_numbers_are_refused() {
         let catalog = Arc::new(Catalog::builtin());
         let bytes = state().checkpoint();
         let mut input = reader(&bytes).unwrap();

@@ -198,7 +198,7 @@ fn play(seed: u64) -> [u64; 3] {
 }
 
 #[test]
-fn hosts_agree_whatever_breaks() {
+fn hosts_agree_despite_any_fault() {
     let number = |name| env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let seeds = match number("SEED") {
         Some(seed) => seed..seed + 1,
@@ -222,7 +222,7 @@ fn hosts_agree_whatever_breaks() {
 }
 
 #[test]
-fn a_standing_room_that_is_taken_out_is_listed_while_somebody_is_in_it() {
+fn a_removed_standing_room_is_listed_until_it_is_empty() {
     let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
     runtime.block_on(async {
         let run = ClusterRun::new(7);

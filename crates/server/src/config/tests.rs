@@ -12,7 +12,7 @@ fn an_empty_file_is_the_default() -> Result<(), Faults> {
 }
 
 #[test]
-fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
+fn a_written_configuration_parses_to_itself() -> Result<(), Faults> {
     let mut config = Config { listen: "[::1]:22".parse().unwrap(), ..Config::default() };
     config.admission.startups = 7;
     config.drain = Duration::ZERO;
@@ -38,7 +38,7 @@ fn range(key: &str) -> [u64; 2] {
 }
 
 #[test]
-fn every_number_has_an_effect_of_its_own() -> Result<(), Faults> {
+fn each_number_sets_only_its_own_field() -> Result<(), Faults> {
     let default = Config::default();
     for setting in &NUMBERS {
         for value in range(setting.key) {
@@ -56,12 +56,12 @@ fn every_number_has_an_effect_of_its_own() -> Result<(), Faults> {
 }
 
 #[test]
-fn the_comment_about_the_log_tells_its_grammar() {
+fn the_comment_about_the_log_states_its_grammar() {
     assert!(TEXTS.iter().any(|setting| setting.about.ends_with(LogFilter::GRAMMAR)));
 }
 
 #[test]
-fn all_faults_are_named_with_their_lines() {
+fn all_faults_are_reported_with_their_lines() {
     insta::assert_snapshot!(faults(
         "listen = \"localhost\"\nconnection = 5\nrows = \"many\"\ncolumns = 19\n\
          connections = 1.5\nsilence-seconds = 99999999999999999999\nwhat = 1\n"
@@ -69,7 +69,7 @@ fn all_faults_are_named_with_their_lines() {
 }
 
 #[test]
-fn faults_of_texts_are_named_with_their_lines() {
+fn text_faults_are_reported_with_their_lines() {
     insta::assert_snapshot!(faults(
         "message = \"two\\nlines\"\nlog = \"info,conections=warn\"\n\
          [metrics]\nlisten = \"9464\"\nport = 9464\n"
@@ -77,7 +77,7 @@ fn faults_of_texts_are_named_with_their_lines() {
 }
 
 #[test]
-fn faults_of_rooms_are_named_with_their_lines() {
+fn room_faults_are_reported_with_their_lines() {
     insta::assert_snapshot!(faults(
         "name = \"\"\nmaps = \"maps\"\n\
          [[room]]\nmode = \"alone\"\n\
@@ -89,7 +89,7 @@ fn faults_of_rooms_are_named_with_their_lines() {
 }
 
 #[test]
-fn levels_of_rooms_are_checked_against_those_that_there_are() {
+fn unknown_room_levels_are_reported() {
     let text = "[[room]]\nlevel = \"cellar\"\n[[room]]\nmode = \"race\"\nlevel = \"celar\"\n\
                 [[room]]\nlevel = \"moss\"\n";
     let levels = ["cellar", "museum"];
@@ -102,7 +102,7 @@ fn levels_of_rooms_are_checked_against_those_that_there_are() {
 }
 
 #[test]
-fn a_running_server_keeps_what_cannot_change() {
+fn a_running_server_keeps_fixed_settings() {
     let live = LiveConfig::new(Config::default());
     let mut seen = live.subscribe();
     let mut wanted = Config { message: "Welcome".to_owned(), ..Config::default() };
@@ -122,6 +122,6 @@ fn a_running_server_keeps_what_cannot_change() {
 }
 
 #[test]
-fn a_text_that_is_not_toml_has_a_place() {
+fn a_syntax_error_is_located() {
     insta::assert_snapshot!(faults("listen = \"127.0.0.1:2222\"\nconnections = \n"));
 }

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_passes_and_nobody_else_runs_before_work_is_done() {
+    fn time_passes_and_no_other_task_runs_during_work() {
         let runtime =
             Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
         runtime.block_on(async {

@@ -46,7 +46,7 @@ fn name_evilly(_: &Logging) {
 }
 
 #[test]
-fn nothing_that_was_typed_is_more_than_a_field() {
+fn typed_text_cannot_add_lines_or_control_characters() {
     for format in [LogFormat::Text, LogFormat::Json] {
         let text = logged(format, "trace", name_evilly);
         assert_eq!(text.lines().count(), 6, "{text}");
@@ -87,7 +87,7 @@ fn addresses_are_logged_as_networks() {
 }
 
 #[test]
-fn the_filter_has_a_level_for_each_topic_and_can_be_changed() {
+fn the_filter_sets_topic_levels_and_can_be_changed() {
     let one_each = || {
         ended();
         authenticated([192, 0, 2, 1].into(), None);
@@ -107,7 +107,7 @@ fn the_filter_has_a_level_for_each_topic_and_can_be_changed() {
 }
 
 #[test]
-fn a_filter_is_a_level_and_others_for_topics() {
+fn a_filter_has_a_default_level_and_levels_for_topics() {
     for (text, written) in [
         ("warn", "warn"),
         ("rooms=debug", "info,rooms=debug"),
@@ -123,7 +123,7 @@ fn a_filter_is_a_level_and_others_for_topics() {
 
 proptest! {
     #[test]
-    fn a_filter_that_is_written_is_read(text in "((off|warn|debug|rooms|admin|x)[,=]?){0,6}") {
+    fn filters_round_trip(text in "((off|warn|debug|rooms|admin|x)[,=]?){0,6}") {
         if let Ok(filter) = text.parse::<LogFilter>() {
             prop_assert_eq!(filter.to_string().parse(), Ok(filter));
         }
@@ -154,7 +154,7 @@ fn lines(connections: u32, networks: u32) -> Vec<serde_json::Value> {
 }
 
 #[test]
-fn a_flood_is_a_few_lines_a_second_whose_sums_are_right() {
+fn a_flood_logs_a_few_lines_a_second_with_correct_counts() {
     for networks in [1, 8, 5000] {
         let lines = lines(6000, networks);
         assert!(lines.len() <= 12, "{lines:#?}");
@@ -167,14 +167,14 @@ fn a_flood_is_a_few_lines_a_second_whose_sums_are_right() {
 }
 
 #[test]
-fn a_sum_names_its_network() {
+fn a_summary_line_names_its_network() {
     let lines = lines(3000, 1);
     let known = lines.iter().all(|line| line["network"] == "10.0.0.0/24");
     assert!(known && lines.len() == 6, "{lines:#?}");
 }
 
 #[test]
-fn connections_that_come_now_and_then_have_lines_of_their_own() {
+fn occasional_connections_are_logged_one_per_line() {
     assert!(lines(2, 2).iter().all(|line| line["count"] == 1));
     assert_eq!(lines(2, 2).len(), 3);
 }

@@ -53,7 +53,7 @@ fn each_figure_has_a_sample() {
 }
 
 #[test]
-fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
+fn samples_are_labelled_with_the_host_and_the_room() {
     let metrics = Metrics::default();
     metrics.host.set("a \"b\"\\".to_owned()).unwrap();
     let [old, new] = [0; 2].map(|_| metrics.add_room(7));
@@ -84,7 +84,7 @@ fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
 }
 
 #[test]
-fn a_duration_is_in_the_buckets_from_its_bound_on() {
+fn a_duration_counts_in_every_bucket_from_its_bound() {
     let metrics = Metrics::default();
     for microseconds in [0, 100, 16_667, 2_500_001] {
         metrics.key_time.observe(Duration::from_micros(microseconds));
@@ -111,7 +111,7 @@ fn status(request: &[u8]) -> String {
 }
 
 #[test]
-fn one_page_is_served() {
+fn only_the_metrics_page_is_served() {
     for (request, expected) in [
         ("GET /metrics HTTP/1.1\r\n\r\n", "200"),
         ("GET /metrics HTTP/1.0\r\nHost: x\r\n\r\n", "200"),
@@ -128,7 +128,7 @@ fn one_page_is_served() {
 
 proptest! {
     #[test]
-    fn any_request_has_an_answer(request in any::<Vec<u8>>()) {
+    fn every_request_gets_an_answer(request in any::<Vec<u8>>()) {
         prop_assert!(["200", "400", "404", "405"].contains(&status(&request).as_str()));
     }
 }

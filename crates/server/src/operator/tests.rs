@@ -21,7 +21,7 @@ fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {
 }
 
 #[tokio::test]
-async fn requests_reach_those_whom_they_concern() {
+async fn requests_reach_the_visitors_they_name() {
     let (visitors, drain) = (Visitors::default(), Arc::<Notify>::default());
     let operator = operator_with(&visitors, Arc::clone(&drain));
     let mut ada = visitors.arrive(IpAddr::from([192, 0, 2, 1]), None);
@@ -59,7 +59,7 @@ async fn requests_reach_those_whom_they_concern() {
 }
 
 #[test]
-fn what_is_no_target_is_told_in_a_sentence() {
+fn invalid_targets_are_refused_with_a_sentence() {
     let operator = operator(&Visitors::default());
     for target in [
         Target::Name("\u{1b}".to_owned()),
@@ -73,7 +73,7 @@ fn what_is_no_target_is_told_in_a_sentence() {
 }
 
 #[test]
-fn the_form_of_a_line_is_fixed() {
+fn the_line_format_is_fixed() {
     let lines = [
         (AdminRequest::Who, r#"{"do":"who"}"#),
         (

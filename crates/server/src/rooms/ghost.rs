@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ghost_is_where_the_script_was_in_that_step() {
+    fn a_ghost_is_where_the_script_was_at_each_step() {
         let script = Script::parse(WON, "it").unwrap();
         let ghost = Ghost::of_script(&cellar(), WON, Some("Mara"));
         let mut game = Game::with_rules(cellar(), script.header().rules());
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ghost_walks() {
+    fn a_ghost_is_animated_while_it_walks() {
         let ghost = Ghost::of_script(&cellar(), WON, None);
         let frames = (0..400).filter_map(|step| Some(ghost.figure(step, SpriteId(0))?.frame));
         let frames: std::collections::BTreeSet<u8> = frames.collect();
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_run_takes_less_than_300_kilobytes() {
+    fn the_longest_run_takes_under_300_kilobytes() {
         let text = format!("level cellar\n{} steps stand\n", MAX_STEPS + 100);
         let script = Script::parse(&text, "it").unwrap();
         let run = Run::played(cellar().without_guards(), Rules::default(), &script);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_run_and_the_own_one_walk_along() {
+    fn the_best_run_and_the_personal_best_walk_along() {
         let (catalog, mut store) = (Catalog::builtin(), HostStore::in_memory());
         let [mara, jon] =
             [(1, "Mara"), (2, "Jon")].map(|(number, name)| account(&mut store, number, name).id);
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn only_some_runs_are_kept() {
+    fn the_number_of_cached_runs_is_bounded() {
         let (catalog, mut store) = (Catalog::builtin(), HostStore::in_memory());
         let mara = account(&mut store, 1, "Mara").id;
         let run = verify(WON, |_| None).unwrap();

@@ -205,27 +205,27 @@ fn play_all(seeds: std::ops::Range<u64>) {
 }
 
 #[test]
-fn seeds_from_0() {
+fn hosts_survive_seeds_from_0() {
     play_all(0..250);
 }
 
 #[test]
-fn seeds_from_250() {
+fn hosts_survive_seeds_from_250() {
     play_all(250..500);
 }
 
 #[test]
-fn seeds_from_500() {
+fn hosts_survive_seeds_from_500() {
     play_all(500..750);
 }
 
 #[test]
-fn seeds_from_750() {
+fn hosts_survive_seeds_from_750() {
     play_all(750..1_000);
 }
 
 #[test]
-fn a_seed_gives_the_same_run_again() {
+fn a_seed_reproduces_its_run() {
     for seed in (0..16).filter(|&seed| !is_slow(seed)) {
         assert!(play(seed) == play(seed), "seed {seed}");
     }

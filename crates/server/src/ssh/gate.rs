@@ -257,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_flood_is_told_seldom_and_leaves_room_for_other_networks() {
+    fn explanations_are_limited_per_network_and_in_total() {
         let mut explanations = Explanations::default();
         let network = |number: u8| AddressPrefix::network_of(IpAddr::from([10, 0, number, 1]));
         let told = |explanations: &mut Explanations, number, at: u64| {
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_is_whole() {
+    fn a_packet_is_well_formed() {
         for length in 0..64 {
             let sentence = "x".repeat(length);
             let message = message(&sentence);

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn bytes_that_were_compressed_come_at_the_rate_of_others() {
+    async fn compressed_input_is_limited_to_the_same_rate() {
         let (inlet, mut inbound) = inbound(LIMITS);
         let sending = async {
             inlet.bytes(&vec![b'w'; 20 * (64 << 10)]).await;
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_sizes_the_newest_arrives() {
+    fn only_the_latest_window_size_arrives() {
         let (inlet, mut inbound) = inbound(LIMITS);
         for columns in 1..=500 {
             inlet.resize(WindowSize::of_cells(columns, 24));
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_connection_never_waits_for_a_session_that_is_gone() {
+    fn a_connection_never_waits_for_an_ended_session() {
         let (inlet, inbound) = inbound(LIMITS);
         assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MAX_BYTES + 1])), None);
         drop(inbound);

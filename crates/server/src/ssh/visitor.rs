@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_word_has_no_control_characters_and_an_end() {
+    fn words_are_bounded_and_have_no_control_characters() {
         assert_eq!(word("ann\u{1b}[31m\r\n\0"), "ann[31m");
         assert_eq!(word("\u{9b}31m"), "31m");
         assert_eq!(word(&"é".repeat(1000)).chars().count(), MAX_WORD_BYTES);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_has_a_bounded_size() {
+    fn window_sizes_are_bounded() {
         let size = |cells, pixels| window_size(cells, pixels, [500, 200]);
         for (cells, bounded) in [
             ([0, 0], (1, 1)),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_count_for_a_whole_window_only() {
+    fn pixel_sizes_count_only_if_the_window_fits() {
         let size = |cells, pixels| window_size(cells, pixels, [500, 200]).cell_aspect;
         assert_eq!(size([80, 24], [640, 384]), Some(2.0));
         assert_eq!(size([80, 24], [640, 70_000]), None);

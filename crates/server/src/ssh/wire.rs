@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_known_method_of_compression_is_chosen() {
+    fn the_first_known_compression_method_is_chosen() {
         for (methods, compresses) in [
             ("none,zlib@openssh.com,zlib", false),
             ("zlib@openssh.com,zlib,none", true),
@@ -348,7 +348,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn pieces_make_no_difference(cuts in prop::collection::vec(1_usize..60, 1..40)) {
+        fn the_size_of_pieces_makes_no_difference(cuts in prop::collection::vec(1_usize..60, 1..40)) {
             let bytes = hello("zlib@openssh.com,none");
             let mut parser = Hello::default();
             let (mut rest, mut cuts) = (bytes.as_slice(), cuts.iter().cycle());
@@ -362,7 +362,7 @@ mod tests {
         }
 
         #[test]
-        fn nothing_panics_and_little_is_kept(pieces in prop::collection::vec(any::<Vec<u8>>(), 0..80)) {
+        fn no_bytes_panic_and_few_are_kept(pieces in prop::collection::vec(any::<Vec<u8>>(), 0..80)) {
             let mut parser = Hello::default();
             for piece in pieces {
                 parser.receive(&piece);

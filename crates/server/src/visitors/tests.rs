@@ -52,7 +52,7 @@ fn lines_wait_in_order_and_are_bounded() {
 }
 
 #[test]
-fn a_removal_reaches_those_whom_it_concerns_before_any_line()
+fn a_removal_reaches_its_targets_before_any_line()
 -> Result<(), Box<dyn std::error::Error>> {
     let visitors = Visitors::default();
     let key = AccountKey::new([1; 32]);
@@ -79,7 +79,7 @@ fn a_removal_reaches_those_whom_it_concerns_before_any_line()
 }
 
 #[test]
-fn one_session_of_several_with_one_name_is_removed() {
+fn one_of_several_sessions_with_one_name_can_be_removed() {
     let (visitors, later) = (Visitors::default(), Visitors::default());
     let mut sessions = [1, 1].map(|last| visitors.arrive(here(last), None));
     let mut other = later.arrive(here(1), None);

@@ -46,7 +46,7 @@ fn write(folder: &Path, first: u32) {
 const KILLS: u32 = 12;
 
 #[test]
-fn what_is_said_to_be_kept_outlives_a_killed_process() {
+fn acknowledged_changes_survive_a_killed_process() {
     if let Ok(writer) = env::var(WRITER) {
         let (folder, first) = writer.rsplit_once(':').unwrap();
         return write(Path::new(folder), first.parse().unwrap());
@@ -58,7 +58,7 @@ fn what_is_said_to_be_kept_outlives_a_killed_process() {
             .args([
                 "--exact",
                 "--nocapture",
-                "kept::what_is_said_to_be_kept_outlives_a_killed_process",
+                "kept::acknowledged_changes_survive_a_killed_process",
             ])
             .env(WRITER, format!("{}:{next}", folder.display()))
             .stdout(Stdio::piped())

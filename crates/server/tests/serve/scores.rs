@@ -41,7 +41,7 @@ fn written(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn boards_are_listed_while_a_host_runs() {
+fn boards_can_be_listed_while_a_host_runs() {
     let folder = scratch("boards");
     let _host = filled(&folder);
     let table = written(&folder, &[]);
@@ -65,7 +65,7 @@ fn boards_are_listed_while_a_host_runs() {
 }
 
 #[test]
-fn json_has_every_figure() {
+fn json_contains_every_figure() {
     let folder = scratch("json");
     drop(filled(&folder));
     let boards: Value = serde_json::from_str(&written(&folder, &["--format", "json"])).unwrap();
@@ -80,7 +80,7 @@ fn json_has_every_figure() {
 }
 
 #[test]
-fn what_is_wrong_is_told_in_a_sentence() {
+fn mistakes_are_explained_in_a_sentence() {
     let folder = scratch("absent");
     for (arguments, said) in [
         (&[][..], "there is no store of a host in"),

@@ -112,7 +112,7 @@ impl Counted {
 }
 
 #[test]
-fn clients_that_come_and_go_leave_nothing() {
+fn clients_that_come_and_go_leave_nothing_behind() {
     let server = Counted::start();
     let before = server.held();
     assert_eq!((before.connections, before.visitors, before.rooms), (0, 0, 2), "{before:?}");
@@ -137,7 +137,7 @@ fn clients_that_come_and_go_leave_nothing() {
 
 /// The queries of a session must not pile up for a client that reads nothing.
 #[test]
-fn a_client_that_provokes_queries_and_reads_none_is_sent_away() {
+fn a_client_that_provokes_queries_without_reading_is_closed() {
     let server = Counted::start();
     let before = server.held();
     let address = server.address;

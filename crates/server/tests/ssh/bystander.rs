@@ -405,70 +405,70 @@ fn delays_nobody(name: &str, traffic: Traffic) {
 }
 
 #[test]
-fn names_that_are_typed() {
+fn typed_names_delay_nobody() {
     let bytes = "ab\x7f\x7fe\u{301}\u{302}\u{303}\x7f";
     delays_nobody("name", Traffic::Typed { way: TO_THE_NAME, bytes });
 }
 
 #[test]
-fn chat_that_is_typed() {
+fn typed_chat_delays_nobody() {
     let bytes = "ab\x7f\x7fe\u{301}\u{302}\u{303}\x7f";
     delays_nobody("chat", Traffic::Typed { way: TO_THE_CHAT, bytes });
 }
 
 #[test]
-fn keys_in_the_lobby() {
+fn keys_in_the_lobby_delay_nobody() {
     delays_nobody("lobby", Traffic::Typed { way: TO_THE_LOBBY, bytes: "\x1b[B\x1b[A6\x7f" });
 }
 
 #[test]
-fn keys_in_settings() {
+fn keys_in_settings_delay_nobody() {
     delays_nobody("settings", Traffic::Typed { way: TO_SETTINGS, bytes: "\x1b[C" });
 }
 
 #[test]
-fn keys_in_a_room() {
+fn keys_in_a_room_delay_nobody() {
     delays_nobody("room", Traffic::Typed { way: TO_A_ROOM, bytes: "wsad\x1b[C\x1b[Dmp" });
 }
 
 #[test]
-fn keys_with_releases() {
+fn keys_with_releases_delay_nobody() {
     let bytes = "\x1b[119;1:1u\x1b[119;1:2u\x1b[119;1:3u";
     delays_nobody("releases", Traffic::Typed { way: TO_A_ROOM, bytes });
 }
 
 #[test]
-fn the_mouse() {
+fn mouse_input_delays_nobody() {
     let bytes = "\x1b[<35;10;10M\x1b[<35;60;20M\x1b[<0;1;1M\x1b[<0;1;1m";
     delays_nobody("mouse", Traffic::Typed { way: TO_A_ROOM_WITH_A_MOUSE, bytes });
 }
 
 #[test]
-fn compressed_input() {
+fn compressed_input_delays_nobody() {
     delays_nobody("compressed", Traffic::Compressed);
 }
 
 #[test]
-fn resizes() {
+fn resizes_delay_nobody() {
     delays_nobody("resizes", Traffic::Resizes);
 }
 
 #[test]
-fn channels() {
+fn channel_requests_delay_nobody() {
     delays_nobody("channels", Traffic::Channels);
 }
 
 #[test]
-fn key_exchanges() {
+fn key_exchanges_delay_nobody() {
     delays_nobody("rekeys", Traffic::Rekeys);
 }
 
 #[test]
-fn key_offers_before_the_login() {
+fn key_offers_before_login_delay_nobody() {
     delays_nobody("offers", Traffic::Offers);
 }
 
 #[test]
-fn pictures_of_the_largest_size() {
+fn full_size_pictures_delay_nobody() {
     delays_nobody("pictures", Traffic::Turns);
 }

@@ -209,7 +209,7 @@ fn shown_fidelity(emulator: &Emulator) -> Option<String> {
 }
 
 #[test]
-fn on_a_slow_link_it_is_fast_and_fresh() {
+fn a_slow_link_keeps_its_frame_rate_and_latency() {
     let guest = Guest::connect(SLOW, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("1 Mbit/s, 50 ms each way");
@@ -219,7 +219,7 @@ fn on_a_slow_link_it_is_fast_and_fresh() {
 }
 
 #[test]
-fn on_a_fast_link_every_frame_is_there_and_exact() {
+fn every_frame_arrives_and_is_exact_on_a_fast_link() {
     let guest = Guest::connect(UNLIMITED, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("no limit");
@@ -229,7 +229,7 @@ fn on_a_fast_link_every_frame_is_there_and_exact() {
 }
 
 #[test]
-fn a_link_that_jitters_shows_exact_frames_or_nearly() {
+fn a_jittery_link_shows_nearly_exact_frames() {
     let guest = Guest::connect(JITTERY, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("no limit, 20 ms and up to 100 ms of jitter each way");
@@ -241,7 +241,7 @@ fn a_link_that_jitters_shows_exact_frames_or_nearly() {
 }
 
 #[test]
-fn compressed_it_is_about_exact_on_a_slow_link() {
+fn compressed_frames_are_nearly_exact_on_a_slow_link() {
     let guest = Guest::connect_with(&["-C"], SLOW, &format!("{PLAY} --stats"));
     let walk = guest.play(WALK);
     walk.report("1 Mbit/s, 50 ms each way, with -C");
@@ -267,29 +267,29 @@ fn compares_with_sshd(window: (u16, u16), options: &[&str], link: Link) {
 }
 
 #[test]
-fn compressed_over_a_long_way_the_server_is_as_fast_as_sshd() {
+fn the_server_matches_sshd_compressed_over_a_long_distance() {
     compares_with_sshd((80, 24), &["-C"], Link { delay: 2 * SLOWEST.delay, ..SLOWEST });
 }
 
 #[test]
-fn uncompressed_on_the_slowest_link_the_server_is_as_fast_as_sshd() {
+fn the_server_matches_sshd_uncompressed_on_the_slowest_link() {
     compares_with_sshd((80, 24), &[], SLOWEST);
 }
 
 #[test]
-fn compressed_on_the_slowest_link_the_server_is_as_fast_as_sshd() {
+fn the_server_matches_sshd_compressed_on_the_slowest_link() {
     compares_with_sshd((80, 24), &["-C"], SLOWEST);
 }
 
 #[test]
-fn compressed_in_a_large_window_the_server_is_as_fast_as_sshd() {
+fn the_server_matches_sshd_compressed_in_a_large_window() {
     compares_with_sshd(WINDOW, &["-C"], SLOWEST);
 }
 
 /// sshd questions the client every 2 s, and gives up after the third question. A game that keeps sending
 /// would keep it from asking.
 #[test]
-fn a_link_that_dies_silently_is_noticed() {
+fn a_silently_dead_link_is_noticed() {
     const END: Duration = Duration::from_secs(20);
     let guest = Guest::connect(SLOW, PLAY);
     let game = guest.server.game();
@@ -305,7 +305,7 @@ fn a_link_that_dies_silently_is_noticed() {
 }
 
 #[test]
-fn when_the_link_is_cut_in_mid_frame_nothing_is_left() {
+fn cutting_the_link_in_mid_frame_leaves_no_process() {
     const END: Duration = Duration::from_secs(5);
     let guest = Guest::connect(SLOW, PLAY);
     let game = guest.server.game();
@@ -322,7 +322,7 @@ fn when_the_link_is_cut_in_mid_frame_nothing_is_left() {
 }
 
 #[test]
-fn the_shell_behind_the_link_finds_no_answers() {
+fn no_terminal_replies_reach_the_shell() {
     let mut guest = Guest::connect(SLOW, PLAY);
     guest.hold_right(true);
     thread::sleep(Duration::from_secs(1));

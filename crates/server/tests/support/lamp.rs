@@ -80,7 +80,7 @@ mod tests {
     const MILLISECOND: Duration = Duration::from_millis(1);
 
     #[test]
-    fn frames_that_do_not_answer_the_key_do_not_end_its_time() {
+    fn unrelated_frames_do_not_stop_the_timer() {
         let begun = Instant::now();
         let mut lamp = Lamp::default();
         let lit = b"\x1b[?2026h\x1b[35Dlamp\x1b[?2026l\x1b[5n";
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_without_an_answer_is_forgotten() {
+    fn an_unanswered_key_is_forgotten() {
         let begun = Instant::now();
         let mut lamp = Lamp::default();
         lamp.press(begun);

@@ -12,7 +12,7 @@ fn filled() -> Folder {
 }
 
 #[test]
-fn a_damaged_value_costs_its_result_only() {
+fn a_damaged_value_loses_only_its_result() {
     let folder = filled();
     let damaged = folder.text().replace("steps = 300", "steps = -3");
     fs::write(folder.progress(), &damaged).unwrap();
@@ -31,7 +31,7 @@ fn a_damaged_value_costs_its_result_only() {
 }
 
 #[test]
-fn what_is_no_text_is_put_aside_and_begun_again() {
+fn a_file_that_is_not_text_is_set_aside_and_replaced() {
     let folder = filled();
     fs::write(folder.progress(), b"\xff\xfe\0\0 version = 1").unwrap();
     let (mut store, sentence) = Store::open(&folder.0);
@@ -43,7 +43,7 @@ fn what_is_no_text_is_put_aside_and_begun_again() {
 }
 
 #[test]
-fn a_file_that_is_damaged_during_the_game_is_completed_from_memory() {
+fn a_file_damaged_during_the_game_is_completed_from_memory() {
     let folder = filled();
     let mut store = sound(&folder.0);
     fs::write(folder.progress(), "version = 1\n[best.cellar\n").unwrap();
@@ -57,7 +57,7 @@ fn a_file_that_is_damaged_during_the_game_is_completed_from_memory() {
 }
 
 #[test]
-fn a_file_of_a_newer_version_is_left_alone() {
+fn a_file_from_a_newer_version_is_left_alone() {
     let folder = filled();
     let newer = folder.text().replace("version = 3", "version = 4") + "[unknown]\n";
     fs::write(folder.progress(), &newer).unwrap();
@@ -69,7 +69,7 @@ fn a_file_of_a_newer_version_is_left_alone() {
 }
 
 #[test]
-fn a_file_that_is_too_large_is_put_aside_unread() {
+fn an_oversized_file_is_set_aside_unread() {
     let folder = filled();
     fs::File::create(folder.progress()).unwrap().set_len(1 << 40).unwrap();
     let (store, sentence) = Store::open(&folder.0);
@@ -80,7 +80,7 @@ fn a_file_that_is_too_large_is_put_aside_unread() {
 }
 
 #[test]
-fn a_script_that_is_damaged_is_no_script() {
+fn a_damaged_script_is_ignored() {
     let folder = filled();
     let script = folder.0.join("runs/cellar.normal.300.script");
     fs::write(&script, b"\xff").unwrap();
@@ -93,7 +93,7 @@ fn a_script_that_is_damaged_is_no_script() {
 }
 
 #[test]
-fn a_folder_that_is_a_file_stops_no_game() {
+fn a_file_in_place_of_the_folder_does_not_stop_the_game() {
     let folder = Folder::new();
     fs::create_dir_all(&folder.0).unwrap();
     fs::write(folder.0.join("file"), "").unwrap();
@@ -109,7 +109,7 @@ proptest! {
 
     /// A truncated number would look like a better result.
     #[test]
-    fn a_truncated_file_shows_nothing_that_was_not_there(index: prop::sample::Index) {
+    fn a_truncated_file_invents_nothing(index: prop::sample::Index) {
         let mut store = Store::in_memory();
         fill(&mut store);
         let text = store.progress.to_string();
@@ -127,7 +127,7 @@ proptest! {
     }
 
     #[test]
-    fn no_content_stops_the_program(content: Vec<u8>, flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..8)) {
+    fn reading_any_content_never_panics(content: Vec<u8>, flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..8)) {
         _ = text::read(&content);
         let mut store = Store::in_memory();
         fill(&mut store);
@@ -140,7 +140,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_reads_as_the_same(levels in prop::collection::vec(("(?s).{0,12}", any::<u32>()), 0..6)) {
+    fn written_progress_reads_back_unchanged(levels in prop::collection::vec(("(?s).{0,12}", any::<u32>()), 0..6)) {
         let mut store = Store::in_memory();
         fill(&mut store);
         for (level, steps) in &levels {
@@ -167,7 +167,7 @@ fn the_newest_three_damaged_files_are_kept() {
 
 #[cfg(unix)]
 #[test]
-fn what_is_no_file_is_named_and_never_waited_for() {
+fn a_named_pipe_is_reported_and_never_waited_for() {
     let pipe = |path: &Path| {
         _ = fs::remove_file(path);
         assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -187,7 +187,7 @@ fn what_is_no_file_is_named_and_never_waited_for() {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_can_read_what_is_kept() {
+fn other_users_cannot_read_the_store() {
     use std::os::unix::fs::PermissionsExt;
     let folder = filled();
     let mode = |name: &str| fs::metadata(folder.0.join(name)).unwrap().permissions().mode() & 0o777;

@@ -124,7 +124,7 @@ fn a_power_cut_leaves_the_state_before_or_after_a_change() {
 }
 
 #[test]
-fn what_one_failure_prevents_the_next_change_makes_up_for() {
+fn the_next_change_makes_up_for_a_failed_one() {
     let (states, operations) = states();
     for failure in 0..operations {
         let folder = Folder::new();
@@ -139,7 +139,7 @@ fn what_one_failure_prevents_the_next_change_makes_up_for() {
 }
 
 #[test]
-fn repairing_loses_nothing_at_a_power_cut() {
+fn a_power_cut_during_repair_loses_nothing() {
     let damaged = |folder: &Folder| {
         fill(&mut sound(&folder.0));
         let text = folder.text().replace("steps = 300", "steps = -3");
@@ -162,7 +162,7 @@ fn repairing_loses_nothing_at_a_power_cut() {
 }
 
 #[test]
-fn a_folder_that_can_only_be_read_stops_no_game() {
+fn a_read_only_folder_does_not_stop_the_game() {
     let folder = Folder::new();
     fill(&mut sound(&folder.0));
     let (mut store, _) = failing(&folder, 1, usize::MAX);

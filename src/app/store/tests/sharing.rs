@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::*;
 
 #[test]
-fn games_at_once_lose_nothing() {
+fn concurrent_games_lose_nothing() {
     const GAMES: u64 = 4;
     const RUNS: u64 = 12;
     let folder = Folder::new();
@@ -36,7 +36,7 @@ fn games_at_once_lose_nothing() {
 }
 
 #[test]
-fn a_game_sees_what_another_one_has_changed() {
+fn a_game_sees_changes_by_another() {
     let folder = Folder::new();
     let (mut one, mut other) = (sound(&folder.0), sound(&folder.0));
     one.record("cellar", Normal, run(300, Rank::Thief));
@@ -50,7 +50,7 @@ fn a_game_sees_what_another_one_has_changed() {
 }
 
 #[test]
-fn a_game_goes_on_while_another_one_holds_the_lock() {
+fn a_game_continues_while_another_holds_the_lock() {
     let folder = Folder::new();
     let mut store = sound(&folder.0);
     store.record("cellar", Normal, run(300, Rank::Thief));

@@ -6,7 +6,7 @@ use crate::cast::{CommonOrder, Hit, Walk};
 proptest! {
     /// Without mirrors, the walk equals the walk in the exact order, with the same distances.
     #[test]
-    fn without_mirrors_it_is_the_plain_walk(
+    fn without_mirrors_it_equals_the_plain_walk(
         origin in (-3.0..9.0, -3.0..7.0),
         direction in (-1.0..1.0, -1.0..1.0),
     ) {

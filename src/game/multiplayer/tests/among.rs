@@ -40,7 +40,7 @@ fn assert_apart(game: &Game, ids: &[PlayerId]) {
 }
 
 #[test]
-fn players_begin_apart_and_look_where_the_level_looks() {
+fn players_start_apart_with_the_levels_heading() {
     let hall = ["#########", "#.......#", "#...@...#", "#.......#", "#########"];
     let mut game = Game::for_players(level(&hall, "", ""), RULES, MultiplayerRules::default());
     let ids = [(); 8].map(|()| game.join(PlayerColor::Red).unwrap());
@@ -53,7 +53,7 @@ fn players_begin_apart_and_look_where_the_level_looks() {
 }
 
 #[test]
-fn players_begin_on_this_side_of_doors_and_hazards_as_far_as_possible() {
+fn players_start_on_this_side_of_doors_and_hazards_if_possible() {
     let rows = ["###########", "#...D@s...#", "#####.#####", "####..._###", "###########"];
     let tiles = "D = { door = 'oak' }\n_ = { floor_height = 0.3 }";
     let things = "s = { spikes = 1.0 }";
@@ -72,7 +72,7 @@ fn players_begin_on_this_side_of_doors_and_hazards_as_far_as_possible() {
 }
 
 #[test]
-fn players_begin_out_of_the_sight_of_guards_as_far_as_possible() {
+fn players_start_out_of_sight_of_guards_if_possible() {
     let rows = ["########", "####..G#", "####.###", "#...@###", "########"];
     let things = "G = { guard = 'warden', heading = 180 }";
     let (mut game, mut ids) =
@@ -96,7 +96,7 @@ fn players_push_against_each_other_and_slide_past() {
 }
 
 #[test]
-fn walking_through_each_other_is_a_rule() {
+fn a_rule_lets_players_walk_through_each_other() {
     let rules = MultiplayerRules { collides: false, ..rules(Strikes::Nobody) };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
@@ -106,7 +106,7 @@ fn walking_through_each_other_is_a_rule() {
 }
 
 #[test]
-fn a_blow_pushes_or_stuns_by_the_rules() {
+fn a_blow_pushes_or_stuns_as_the_rules_say() {
     for strikes in [Strikes::Nobody, Strikes::Push, Strikes::Stun] {
         let (mut game, ids) = with_players(level(&HALL, "", ""), rules(strikes), 2);
         let before = position(&game, ids[1]);
@@ -142,7 +142,7 @@ fn a_stunned_player_is_spared_for_a_while() {
 }
 
 #[test]
-fn acts_are_judged_by_the_step_that_the_player_saw() {
+fn acts_are_judged_at_the_step_that_the_player_saw() {
     for (lag, hits) in [(0, false), (15, true), (40, true)] {
         let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
         // The players are one cell apart, and the second one runs away.
@@ -166,7 +166,7 @@ fn acts_are_judged_by_the_step_that_the_player_saw() {
 }
 
 #[test]
-fn touching_is_judged_in_the_past_too() {
+fn touching_can_be_judged_at_a_past_step() {
     let rules = MultiplayerRules { collides: false, ..MultiplayerRules::default() };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
     assert!(!game.touches(ids[0], ids[1], game.steps()), "they begin apart");
@@ -185,7 +185,7 @@ fn touching_is_judged_in_the_past_too() {
 }
 
 #[test]
-fn keys_fall_back_and_treasure_counts_for_all() {
+fn a_leaving_players_keys_return_and_treasure_stays_counted() {
     let text = "treasure_needed = 20\ngrid = '''\n########\n#.@k.t.D.X#\n########\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
                 D = { door = 'oak', key = 'brass' }\n[things]\n'@' = { start = 0 }\nk = { key = 'brass' }\n\
                 t = { treasure = 20 }\nX = { exit = true }";
@@ -216,7 +216,7 @@ fn keys_fall_back_and_treasure_counts_for_all() {
 }
 
 #[test]
-fn the_dead_go_on_from_their_own_checkpoint_where_the_rules_say_so() {
+fn a_rule_lets_the_dead_resume_from_their_own_checkpoint() {
     let rows = ["###########", "#@.u...s..#", "###########"];
     let things = "u = { checkpoint = true }\ns = { spikes = 1.0 }";
     for respawns in [true, false] {
@@ -247,7 +247,7 @@ fn the_dead_go_on_from_their_own_checkpoint_where_the_rules_say_so() {
 }
 
 #[test]
-fn plates_and_doors_feel_every_player() {
+fn every_player_works_plates_and_doors() {
     let tiles =
         "p = { plate = 'gate', floor = '#808080' }\nG = { door = 'metal', switch = 'gate' }";
     let rows = ["#########", "#.@p...G.", "#########"];
@@ -262,7 +262,7 @@ fn plates_and_doors_feel_every_player() {
 }
 
 #[test]
-fn players_hear_each_other_and_guards_chase_whom_they_see() {
+fn players_hear_each_other_and_guards_chase_anyone_in_sight() {
     let rows = ["##############", "#@......G....#", "##############"];
     let things = "G = { guard = 'warden', heading = 180 }";
     let (mut game, ids) = with_players(level(&rows, "", things), MultiplayerRules::default(), 2);
@@ -288,7 +288,7 @@ fn players_hear_each_other_and_guards_chase_whom_they_see() {
 }
 
 #[test]
-fn the_map_shows_whom_the_rules_say() {
+fn the_rules_decide_which_players_the_map_shows() {
     let rows = ["@.#..", "..+..", "..#.."];
     for (sees, count) in [(Sees::Nobody, 0), (Sees::InSight, 1), (Sees::All, 2)] {
         let rules = MultiplayerRules { sees, ..MultiplayerRules::default() };

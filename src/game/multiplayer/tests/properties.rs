@@ -82,7 +82,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn any_sequence_leaves_a_valid_state_and_the_same_one_again(
+    fn any_sequence_gives_a_valid_and_repeatable_state(
         rules in rules(),
         events in prop::collection::vec(event(), 0..16),
     ) {
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn one_player_plays_as_in_a_game_for_one(rules in rules(), script in script()) {
+    fn one_player_plays_as_in_a_single_player_game(rules in rules(), script in script()) {
         let mut alone = Game::with_rules(world(EVERYTHING), RULES);
         let (mut game, ids) = with_players(world(EVERYTHING), rules, 1);
         for (steps, held) in &script {
@@ -114,7 +114,7 @@ proptest! {
     }
 
     #[test]
-    fn those_who_have_left_change_nothing(script in script(), count in 1..6_usize) {
+    fn players_who_have_left_change_nothing(script in script(), count in 1..6_usize) {
         let rules = MultiplayerRules { collides: true, ..MultiplayerRules::default() };
         let mut games = [0; 2].map(|_| with_players(world(EVERYTHING), rules, 1).0);
         for (steps, held) in &script {
@@ -130,7 +130,7 @@ proptest! {
     }
 
     #[test]
-    fn waiting_is_as_many_steps(steps in 0..200_u64, wins in any::<bool>()) {
+    fn waiting_equals_taking_as_many_steps(steps in 0..200_u64, wins in any::<bool>()) {
         let (mut game, ids) = with_players(level(&["@.X"], "", "X = { exit = true }"), MultiplayerRules::default(), 1);
         prop_assert!(!game.is_at_rest(Intents::new()));
         if wins {

@@ -32,7 +32,7 @@ fn play_on(start: &Game, bytes: &[u8], steps: usize) -> Result<(), Unrestorable>
 }
 
 #[test]
-fn every_part_of_the_bytes_is_refused() {
+fn truncated_bytes_are_refused() {
     let (start, bytes) = stored(EVERYTHING, 3, 900);
     for length in 0..bytes.len() {
         let refused = start.clone().restored(&bytes[..length]);
@@ -44,7 +44,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn damaged_bytes_are_refused_or_a_game(
+    fn damaged_bytes_are_refused_or_give_a_game(
         seed in 0..8_u64,
         flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..4),
     ) {
@@ -58,7 +58,7 @@ proptest! {
     }
 
     #[test]
-    fn replaced_bytes_are_refused_or_a_game(
+    fn replaced_bytes_are_refused_or_give_a_game(
         seed in 0..8_u64,
         place: prop::sample::Index,
         new in prop::collection::vec(any::<u8>(), 1..9),

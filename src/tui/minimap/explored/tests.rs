@@ -137,7 +137,7 @@ proptest! {
     /// Rays that take the shortcut through cells with the observer's own gap see the same as rays
     /// that do not.
     #[test]
-    fn the_shortcut_through_equal_cells_sees_the_same(
+    fn the_shortcut_through_equal_cells_sees_the_same_cells(
         tiles in prop::collection::vec(0..40_usize, SIDE * SIDE),
         place in (1..11_usize, 1..11_usize, 0..5_usize, 0..5_usize),
         degrees in prop_oneof![(0..8_u32).prop_map(|eighth| f64::from(eighth) * 45.0), 0.0..360.0],
@@ -169,7 +169,7 @@ proptest! {
     }
 
     #[test]
-    fn on_a_flat_map_exactly_the_cells_that_rays_cross_are_seen(
+    fn a_flat_map_shows_exactly_the_cells_that_rays_cross(
         walls in prop::collection::vec(prop::bool::weighted(0.2), SIDE * SIDE),
         position in (1.01..10.99, 1.01..10.99),
         degrees in 0.0..360.0,

@@ -122,7 +122,7 @@ fn every_picture_shows_something_and_leaves_something_clear() {
 }
 
 #[test]
-fn frames_that_a_game_selects_are_not_animated() {
+fn frames_selected_by_the_game_are_not_animated() {
     let frames = |name| {
         let sprite = named(name).unwrap();
         (sprite.animated_frames(), sprite.frames())
@@ -133,7 +133,7 @@ fn frames_that_a_game_selects_are_not_animated() {
 }
 
 #[test]
-fn all_pictures_of_a_sprite_are_of_one_size_and_differ() {
+fn a_sprites_pictures_share_one_size_and_differ() {
     for (name, sprite) in all() {
         let first = &sprite.pictures[0];
         for (index, picture) in sprite.pictures.iter().enumerate() {
@@ -196,7 +196,7 @@ fn mean(picture: &Texture) -> Rgb {
 }
 
 #[test]
-fn pictures_are_of_one_size_differ_and_show_a_figure() {
+fn pictures_share_one_size_differ_and_show_a_figure() {
     for kind in GuardKind::ALL {
         let sprite = sprite(kind);
         assert_eq!((sprite.frames(), sprite.animated_frames()), (8, 1));
@@ -317,7 +317,7 @@ fn pictures_differ_show_a_figure_and_are_not_cut() {
 }
 
 #[test]
-fn no_dye_is_left() {
+fn no_dye_placeholder_remains() {
     for color in PlayerColor::ALL {
         for picture in player(color).unwrap().pictures() {
             let is_dye = |&(x, y): &(u32, u32)| {

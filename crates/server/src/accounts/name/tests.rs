@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 
 #[test]
-fn names_of_many_scripts_are_names() {
+fn names_may_use_many_scripts() {
     for text in [
         "Ada",
         "bob_7",
@@ -32,7 +32,7 @@ fn names_of_many_scripts_are_names() {
 }
 
 #[test]
-fn what_is_no_name_is_told_in_a_sentence() {
+fn invalid_names_are_refused_with_a_sentence() {
     let mut sentences = BTreeSet::new();
     for (text, fault) in [
         ("", NameFault::Short),
@@ -94,7 +94,7 @@ fn names_that_look_alike_share_a_key() {
 }
 
 #[test]
-fn no_account_has_the_name_of_a_guest() {
+fn an_account_cannot_have_a_guest_name() {
     for number in [0, 1, u32::MAX] {
         let name = Name::of_guest(number);
         assert!(name.is_reserved() && name.as_str().width() <= Name::MAX_COLUMNS);
@@ -146,7 +146,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2048))]
 
     #[test]
-    fn every_name_is_printable_and_is_its_own_name(text in texts()) {
+    fn every_name_is_printable_and_round_trips(text in texts()) {
         if let Ok(name) = Name::new(&text) {
             let text = name.as_str();
             prop_assert!((Name::MIN_COLUMNS..=Name::MAX_COLUMNS).contains(&text.width()));
@@ -157,7 +157,7 @@ proptest! {
     }
 
     #[test]
-    fn names_without_a_common_key_have_other_skeletons(one in texts(), other in texts()) {
+    fn names_with_different_keys_have_different_skeletons(one in texts(), other in texts()) {
         if let (Ok(one), Ok(other)) = (Name::new(&one), Name::new(&other)) {
             let skeleton = |name: &Name| -> String {
                 skeleton(name.as_str()).collect()
@@ -173,7 +173,7 @@ proptest! {
     }
 
     #[test]
-    fn other_case_looks_alike(text in texts()) {
+    fn names_that_differ_in_case_look_alike(text in texts()) {
         if let Ok(name) = Name::new(&text) {
             for other in [name.as_str().to_uppercase(), name.as_str().to_lowercase()] {
                 if let Ok(other) = Name::new(&other) {
@@ -184,7 +184,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_printable_takes_its_columns(text in any::<String>(), columns in 0..40_usize) {
+    fn printable_text_fits_its_columns(text in any::<String>(), columns in 0..40_usize) {
         let line = printable(&text, columns);
         prop_assert!(line.chars().map(|c| c.width().unwrap()).sum::<usize>() <= columns);
         prop_assert!(line.chars().all(|c| !c.is_control() && c.width() != Some(0)));

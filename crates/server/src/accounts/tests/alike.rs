@@ -110,7 +110,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn a_server_answers_as_a_file_does(calls in calls()) {
+    fn a_server_answers_like_a_file(calls in calls()) {
         let (mut server, mut file, mut day) = (on_server(), HostStore::in_memory(), 0);
         for (days, call) in calls {
             day += days;

@@ -26,7 +26,7 @@ fn accounts(store: &mut HostStore) -> usize {
 }
 
 #[test]
-fn what_is_kept_is_there_after_a_restart() {
+fn stored_data_survives_a_restart() {
     let folder = Folder::new();
     filled(&folder.0);
     let mut store = HostStore::open(&folder.0).unwrap();
@@ -36,7 +36,7 @@ fn what_is_kept_is_there_after_a_restart() {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_reads_it() {
+fn only_its_owner_can_read_the_file() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let inner = folder.0.join("a/b");
@@ -111,7 +111,7 @@ fn assert_refused(folder: &Folder) {
 }
 
 #[test]
-fn a_damaged_file_is_refused_and_if_that_is_accepted_what_can_be_read_stays() {
+fn a_damaged_file_is_refused_or_salvaged_on_request() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     let mut content = fs::read(&file).unwrap();
@@ -132,7 +132,7 @@ fn a_damaged_file_is_refused_and_if_that_is_accepted_what_can_be_read_stays() {
 }
 
 #[test]
-fn a_file_without_anything_readable_is_refused_and_kept() {
+fn an_unreadable_file_is_refused_and_kept() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     for (number, content) in
@@ -149,7 +149,7 @@ fn a_file_without_anything_readable_is_refused_and_kept() {
 }
 
 #[test]
-fn a_file_cut_short_is_refused_and_kept() {
+fn a_truncated_file_is_refused_and_kept() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     let content = fs::read(&file).unwrap();
@@ -177,7 +177,7 @@ fn a_log_without_its_file_is_refused_and_kept() {
 
 /// SQLite itself reports that there is no room.
 #[test]
-fn a_full_disk_is_told_from_other_failures() {
+fn a_full_disk_is_distinguished_from_other_failures() {
     let folder = Folder::new();
     let mut store = HostStore::open(&folder.0).unwrap();
     let account = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
@@ -224,7 +224,7 @@ fn other_files_are_left_alone() {
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_named_and_not_waited_for() {
+fn a_named_pipe_is_refused_without_waiting() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     fs::remove_file(&file).unwrap();
@@ -239,7 +239,7 @@ fn a_pipe_is_named_and_not_waited_for() {
 }
 
 #[test]
-fn a_reader_sees_what_a_host_writes() {
+fn a_reader_sees_the_changes_of_a_host() {
     let folder = Folder::new();
     assert!(HostStore::open_to_read(&folder.0).unwrap().is_none());
     assert!(!folder.0.exists());

@@ -45,7 +45,7 @@ fn many_leases_are_renewed_at_once() {
 }
 
 #[test]
-fn epochs_grow_also_over_a_release() {
+fn epochs_grow_even_after_a_release() {
     with_each_clock(|leases| {
         let mut last = 0;
         for round in 0..6 {
@@ -62,7 +62,7 @@ fn epochs_grow_also_over_a_release() {
 }
 
 #[test]
-fn a_room_that_is_forgotten_begins_anew() {
+fn a_forgotten_room_starts_again_at_epoch_one() {
     with_each_clock(|leases| {
         let old = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
         leases.release(&old).unwrap();
@@ -77,7 +77,7 @@ fn a_room_that_is_forgotten_begins_anew() {
 }
 
 #[test]
-fn a_lease_that_is_over_can_be_taken() {
+fn an_expired_lease_can_be_taken() {
     with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
         wait(leases, SHORT * 2);
@@ -90,7 +90,7 @@ fn a_lease_that_is_over_can_be_taken() {
 }
 
 #[test]
-fn a_lease_that_is_over_and_not_taken_can_be_renewed() {
+fn an_expired_lease_can_be_renewed_if_nobody_took_it() {
     with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
         wait(leases, SHORT * 2);
@@ -113,7 +113,7 @@ fn a_renewed_lease_lasts() {
 }
 
 #[test]
-fn an_epoch_is_above_that_which_the_caller_knows() {
+fn a_new_epoch_exceeds_the_one_the_caller_knows() {
     with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", LONG, 41).unwrap().unwrap();
         assert_eq!(lease.epoch, 42);
@@ -172,7 +172,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
-    fn no_two_hosts_have_a_room_at_once_or_an_epoch_ever(events in events()) {
+    fn no_two_hosts_share_a_room_or_an_epoch(events in events()) {
         let (mut leases, mut now) = (HostStore::in_memory(), 0);
         let mut known: Vec<Vec<Option<Known>>> = vec![vec![None; ROOMS.len()]; HOSTS.len()];
         let mut owners: Vec<Vec<(u64, usize)>> = vec![Vec::new(); ROOMS.len()];
@@ -218,7 +218,7 @@ proptest! {
 
 #[cfg(all(unix, feature = "system-tests"))]
 #[test]
-fn of_hosts_that_take_a_lease_at_once_one_has_it() {
+fn hosts_racing_for_a_lease_have_one_winner() {
     let address = postgres_server::PostgresServer::shared().address();
     let mut last = 0;
     for round in 0..20 {

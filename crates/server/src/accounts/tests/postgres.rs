@@ -41,7 +41,7 @@ fn at_once<T: Send>(
 }
 
 #[test]
-fn hosts_that_start_at_once_make_the_tables_once() {
+fn hosts_starting_together_create_the_tables_once() {
     let server = PostgresServer::shared();
     for _ in 0..4 {
         let address = server.address();
@@ -54,7 +54,7 @@ fn hosts_that_start_at_once_make_the_tables_once() {
 }
 
 #[test]
-fn what_one_host_keeps_another_one_shows() {
+fn each_host_sees_the_data_of_the_others() {
     let address = PostgresServer::shared().address();
     let (mut one, mut other) = (open(&address), open(&address));
     let ada = one.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
@@ -70,7 +70,7 @@ fn what_one_host_keeps_another_one_shows() {
 }
 
 #[test]
-fn of_hosts_that_create_a_name_at_once_one_does() {
+fn hosts_racing_to_create_a_name_create_one() {
     let address = PostgresServer::shared().address();
     for round in 0..12_u8 {
         let text = format!("Bill-{round}");
@@ -88,7 +88,7 @@ fn of_hosts_that_create_a_name_at_once_one_does() {
 }
 
 #[test]
-fn of_hosts_that_create_the_account_of_a_key_at_once_one_does() {
+fn hosts_racing_to_create_an_account_create_one() {
     let address = PostgresServer::shared().address();
     for round in 0..12_u8 {
         let answers = at_once(&address, 4, |host, store| {
@@ -101,7 +101,7 @@ fn of_hosts_that_create_the_account_of_a_key_at_once_one_does() {
 }
 
 #[test]
-fn of_accounts_that_take_a_name_at_once_one_has_it() {
+fn accounts_racing_for_a_name_have_one_winner() {
     let address = PostgresServer::shared().address();
     let mut store = open(&address);
     let accounts: Vec<_> = (1..=4_u8)
@@ -126,7 +126,7 @@ fn of_accounts_that_take_a_name_at_once_one_has_it() {
 }
 
 #[test]
-fn results_that_come_at_once_leave_the_best() {
+fn simultaneous_results_leave_the_best() {
     let address = PostgresServer::shared().address();
     let ada = open(&address).create_account(None, &key(1), &name("Ada"), at(0)).unwrap().id;
     at_once(&address, 4, |host, store| {
@@ -142,7 +142,7 @@ fn results_that_come_at_once_leave_the_best() {
 }
 
 #[test]
-fn databases_of_others_are_left_alone() {
+fn databases_of_other_programs_are_left_alone() {
     let server = PostgresServer::shared();
     let refused = |address: &str| {
         let sentence = HostStore::connect(address).unwrap_err().to_string();
@@ -165,7 +165,7 @@ fn databases_of_others_are_left_alone() {
 }
 
 #[test]
-fn a_database_of_an_older_version_is_left_alone() {
+fn an_older_database_is_left_alone() {
     let server = PostgresServer::shared();
     let address = server.address();
     server.sql(&format!(

@@ -45,7 +45,7 @@ fn refused(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Du
 }
 
 #[test]
-fn the_visits_of_somebody_are_limited_over_all_hosts() {
+fn a_visitor_is_limited_across_all_hosts() {
     with_each_clock(|presence| {
         announce(presence, &["one", "other", "third"]);
         let first = begin(presence, "one", &ada(), 2);
@@ -71,7 +71,7 @@ fn the_visits_of_somebody_are_limited_over_all_hosts() {
 }
 
 #[test]
-fn visits_count_while_their_host_is_there() {
+fn visits_count_while_their_host_is_present() {
     with_each_clock(|presence| {
         announce(presence, &["one", "killed"]);
         begin(presence, "one", &ada(), 1);
@@ -92,7 +92,7 @@ fn visits_count_while_their_host_is_there() {
 }
 
 #[test]
-fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
+fn a_refusal_reports_the_age_of_the_oldest_host_it_needs() {
     with_each_clock(|presence| {
         announce(presence, &["old", "one", "other"]);
         for host in ["old", "one", "other"] {
@@ -106,7 +106,7 @@ fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
 }
 
 #[test]
-fn a_host_is_there_while_it_announces_itself() {
+fn a_host_is_present_while_it_announces_itself() {
     with_each_clock(|presence| {
         presence.announce(&notice("one", 1)).unwrap();
         presence.announce(&notice("other", 2)).unwrap();
@@ -124,7 +124,7 @@ fn a_host_is_there_while_it_announces_itself() {
 
 #[cfg(all(unix, feature = "system-tests"))]
 #[test]
-fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
+fn simultaneous_visits_do_not_exceed_the_limit() {
     let address = postgres_server::PostgresServer::shared().address();
     let hosts = ["a", "b", "c", "d", "e", "f"];
     announce(&mut HostStore::connect(&address).unwrap(), &hosts);

@@ -19,7 +19,7 @@ fn create(
 }
 
 #[test]
-fn a_network_makes_so_many_accounts() {
+fn accounts_per_network_are_limited() {
     with_each(|store| {
         for number in 0..3 {
             create(store, &format!("192.0.2.{number}"), number, 0).unwrap();
@@ -54,7 +54,7 @@ fn a_network_makes_so_many_accounts() {
 
 #[cfg(all(unix, feature = "system-tests"))]
 #[test]
-fn hosts_count_the_accounts_of_a_network_together() {
+fn hosts_count_accounts_per_network_together() {
     let address = postgres_server::PostgresServer::shared().address();
     HostStore::connect(&address).unwrap();
     let made: usize = std::thread::scope(|scope| {

@@ -21,7 +21,7 @@ fn cellar(store: &mut HostStore) -> Vec<LevelScore> {
 }
 
 #[test]
-fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
+fn results_survive_the_host_and_keep_their_own_time() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     for (number, text) in [(1, "Ada"), (2, "Bob")] {
         store.create_account(None, &key(number), &name(text), at(0)).unwrap();
@@ -56,7 +56,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 }
 
 #[test]
-fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() {
+fn refused_results_wait_a_week_and_invalid_ones_do_not_wait() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     let mut waiting = waiting(&folder);
@@ -77,7 +77,7 @@ fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() 
 }
 
 #[test]
-fn the_file_is_bounded_and_what_cannot_be_read_is_put_aside() {
+fn the_file_is_bounded_and_a_damaged_one_is_set_aside() {
     let folder = Folder::new();
     let mut waiting = waiting(&folder);
     let long = "#".repeat(6 << 20);
@@ -100,7 +100,7 @@ fn the_file_is_bounded_and_what_cannot_be_read_is_put_aside() {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_reads_the_file() {
+fn only_its_owner_can_read_the_file() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let mut waiting = waiting(&folder);
@@ -111,7 +111,7 @@ fn nobody_else_reads_the_file() {
 }
 
 #[test]
-fn what_cannot_be_written_waits_in_memory_until_it_can() {
+fn unwritten_results_wait_in_memory() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     let mut results = waiting(&folder);

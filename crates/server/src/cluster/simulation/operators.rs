@@ -67,7 +67,7 @@ fn remove(name: &str) -> AdminRequest {
 }
 
 #[test]
-fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
+fn operators_see_and_reach_visitors_on_all_hosts() {
     run(async |mut hosts| {
         let everybody = ["p0 host:0", "p1 host:1", "p2 host:2"].map(str::to_owned).to_vec();
         assert_eq!(hosts.who().await, (everybody, vec![]));
@@ -87,7 +87,7 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
 }
 
 #[test]
-fn hosts_are_listed_with_those_that_do_not_answer() {
+fn the_host_list_includes_unresponsive_hosts() {
     run(async |hosts| {
         hosts.run.world.set(2, |link| link.is_cut = true);
         let (reply, remarks) = hosts.answer(AdminRequest::Hosts).await;
@@ -113,7 +113,7 @@ fn hosts_are_listed_with_those_that_do_not_answer() {
 }
 
 #[test]
-fn without_the_bus_or_the_database_an_operator_sees_what_there_is() {
+fn operators_see_partial_results_without_the_bus_or_the_database() {
     run(async |hosts| {
         hosts.run.world.set(0, |link| link.has_no_database = true);
         let (rows, remarks) = hosts.who().await;
@@ -128,7 +128,7 @@ fn without_the_bus_or_the_database_an_operator_sees_what_there_is() {
 }
 
 #[test]
-fn the_answer_of_a_host_has_so_many_visitors_and_fits_into_a_message() {
+fn a_host_reply_limits_its_visitors_to_fit_in_a_message() {
     run(async |hosts| {
         let key = Some(AccountKey::new([255; 32]));
         let crowd: Vec<Presence> = (0..2_010)

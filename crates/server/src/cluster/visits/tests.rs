@@ -106,7 +106,7 @@ fn new_visit(key: u8, last: u8) -> NewVisit {
 const TOO_MANY_KEYS: VisitRefusal = VisitRefusal::TooMany(Refusal::Key);
 
 #[test]
-fn a_key_and_an_address_are_limited_over_all_hosts() {
+fn keys_and_addresses_are_limited_across_all_hosts() {
     run(async |hosts| {
         let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let came = Instant::now();
@@ -123,7 +123,7 @@ fn a_key_and_an_address_are_limited_over_all_hosts() {
 }
 
 #[test]
-fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
+fn a_returning_visitor_waits_until_the_killed_host_expires() {
     run(async |hosts| {
         let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         sleep(Duration::from_secs(10)).await;
@@ -137,7 +137,7 @@ fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
 }
 
 #[test]
-fn what_ends_while_the_database_is_away_is_ended_later() {
+fn visits_that_end_during_an_outage_are_removed_later() {
     run(async |hosts| {
         let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let other = hosts.begin(0, new_visit(2, 2)).await.unwrap();
@@ -156,7 +156,7 @@ fn what_ends_while_the_database_is_away_is_ended_later() {
 }
 
 #[test]
-fn a_visitor_who_has_gone_before_the_answer_counts_no_more() {
+fn a_visitor_who_leaves_before_the_reply_does_not_count() {
     run(async |hosts| {
         let begin = hosts.begin(0, new_visit(1, 1));
         assert!(tokio::time::timeout(Duration::ZERO, begin).await.is_err());
@@ -167,7 +167,7 @@ fn a_visitor_who_has_gone_before_the_answer_counts_no_more() {
 }
 
 #[test]
-fn a_host_that_ends_has_nobody() {
+fn a_stopped_host_has_no_visits() {
     run(async |hosts| {
         let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let host = &hosts.running[0].visits;

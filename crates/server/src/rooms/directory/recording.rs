@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oldest_recordings_go_first_and_never_one_that_is_written() {
+    fn the_oldest_finished_recordings_are_removed_first() {
         let place = TemporaryFolder::new("oldest").with_old(&[
             ("room-1.log", 2),
             ("room-2.log", 3),
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn recordings_of_more_than_thirty_days_are_removed() {
+    fn recordings_older_than_thirty_days_are_removed() {
         let place = TemporaryFolder::new("age").with_old(&[("room-1.log", 29), ("room-2.log", 31)]);
         let _folder = place.open(1 << 20);
         assert_eq!(place.names(), ["room-1.log"]);
@@ -379,7 +379,7 @@ mod tests {
 
     /// The folder stays within its limit, no matter how many rooms write how much, and every recording can be parsed.
     #[test]
-    fn a_folder_never_has_more_than_its_bytes() {
+    fn a_folder_never_exceeds_its_size_limit() {
         let place = TemporaryFolder::new("bytes");
         let folder = place.open(8 * BLOCK);
         let mut logs = [1, 2, 3].map(|room| begun(&folder, room));
@@ -402,7 +402,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_that_fills_the_folder_ends_and_the_next_round_takes_its_place() {
+    fn a_recording_that_fills_the_folder_is_replaced_next_round() {
         let place = TemporaryFolder::new("full");
         let folder = place.open(2 * BLOCK);
         let mut log = begun(&folder, 1);

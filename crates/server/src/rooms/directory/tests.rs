@@ -87,7 +87,7 @@ async fn listed(rooms: &Rooms, ids: &[u32]) {
 }
 
 #[test]
-fn a_panic_ends_its_room_alone() {
+fn a_panic_ends_only_its_own_room() {
     let text = run(async || {
         let rooms = rooms(&[2]);
         let mut ben = rooms.enter(RoomId(1), &name("Ben")).unwrap();
@@ -110,7 +110,7 @@ fn a_panic_ends_its_room_alone() {
 }
 
 #[test]
-fn a_standing_room_that_panics_is_opened_anew() {
+fn a_standing_room_that_panics_is_reopened() {
     run(async || {
         let rooms = rooms(&[1]);
         let mut ada = rooms.enter(RoomId(1), &name("Ada")).unwrap();
@@ -124,7 +124,7 @@ fn a_standing_room_that_panics_is_opened_anew() {
 
 /// Rooms that everybody has left are closed. Only the standing rooms remain.
 #[test]
-fn rooms_that_are_left_are_closed_and_forgotten() {
+fn empty_rooms_are_closed_and_forgotten() {
     run(async || {
         let rooms = rooms(&[]);
         for _ in 0..20 {
@@ -140,7 +140,7 @@ fn rooms_that_are_left_are_closed_and_forgotten() {
 }
 
 #[test]
-fn the_end_of_a_round_is_an_event() {
+fn the_end_of_a_round_is_logged() {
     let text = run(async || {
         let rooms = rooms(&[]);
         let header = Header::new("museum", Mode::Hide, Difficulty::default(), 7);
@@ -163,7 +163,7 @@ fn the_end_of_a_round_is_an_event() {
 }
 
 #[test]
-fn a_member_who_returns_by_another_connection_has_another_place() {
+fn a_member_who_returns_on_another_connection_gets_a_new_place() {
     use crate::rooms::room::{CHAT_COLUMNS, Room};
     use crate::simulation;
 

@@ -33,7 +33,7 @@ impl Drop for Scratch {
 }
 
 #[test]
-fn each_toml_file_of_a_folder_is_a_map() {
+fn each_toml_file_in_a_folder_is_a_map() {
     let titled = format!("title = \"The moss\"\n{HALL}");
     let files = [("moss.toml", &*titled), ("hall-2.toml", HALL), ("notes.md", "no map")];
     let folder = Scratch::with("all", &files);
@@ -87,7 +87,7 @@ fn the_number_and_the_size_of_maps_have_limits() {
 }
 
 #[test]
-fn what_is_no_file_is_refused() {
+fn entries_other_than_files_are_refused() {
     let folder = Scratch::with("absent", &[]);
     assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), 0);
     fs::create_dir(folder.0.join("deep.toml")).unwrap();
@@ -97,7 +97,7 @@ fn what_is_no_file_is_refused() {
 }
 
 #[test]
-fn names_are_shown_without_characters_that_a_terminal_obeys() {
+fn names_are_shown_without_control_characters() {
     let folder = Scratch::with("names", &[("a\u{1b}[31m\nb.toml", HALL)]);
     let sentence = r"maps/a\u{1b}[31m\nb.toml needs another name: 1 to 32 of the characters a to z, 0 to 9, - and _, then .toml";
     assert_eq!(folder.fault(), sentence);

@@ -321,7 +321,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn an_entry_reads_as_it_is_written(
+        fn entries_round_trip(
             step: u64,
             member in 0..=MemberId::MAX.0,
             command in command(),
@@ -331,13 +331,13 @@ mod tests {
         }
 
         #[test]
-        fn no_line_is_a_fault_of_the_program(line in any::<String>()) {
+        fn no_line_panics(line in any::<String>()) {
             Entry::parse(&line);
         }
     }
 
     #[test]
-    fn other_lines_are_no_entries() {
+    fn invalid_lines_are_not_entries() {
         for line in [
             "",
             "0",
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_reads_as_it_is_written() {
+    fn headers_round_trip() {
         let seat = |id, points, name| {
             let name = Line::of(name, NAME_COLUMNS).unwrap();
             Seat {
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_room_reaches_is_no_header() {
+    fn impossible_headers_are_refused() {
         let read = |next: &str, rest: &str| {
             let text = format!(
                 "{ROOM_RECORDING}{VERSION}\nlevel museum\nmode tag\ndifficulty hard\nseed 1\nround 1\nnext {next}\n{rest}"

@@ -487,7 +487,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_point_is_a_member_beaten() {
+    fn each_member_beaten_scores_a_point() {
         let score = |(id, rank)| (MemberId(id), Score { rank, steps: Some(rank * 10) });
         let scores = [(1, 5), (2, 3), (3, 5), (4, 9)].map(score).into_iter().collect();
         let places: Vec<_> =
@@ -497,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_ordinals() {
+    fn places_are_written_as_ordinals() {
         let finish = |place| Finish { place, steps: 231 }.to_string();
         let told = [1, 2, 3, 4, 11, 12, 13, 21, 112].map(finish);
         let expected = ["1st", "2nd", "3rd", "4th", "11th", "12th", "13th", "21st", "112th"];

@@ -51,7 +51,7 @@ fn position(room: &Room, member: MemberId) -> glam::DVec2 {
 }
 
 #[test]
-fn members_walk_side_by_side() {
+fn members_walk_independently() {
     let mut room = room(Mode::Roam);
     let [one, other] = ["Mara", "Jon"].map(|name| join(&mut room, name));
     want(&mut room, one, &[Intent::Forward]);
@@ -95,7 +95,7 @@ fn said(room: &Room) -> Vec<String> {
 }
 
 #[test]
-fn all_are_told_of_a_finish_and_of_how_long_the_race_goes_on() {
+fn a_finish_and_the_remaining_time_are_announced() {
     let mut room = room(Mode::Race);
     let [one, other, third] = ["Mara", "Jon", "Kim"].map(|name| join(&mut room, name));
     advance(&mut room, 3 * SECOND + 1);
@@ -122,7 +122,7 @@ fn all_are_told_of_a_finish_and_of_how_long_the_race_goes_on() {
 }
 
 #[test]
-fn members_begin_apart_in_every_round() {
+fn members_start_apart_in_every_round() {
     for mode in Mode::ALL {
         let mut room = room(mode);
         let ids: Vec<MemberId> =
@@ -139,7 +139,7 @@ fn members_begin_apart_in_every_round() {
 }
 
 #[test]
-fn a_touch_passes_it_on() {
+fn a_touch_tags_the_other_player() {
     let mut room = room(Mode::Tag);
     let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
     // The member in front steps back until the two touch.
@@ -163,7 +163,7 @@ fn a_touch_passes_it_on() {
 }
 
 #[test]
-fn seekers_wait_and_find() {
+fn seekers_wait_before_they_find_the_others() {
     let mut room = room(Mode::Hide);
     let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
     advance(&mut room, 1);
@@ -184,7 +184,7 @@ fn seekers_wait_and_find() {
 }
 
 #[test]
-fn a_round_that_nobody_else_joins_waits() {
+fn a_round_waits_for_a_second_member() {
     let mut room = room(Mode::Tag);
     let one = join(&mut room, "Mara");
     advance(&mut room, 100 * SECOND);
@@ -247,7 +247,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn a_log_is_the_room(
+    fn a_log_reproduces_the_room(
         mode in prop::sample::select(&Mode::ALL),
         seed: u64,
         commands in commands(),
@@ -270,7 +270,7 @@ proptest! {
 }
 
 #[test]
-fn a_recording_is_played_again() {
+fn a_recording_can_be_replayed() {
     let header = Header::new("hall", Mode::Race, Difficulty::Normal, 7);
     let mut room = Room::new(&catalog(), header.clone()).unwrap();
     let runs = [Intent::Forward, Intent::Run].into_iter().collect();
@@ -314,7 +314,7 @@ fn last_line(room: &Room) -> String {
 }
 
 #[test]
-fn one_who_is_away_stands_still_and_goes_on_from_there() {
+fn an_away_member_stands_still_and_can_return() {
     let (mut room, [mara, _]) = room_of_two(Mode::Roam);
     want(&mut room, mara, &[Intent::Forward]);
     advance(&mut room, 20);
@@ -337,7 +337,7 @@ fn one_who_is_away_stands_still_and_goes_on_from_there() {
 }
 
 #[test]
-fn one_who_is_away_for_too_long_leaves() {
+fn a_member_who_is_away_for_too_long_leaves() {
     let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, mara, Command::Away);
     advance(&mut room, AWAY - 1);
@@ -351,7 +351,7 @@ fn one_who_is_away_for_too_long_leaves() {
 }
 
 #[test]
-fn a_guest_is_not_away_but_gone() {
+fn a_guest_who_disconnects_leaves_the_room() {
     let (mut room, [_, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, jon, Command::Return { token: 7 });
     assert_eq!(room.kept_place(jon), None);
@@ -360,7 +360,7 @@ fn a_guest_is_not_away_but_gone() {
 }
 
 #[test]
-fn a_round_waits_for_nobody_who_is_away() {
+fn a_round_does_not_wait_for_away_members() {
     let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, mara, Command::Again);
     do_now(&mut room, mara, Command::Away);
@@ -370,7 +370,7 @@ fn a_round_waits_for_nobody_who_is_away() {
 }
 
 #[test]
-fn one_is_away_in_the_next_round_too() {
+fn an_away_member_stays_away_in_the_next_round() {
     let (mut room, [mara, _]) = room_of_two(Mode::Tag);
     do_now(&mut room, mara, Command::Return { token: 7 });
     advance(&mut room, 100);

@@ -23,7 +23,7 @@ fn want(intents: impl IntoIterator<Item = Intent>) -> Command {
 }
 
 #[test]
-fn each_member_has_a_number_and_a_colour_of_their_own() {
+fn each_member_has_a_unique_number_and_colour() {
     let inbox = Inbox::new(Mode::Tag, MemberId(5));
     let ids: Vec<_> = (0..9).map(|_| inbox.join(&line("Mara"))).collect();
     assert_eq!(ids[7], Ok(MemberId(12)));
@@ -41,7 +41,7 @@ fn each_member_has_a_number_and_a_colour_of_their_own() {
 }
 
 #[test]
-fn changes_of_intents_keep_their_order_one_in_a_step() {
+fn intent_changes_keep_their_order_with_one_per_step() {
     let (inbox, id) = inbox();
     taken(&inbox);
     for _ in 0..100 {
@@ -60,7 +60,7 @@ fn changes_of_intents_keep_their_order_one_in_a_step() {
 }
 
 #[test]
-fn a_flood_of_chat_leaves_one_line_a_second() {
+fn a_chat_flood_is_limited_to_one_line_a_second() {
     let (inbox, id) = inbox();
     taken(&inbox);
     let mut said = 0;
@@ -76,7 +76,7 @@ fn a_flood_of_chat_leaves_one_line_a_second() {
 }
 
 #[test]
-fn nothing_is_done_by_who_has_left() {
+fn a_member_who_has_left_does_nothing() {
     let (inbox, id) = inbox();
     inbox.act(id, Command::Say(line("bye"))).unwrap();
     inbox.leave(id);

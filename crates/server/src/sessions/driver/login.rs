@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn the_locale_that_a_client_sends_decides_on_ascii() {
+    fn the_client_locale_decides_on_ascii() {
         for (variables, setting) in [
             ("", None),
             ("LANG=en_GB.UTF-8 LC_TIME=C", None),
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linux_console_is_queried_for_nothing_that_it_prints() {
+    fn a_linux_console_gets_no_queries_that_it_would_print() {
         let options = terminal_options(&visitor("linux", ""));
         assert!(!options.probe_extensions && !options.ask_for_version && !options.is_ascii);
         assert_eq!(options.color_depth.depth(), ColorDepth::Indexed16);

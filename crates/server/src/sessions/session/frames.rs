@@ -156,7 +156,7 @@ mod tests {
     proptest! {
         /// Any sequence of requests draws at most two frames more than the frame rate allows.
         #[test]
-        fn keys_draw_no_more_frames_in_the_long_run(
+        fn keys_do_not_raise_the_frame_rate_in_the_long_run(
             frame_time in 20_u32..500,
             waits in prop::collection::vec((0_u32..400, any::<bool>()), 1..200),
         ) {
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_step_of_the_newest_answered_frame_is_seen() {
+    fn the_seen_step_belongs_to_the_last_acknowledged_frame() {
         let mut shown = ShownSteps::default();
         assert_eq!(shown.seen(7), 0);
         for (frame, step) in [(4, 100), (5, 102), (5, 104), (6, 110)] {

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tap_begins_and_ends_in_steps_of_their_own() {
+    fn a_tap_begins_and_ends_in_separate_steps() {
         let mut intents = IntentQueue::default();
         assert_eq!(intents.next_at(), None);
         let strike: Intents = [Intent::Strike].into_iter().collect();
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn who_moves_tells_again_what_they_saw() {
+    fn a_moving_player_resends_the_seen_step() {
         let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
         intents.set(forward);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_add_up_and_are_sent_once() {
+    fn turns_add_up_and_are_sent_once() {
         let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
         intents.set(forward);
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn only_some_changes_wait() {
+    fn the_number_of_waiting_changes_is_bounded() {
         let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
         for change in 0..1000 {

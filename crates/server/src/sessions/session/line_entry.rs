@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_character_replaces_an_offer() {
+    fn the_first_character_replaces_the_offered_name() {
         let offer = Line::of("guest-fox", 16).unwrap();
         let mut entry = LineEntry::offering(&offer, 16);
         assert_eq!(entry.line(), Some(offer.clone()));
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_printable_and_fits_is_taken() {
+    fn only_printable_characters_that_fit_are_accepted() {
         let mut entry = LineEntry::new(6);
         type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
         // The accent combines with the character before it.
@@ -124,7 +124,7 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn a_line_typed_key_by_key_is_the_line_at_once(
+        fn typing_key_by_key_gives_the_same_line_as_pasting(
             text in "([a-e漢 \u{a0}][\u{300}-\u{303}]?|[ᄀ-ᄂ][ᅡ-ᅣ][ᆨ-ᆪ]?){0,16}",
         ) {
             let mut entry = LineEntry::new(60);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_is_what_the_line_will_be() {
+    fn the_line_is_shown_as_it_will_be_sent() {
         for text in ["e\u{301}te\u{301}", "a  b \u{a0}c", "\u{ad}\u{3164}x\u{e000}", "שלום 日本"]
         {
             let mut entry = LineEntry::new(12);

@@ -35,7 +35,7 @@ fn complaint(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn an_operator_sees_visitors_speaks_to_them_and_ends_their_sessions() {
+fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
     let running = Running::start("", "text");
     assert_eq!(running.admin_says(&["who"]), "nobody is on\n");
     running.admin_says(&["rooms"]);
@@ -58,7 +58,7 @@ fn an_operator_sees_visitors_speaks_to_them_and_ends_their_sessions() {
 }
 
 #[test]
-fn one_session_of_several_is_kicked() {
+fn one_of_several_sessions_can_be_kicked() {
     let running = Running::start("", "text");
     let first = running.visitor();
     running.wait_for_visitors(1);
@@ -79,7 +79,7 @@ fn one_session_of_several_is_kicked() {
 }
 
 #[test]
-fn a_ban_ends_sessions_and_is_kept() {
+fn a_ban_ends_sessions_and_is_stored() {
     let running = Running::start("", "text");
     let mut visitor = running.visitor();
     running.wait_for_visitors(1);
@@ -116,7 +116,7 @@ fn bans_work_while_no_server_runs() {
 }
 
 #[test]
-fn what_is_wrong_is_told_in_a_sentence() {
+fn mistakes_are_explained_in_a_sentence() {
     let folder = folder();
     for (arguments, said) in [
         (&["who"][..], "no server runs with the data in"),
@@ -174,7 +174,7 @@ fn the_socket_is_private_and_its_requests_are_bounded() {
 }
 
 #[test]
-fn one_server_uses_a_folder_and_a_killed_one_is_no_obstacle() {
+fn a_folder_is_locked_until_its_server_ends_or_is_killed() {
     let mut running = Running::start("", "text");
     let second =
         server(&["--listen", "127.0.0.1:0", "--data"]).arg(&running.folder).output().unwrap();

@@ -83,7 +83,7 @@ fn now() -> u64 {
 const KEPT: &str = "your result is kept and will be recorded.";
 
 #[test]
-fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_were_won() {
+fn results_won_during_an_outage_survive_the_host() {
     let mut host = Host::start();
     let players = ["Mara", "Jon"].map(|name| {
         let player = host.running.player(Some(&key()));
@@ -120,7 +120,7 @@ fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_we
 }
 
 #[test]
-fn a_player_who_is_still_there_reads_that_the_result_is_recorded() {
+fn a_player_who_is_still_connected_sees_the_result_recorded() {
     let host = Host::start();
     let mara = host.running.player(Some(&key()));
     choose(&mara, "Mara", "4");

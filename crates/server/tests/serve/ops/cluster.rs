@@ -137,7 +137,7 @@ fn goes_on(player: &Player, text: &str) -> Duration {
 }
 
 #[test]
-fn players_on_three_hosts_see_each_other_walk_and_their_rooms_stay_equal() {
+fn players_on_three_hosts_see_each_other_and_rooms_stay_equal() {
     let hosts = Hosts::start(3);
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
     see_each_other_walk(&mara, &jon);
@@ -157,7 +157,7 @@ fn players_on_three_hosts_see_each_other_walk_and_their_rooms_stay_equal() {
 }
 
 #[test]
-fn a_room_goes_on_when_its_host_is_killed() {
+fn a_room_survives_its_killed_host() {
     let hosts = Hosts::start(3);
     let _mara = hosts.player(0, "Mara");
     let (jon, kim) = (hosts.player(1, "Jon"), hosts.player(2, "Kim"));
@@ -174,7 +174,7 @@ fn a_room_goes_on_when_its_host_is_killed() {
 }
 
 #[test]
-fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
+fn rooms_wait_without_nats_and_go_on_without_the_database() {
     let mut hosts = Hosts::start(2);
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
     mara.wait_for("Jon comes in.");
@@ -199,7 +199,7 @@ fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
 }
 
 #[test]
-fn a_room_of_one_host_goes_on_while_nats_is_away() {
+fn a_room_with_one_host_goes_on_without_nats() {
     let mut hosts = Hosts::start(2);
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(0, "Jon"));
     mara.wait_for("Jon comes in.");
@@ -221,7 +221,7 @@ fn a_room_of_one_host_goes_on_while_nats_is_away() {
 }
 
 #[test]
-fn a_host_that_drains_leaves_its_rooms_to_the_others() {
+fn a_draining_host_hands_its_rooms_to_the_others() {
     let mut hosts = Hosts::start(2);
     let _mara = hosts.player(0, "Mara");
     let jon = hosts.player(1, "Jon");
@@ -232,7 +232,7 @@ fn a_host_that_drains_leaves_its_rooms_to_the_others() {
 }
 
 #[test]
-fn what_a_cluster_needs_is_told() {
+fn cluster_requirements_are_explained() {
     let serve = |options: &[&str]| -> Output {
         let words = [&["--listen", "127.0.0.1:0"], options].concat();
         server(&words).env("CELLCASTER_DATA", folder()).output().unwrap()

@@ -22,7 +22,7 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
 }
 
 #[test]
-fn configurations_in_the_documents_are_right() {
+fn configurations_in_the_documents_are_valid() {
     let blocks = blocks(&document("hosting.md"), "toml");
     assert!(!blocks.is_empty());
     for block in blocks {
@@ -35,7 +35,7 @@ fn configurations_in_the_documents_are_right() {
 /// Every line of a shell block that runs the program must use existing commands and options. A command about
 /// a host fails with a sentence if the folder contains none.
 #[test]
-fn commands_in_the_documents_are_right() {
+fn commands_in_the_documents_are_valid() {
     let text = document("hosting.md");
     let data = folder();
     let commands: Vec<String> = blocks(&text, "sh")
@@ -96,7 +96,7 @@ fn unit() -> Option<PathBuf> {
 }
 
 #[test]
-fn the_unit_is_what_systemd_takes() {
+fn the_systemd_unit_is_valid() {
     let Some(unit) = unit() else { return };
     let output =
         Command::new("systemd-analyze").args(["verify", "--man=no"]).arg(&unit).output().unwrap();
@@ -107,7 +107,7 @@ fn the_unit_is_what_systemd_takes() {
 
 /// The unit must start the program with existing options.
 #[test]
-fn the_unit_starts_the_program_with_options_that_there_are() {
+fn the_systemd_unit_uses_existing_options() {
     let text = document("hosting/cellcaster.service");
     let starts = text
         .lines()
@@ -123,7 +123,7 @@ fn the_unit_starts_the_program_with_options_that_there_are() {
 
 #[cfg(feature = "system-tests")]
 #[test]
-fn the_configuration_of_nats_is_what_it_takes() {
+fn the_nats_configuration_is_valid() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     let output = Command::new("nats-server")
         // The package installs the program in a directory that only root's path contains.

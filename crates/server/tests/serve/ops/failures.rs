@@ -120,7 +120,7 @@ fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
 }
 
 #[test]
-fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
+fn a_failed_system_call_loses_no_data_at_start_or_end() {
     let before = host_that_has_run();
     // While this store is open, its last change is only in the write-ahead log, as after a crash. The host
     // gets a copy.
@@ -200,7 +200,7 @@ fn win(player: &Player) -> Told {
 }
 
 #[test]
-fn what_a_visitor_is_told_is_kept_whichever_system_call_fails() {
+fn confirmed_changes_are_kept_if_any_system_call_fails() {
     let maps = maps(&[("moss.toml", CLOSET)]);
     let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
     let serve = |failure: Option<&Failure>| {
@@ -247,7 +247,7 @@ fn what_a_visitor_is_told_is_kept_whichever_system_call_fails() {
 
 /// While the system cannot hand over a connection, it waits in the queue.
 #[test]
-fn a_visitor_gets_in_after_a_failure_to_accept_one() {
+fn a_visitor_gets_in_after_a_failed_accept() {
     let running = Running::start("", "text");
     for error in ["EMFILE", "ENFILE", "ECONNABORTED", "ENOBUFS", "EINTR"] {
         let failure = Failure { call: "accept4".to_owned(), error, number: 1 };

@@ -48,7 +48,7 @@ fn recording(folder: &Path) -> String {
 }
 
 #[test]
-fn a_killed_server_loses_the_running_second_at_most() {
+fn a_killed_server_loses_at_most_one_second() {
     let (mut running, recordings) = recorded("");
     let key = user_key(&running.folder);
     let player = running.player(Some(&key));
@@ -72,7 +72,7 @@ fn a_killed_server_loses_the_running_second_at_most() {
 }
 
 #[test]
-fn a_server_that_drains_loses_nothing() {
+fn a_draining_server_loses_nothing() {
     let (mut running, recordings) = recorded("drain-seconds = 3\n");
     let key = user_key(&running.folder);
     let mut player = running.player(Some(&key));
@@ -96,7 +96,7 @@ fn a_server_that_drains_loses_nothing() {
 
 /// After a shutdown, a copy of `host.db` alone is a complete backup.
 #[test]
-fn a_server_that_ends_leaves_all_in_one_file() {
+fn a_stopped_server_leaves_everything_in_one_file() {
     let mut running = Running::start("drain-seconds = 0\n", "text");
     let key = user_key(&running.folder);
     enter_room(&running.player(Some(&key)), "Mara");

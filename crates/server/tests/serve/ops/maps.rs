@@ -71,7 +71,7 @@ pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
 }
 
 #[test]
-fn faults_of_maps_are_those_of_check_and_end_the_start() {
+fn map_faults_read_as_in_check_and_prevent_the_start() {
     let ragged = HALL.replace("#@....>.#", "#@....>.##");
     let unknown = HALL.replace("#@....>.#", "#@..?.>.#");
     let maps = maps(&[("ragged.toml", &ragged), ("unknown.toml", &unknown), ("right.toml", HALL)]);
@@ -87,7 +87,7 @@ fn faults_of_maps_are_those_of_check_and_end_the_start() {
 }
 
 #[test]
-fn names_and_folders_of_maps_are_refused_in_a_sentence() {
+fn bad_map_names_and_folders_are_refused_with_a_sentence() {
     let taken = maps(&[("cellar.toml", HALL)]);
     let odd = maps(&[("Moss hall.toml", HALL)]);
     for (folder, said) in [
@@ -101,7 +101,7 @@ fn names_and_folders_of_maps_are_refused_in_a_sentence() {
 }
 
 #[test]
-fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
+fn a_run_in_a_host_map_ranks_and_its_recording_replays() {
     let maps = maps(&[("moss.toml", HALL)]);
     let recordings = folder();
     let options = ["--maps", maps.to_str().unwrap(), "--record-room", recordings.to_str().unwrap()];
@@ -141,7 +141,7 @@ fn a_run_in_a_map_of_the_host_ranks_and_its_room_is_played_again() {
 }
 
 #[test]
-fn standing_rooms_are_those_of_the_configuration_and_change_with_it() {
+fn standing_rooms_follow_the_configuration() {
     let maps = maps(&[("moss.toml", HALL)]);
     let text = |rooms: &str| {
         format!("name = \"Mara's\"\nmaps = \"{}\"\nempty-room-seconds = 0\n{rooms}", maps.display())
@@ -181,7 +181,7 @@ fn standing_rooms_are_those_of_the_configuration_and_change_with_it() {
 }
 
 #[test]
-fn a_standing_room_in_a_level_that_there_is_not_ends_the_start() {
+fn a_standing_room_in_an_unknown_level_prevents_the_start() {
     let config = folder().join("serve.toml");
     fs::write(&config, "connections = 9\n[[room]]\nlevel = \"celar\"\n").unwrap();
     let error = complaint(&["--config", config.to_str().unwrap()]);
@@ -192,7 +192,7 @@ fn a_standing_room_in_a_level_that_there_is_not_ends_the_start() {
 }
 
 #[test]
-fn a_finish_is_told_to_all_and_the_finisher_watches_the_others() {
+fn a_finish_is_announced_and_the_finisher_watches_the_others() {
     let maps = maps(&[("moss.toml", HALL)]);
     let room = "[[room]]\nmode = \"race\"\nlevel = \"moss\"\n";
     let running = Running::start(&format!("maps = \"{}\"\n{room}", maps.display()), "text");

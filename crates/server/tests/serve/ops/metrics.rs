@@ -76,7 +76,7 @@ fn visitors_are_counted() {
 }
 
 #[test]
-fn what_is_no_request_is_answered_and_costs_no_other() {
+fn invalid_requests_do_not_block_others() {
     let (_running, port) = measured();
     let long = [b"GET /metrics HTTP/1.1\r\nX: ".as_slice(), &[b'x'; 10_000]].concat();
     for (request, status) in [
@@ -97,7 +97,7 @@ fn what_is_no_request_is_answered_and_costs_no_other() {
 }
 
 #[test]
-fn metrics_are_off_by_default_and_a_taken_port_is_one_sentence() {
+fn metrics_are_off_by_default_and_a_taken_port_is_reported() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
     let folder = crate::transport::folder();

@@ -33,7 +33,7 @@ fn win(player: &Player, name: &str, sentence: &str) {
 }
 
 #[test]
-fn results_of_accounts_rank_and_outlive_a_kill_and_those_of_guests_do_not_rank() {
+fn account_results_rank_and_survive_a_kill_but_guests_do_not_rank() {
     let maps = maps(&[("moss.toml", HALL)]);
     let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
     let mut running = Running::start(&config, "text");

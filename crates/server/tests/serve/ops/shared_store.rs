@@ -25,7 +25,7 @@ fn written(store: &str, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn hosts_share_accounts_and_bans_and_outlive_their_database() {
+fn hosts_share_accounts_and_bans_and_survive_a_database_outage() {
     let server = PostgresServer::start();
     let store = server.address();
     let options = ["--store", store.as_str()];
@@ -58,7 +58,7 @@ fn hosts_share_accounts_and_bans_and_outlive_their_database() {
 }
 
 #[test]
-fn hosts_count_the_new_accounts_of_a_network_together() {
+fn hosts_count_new_accounts_per_network_together() {
     let server = PostgresServer::shared();
     let store = server.address();
     let options = ["--store", store.as_str()];
@@ -95,7 +95,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
 }
 
 #[test]
-fn a_store_that_is_not_there_is_told_in_a_sentence_without_its_password() {
+fn a_missing_store_is_reported_without_its_password() {
     let store = "postgres://ada:geheim@127.0.0.1:1/games";
     for arguments in [&[][..], &["scores"], &["admin", "bans"], &["admin", "ban", "ada"]] {
         let output = with_store(store, arguments);

@@ -11,7 +11,7 @@ use super::running::Running;
 use crate::transport::wait_until;
 
 #[test]
-fn a_hang_up_reads_the_configuration_again() {
+fn a_hangup_signal_reloads_the_configuration() {
     let running = Running::start("log = \"info\"\n", "text");
     running.wait_for_log("host: listening");
     let config = running.folder.join("serve.toml");
@@ -48,7 +48,7 @@ fn a_hang_up_reads_the_configuration_again() {
 }
 
 #[test]
-fn new_limits_apply_to_those_who_come() {
+fn new_limits_apply_to_new_connections() {
     let running = Running::start("connections = 1\n", "text");
     let first = running.visitor();
     running.wait_for_visitors(1);
@@ -86,7 +86,7 @@ fn a_signal_ends_the_server_and_the_log_says_so() {
 }
 
 #[test]
-fn a_flood_of_connections_is_a_few_lines_a_second() {
+fn a_connection_flood_logs_a_few_lines_a_second() {
     const FLOOD: u64 = 1000;
     let running = Running::start("", "json");
     let begun = Instant::now();
@@ -109,7 +109,7 @@ fn a_flood_of_connections_is_a_few_lines_a_second() {
 }
 
 #[test]
-fn an_operator_ends_the_server_as_a_signal_does() {
+fn an_operator_can_end_the_server_like_a_signal() {
     let mut running = Running::start("drain-seconds = 1\n", "text");
     let mut visitor = running.visitor();
     running.wait_for_visitors(1);

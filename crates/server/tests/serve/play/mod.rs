@@ -84,7 +84,7 @@ pub(crate) fn see_each_other_walk(mara: &Player, jon: &Player) {
 }
 
 #[test]
-fn a_link_that_is_cut_frees_its_player_within_fifteen_seconds() {
+fn a_cut_link_frees_its_player_within_fifteen_seconds() {
     let server = GameServer::open();
     let relay = Relay::to(server.address());
     let mara = server.player(&[]);
@@ -99,7 +99,7 @@ fn a_link_that_is_cut_frees_its_player_within_fifteen_seconds() {
 }
 
 #[test]
-fn a_client_that_answers_nothing_is_gone_within_fifteen_seconds() {
+fn an_unresponsive_client_is_gone_within_fifteen_seconds() {
     let server = GameServer::open();
     let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
     enter_room(&mara, "Mara");
@@ -113,7 +113,7 @@ fn a_client_that_answers_nothing_is_gone_within_fifteen_seconds() {
 }
 
 #[test]
-fn a_key_is_an_account_that_a_restart_keeps() {
+fn the_account_of_a_key_survives_a_restart() {
     let mut server = GameServer::open();
     let key = format!("IdentityFile={}", server.user_key());
     let player = server.player(&["-o", &key]);
@@ -131,7 +131,7 @@ fn a_key_is_an_account_that_a_restart_keeps() {
 }
 
 #[test]
-fn a_server_that_ends_says_so() {
+fn a_server_announces_its_shutdown() {
     let mut server = GameServer::open();
     let mut player = server.player(&[]);
     enter_room(&player, "Mara");

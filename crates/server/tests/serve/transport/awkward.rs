@@ -51,7 +51,7 @@ fn asking_for_no_authentication_twice_makes_a_guest() {
 }
 
 #[test]
-fn a_connection_has_one_session() {
+fn a_connection_can_have_only_one_session() {
     run(async |house| {
         let client = guest(house).await;
         let _first = client.channel_open_session().await.unwrap();
@@ -64,7 +64,7 @@ fn a_connection_has_one_session() {
 }
 
 #[test]
-fn a_session_begins_once() {
+fn a_session_can_begin_only_once() {
     run(async |house| {
         let client = guest(house).await;
         let mut channel = client.channel_open_session().await.unwrap();
@@ -100,7 +100,7 @@ fn a_session_begins_once() {
 }
 
 #[test]
-fn a_disconnected_client_leaves_nothing() {
+fn a_disconnected_client_leaves_nothing_behind() {
     run(async |house| {
         for _ in 0..5 {
             let client = guest(house).await;

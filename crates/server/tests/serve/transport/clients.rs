@@ -20,7 +20,7 @@ fn a_client_without_a_key_is_a_guest() {
 }
 
 #[test]
-fn a_key_is_the_same_whatever_its_comment() {
+fn the_comment_of_a_key_does_not_matter() {
     let house = House::open();
     let path = house.user_key("key", "ann@home");
     let identity = format!("IdentityFile={path}");
@@ -38,7 +38,7 @@ fn a_key_is_the_same_whatever_its_comment() {
 }
 
 #[test]
-fn one_key_has_three_sessions() {
+fn one_key_is_limited_to_three_sessions() {
     let house = House::open();
     house.beside_another(|| {
         let identity = format!("IdentityFile={}", house.user_key("key", ""));
@@ -51,7 +51,7 @@ fn one_key_has_three_sessions() {
 }
 
 #[test]
-fn an_rsa_key_makes_a_guest_who_is_told() {
+fn a_visitor_with_an_rsa_key_is_a_guest_and_is_told_why() {
     const NOTICE: &str = "An RSA key is not an account here";
     let house = House::open();
     let rsa = format!("IdentityFile={}", house.user_key_of("rsa", "rsa", ""));
@@ -108,7 +108,7 @@ fn commands_and_subsystems_are_refused() {
 }
 
 #[test]
-fn a_visitor_beyond_the_limit_of_their_address_reads_what_it_is() {
+fn a_visitor_over_the_address_limit_sees_the_limit() {
     let house = House::open_with(|config| config.admission.per_address = 2);
     let players = [(); 2].map(|()| house.visitor(&[]));
     for _ in 0..5 {
@@ -125,7 +125,7 @@ fn a_visitor_beyond_the_limit_of_their_address_reads_what_it_is() {
 
 /// The visitor's `ssh` waits for a passphrase meanwhile.
 #[test]
-fn a_visitor_who_is_displaced_reads_why() {
+fn a_displaced_visitor_is_told_why() {
     let house = House::open_with(|config| config.admission.startups = 1);
     let key = house.user_key("locked", "");
     let mut keygen = Command::new("ssh-keygen");
@@ -185,18 +185,18 @@ fn frames_outlive_key_exchanges(options: &[&str]) {
 }
 
 #[test]
-fn frames_outlive_key_exchanges_without_compression() {
+fn frames_survive_key_exchanges_without_compression() {
     frames_outlive_key_exchanges(&[]);
 }
 
 /// Compression begins after authentication, and restarts with each key exchange.
 #[test]
-fn frames_outlive_key_exchanges_with_compression() {
+fn frames_survive_key_exchanges_with_compression() {
     frames_outlive_key_exchanges(&["-C"]);
 }
 
 #[test]
-fn a_client_that_asks_is_compressed() {
+fn a_client_can_request_compression() {
     let house = House::open();
     let player = house.visitor(&["-C"]);
     player.wait_for("[compressed true]");
@@ -204,7 +204,7 @@ fn a_client_that_asks_is_compressed() {
 }
 
 #[test]
-fn only_variables_about_the_terminal_pass() {
+fn only_terminal_variables_are_accepted() {
     let house = House::open();
     let set =
         "SetEnv=LANG=de_DE.UTF-8 PATH=/x COLORTERM=truecolor LC_CTYPE=C NO_COLOR=1 LD_DEBUG=all";
@@ -214,7 +214,7 @@ fn only_variables_about_the_terminal_pass() {
 }
 
 #[test]
-fn after_a_storm_of_resizes_the_size_is_right() {
+fn the_size_is_right_after_many_resizes() {
     let house = House::open();
     house.beside_another(|| {
         let player = house.visitor(&[]);
@@ -230,7 +230,7 @@ fn after_a_storm_of_resizes_the_size_is_right() {
 }
 
 #[test]
-fn the_status_of_a_session_is_that_of_ssh() {
+fn ssh_exits_with_the_status_of_the_session() {
     let house = House::open();
     let mut player = house.visitor(&[]);
     player.send("q");
@@ -240,7 +240,7 @@ fn the_status_of_a_session_is_that_of_ssh() {
 
 /// A stopped client answers nothing, like one behind a cut link.
 #[test]
-fn a_client_that_falls_silent_is_given_up() {
+fn a_silent_client_is_disconnected() {
     let house = House::open_with(|config| config.silence = std::time::Duration::from_secs(3));
     let silent = house.visitor(&[]);
     let alive = house.visitor(&[]);
@@ -254,7 +254,7 @@ fn a_client_that_falls_silent_is_given_up() {
 
 /// Keep-alive questions arrive between the client's keys; neither may disturb the other.
 #[test]
-fn questions_disturb_no_keys() {
+fn keep_alive_requests_do_not_disturb_keys() {
     let house = House::open_with(|config| config.silence = std::time::Duration::from_secs(2));
     let player = house.visitor(&[]);
     for (count, key) in (1..).zip(["a", "b", "\x1b", "[A", "c", "d"]) {

@@ -32,7 +32,7 @@ fn lines(server: &mut Child) -> Vec<String> {
 }
 
 #[test]
-fn it_prints_the_line_to_type_and_ends_at_a_signal() {
+fn it_prints_the_ssh_command_and_ends_at_a_signal() {
     for signal in [Signal::TERM, Signal::INT] {
         let data = folder();
         let mut server =
@@ -57,7 +57,7 @@ fn it_prints_the_line_to_type_and_ends_at_a_signal() {
 }
 
 #[test]
-fn a_port_that_is_taken_is_one_sentence() {
+fn a_taken_port_prints_one_sentence() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();
     let error = complaint(&folder(), &["--listen", &address]);
@@ -66,7 +66,7 @@ fn a_port_that_is_taken_is_one_sentence() {
 }
 
 #[test]
-fn a_folder_that_is_none_is_one_sentence() {
+fn an_invalid_folder_prints_one_sentence() {
     let file = folder().join("file");
     fs::write(&file, "").unwrap();
     let error = complaint(&file, &[]);
@@ -75,7 +75,7 @@ fn a_folder_that_is_none_is_one_sentence() {
 }
 
 #[test]
-fn faults_of_the_configuration_have_lines() {
+fn configuration_faults_have_line_numbers() {
     let folder = folder();
     let config = folder.join("serve.toml");
     fs::write(&config, "connections = 0\nconections-per-key = 1\n").unwrap();
@@ -88,7 +88,7 @@ fn faults_of_the_configuration_have_lines() {
 }
 
 #[test]
-fn an_address_without_a_port_is_one_sentence() {
+fn an_address_without_a_port_prints_one_sentence() {
     let error = complaint(&folder(), &["--listen", "localhost"]);
     assert!(error.contains("--listen takes an address and a port"), "{error}");
 }

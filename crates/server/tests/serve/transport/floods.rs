@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::house::{House, TIMEOUT, wait_until};
 
 #[test]
-fn a_paste_bomb_arrives_bit_by_bit() {
+fn a_paste_bomb_arrives_gradually() {
     let house = House::open_with(|config| config.bytes_per_second = 16 << 10);
     house.beside_another(|| {
         let bomber = house.visitor(&[]);
@@ -22,7 +22,7 @@ fn a_paste_bomb_arrives_bit_by_bit() {
 }
 
 #[test]
-fn what_is_no_text_reaches_the_session_as_it_is() {
+fn invalid_utf8_reaches_the_session_unchanged() {
     let house = House::open();
     house.beside_another(|| {
         let player = house.visitor(&[]);
@@ -35,7 +35,7 @@ fn what_is_no_text_reaches_the_session_as_it_is() {
 
 /// A client that does not read takes the memory of one frame, no matter how long it stays.
 #[test]
-fn clients_that_never_read_hold_one_frame_each() {
+fn clients_that_never_read_use_one_frame_of_memory_each() {
     const CLIENTS: usize = 5;
     const MAX: i64 = CLIENTS as i64 * 2 * 80 * 24 * 40;
     let house = House::open();
@@ -58,7 +58,7 @@ fn clients_that_never_read_hold_one_frame_each() {
 }
 
 #[test]
-fn a_client_that_takes_nothing_is_disconnected() {
+fn a_client_that_reads_nothing_is_disconnected() {
     let house = House::open_with(|config| config.stall = Duration::from_secs(3));
     house.beside_another(|| {
         let player = house.visitor(&[]);
@@ -72,7 +72,7 @@ fn a_client_that_takes_nothing_is_disconnected() {
 
 /// In a flood of refused connections, few clients are told the reason, and all are closed.
 #[test]
-fn a_flood_of_refused_connections_is_told_seldom() {
+fn few_clients_in_a_refused_flood_are_told_the_reason() {
     let house = House::open_with(|config| config.admission.per_address = 1);
     let player = house.visitor(&[]);
     let told = (0..200).filter(|_| {

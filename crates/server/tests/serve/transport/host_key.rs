@@ -8,7 +8,7 @@ use cellcaster_server::ssh::host_key::HostKey;
 use super::house::folder;
 
 #[test]
-fn the_key_is_made_once_and_private() {
+fn the_key_is_created_once_and_private() {
     let folder = folder().join("new/folder");
     let made = HostKey::open(&folder).unwrap().fingerprint();
     let mode = fs::metadata(folder.join("host_key")).unwrap().permissions().mode();
@@ -18,7 +18,7 @@ fn the_key_is_made_once_and_private() {
 }
 
 #[test]
-fn a_key_that_others_can_read_is_refused() {
+fn a_key_readable_by_others_is_refused() {
     let folder = folder();
     HostKey::open(&folder).unwrap();
     let path = folder.join("host_key");
@@ -31,7 +31,7 @@ fn a_key_that_others_can_read_is_refused() {
 }
 
 #[test]
-fn what_is_no_key_is_refused() {
+fn an_invalid_key_is_refused() {
     for content in ["", "-----BEGIN OPENSSH PRIVATE KEY-----\n", "x"] {
         let folder = folder();
         let path = folder.join("host_key");
@@ -44,7 +44,7 @@ fn what_is_no_key_is_refused() {
 }
 
 #[test]
-fn two_servers_that_begin_at_once_have_one_key() {
+fn two_servers_starting_together_create_one_key() {
     let folder = folder();
     let open = || HostKey::open(&folder).unwrap().fingerprint();
     let fingerprints = std::thread::scope(|scope| {

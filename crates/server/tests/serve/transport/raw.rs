@@ -46,7 +46,7 @@ fn packet(kind: u8, length: usize) -> Vec<u8> {
 }
 
 #[test]
-fn a_connection_that_says_nothing_is_closed() {
+fn a_silent_connection_is_closed() {
     let house = House::open_with(|config| config.handshake = Duration::from_secs(1));
     house.beside_another(|| {
         let mut silent = connect(&house);
@@ -60,7 +60,7 @@ fn a_connection_that_says_nothing_is_closed() {
 
 /// A client sends its version at once, even if its key exchange takes long.
 #[test]
-fn the_version_has_less_time_than_the_keys() {
+fn the_version_timeout_is_shorter_than_the_key_exchange_timeout() {
     let house = House::open_with(|config| config.handshake = TIMEOUT);
     let mut versed = connect(&house);
     versed.write_all(VERSION).unwrap();
@@ -79,7 +79,7 @@ fn the_version_has_less_time_than_the_keys() {
 }
 
 #[test]
-fn a_connection_that_drips_is_closed() {
+fn a_slowly_dripping_connection_is_closed() {
     let house = House::open_with(|config| config.handshake = Duration::from_secs(1));
     house.beside_another(|| {
         let mut slow = connect(&house);
@@ -134,7 +134,7 @@ fn an_oversized_packet_is_refused() {
 
 /// Packets to be ignored may precede the key exchange, but only up to a limit.
 #[test]
-fn bytes_before_authentication_are_counted() {
+fn bytes_before_authentication_are_limited() {
     let house = House::open();
     house.beside_another(|| {
         let mut stream = connect(&house);
@@ -150,7 +150,7 @@ fn bytes_before_authentication_are_counted() {
 
 /// Silent connections arrive all the time from eight networks. Clients from all other networks still get in.
 #[test]
-fn half_open_connections_leave_room() {
+fn half_open_connections_leave_room_for_others() {
     let house = House::open();
     let is_over = AtomicBool::new(false);
     thread::scope(|scope| {

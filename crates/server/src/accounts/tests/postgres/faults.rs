@@ -19,7 +19,7 @@ fn until_it_answers(store: &mut HostStore) {
 }
 
 #[test]
-fn what_was_acknowledged_survives_a_crash_amid_writes() {
+fn acknowledged_changes_survive_a_crash() {
     let server = PostgresServer::start();
     let address = server.address();
     let mut store = open(&address);
@@ -58,7 +58,7 @@ fn what_was_acknowledged_survives_a_crash_amid_writes() {
 }
 
 #[test]
-fn without_a_server_each_call_fails_at_once_and_later_none() {
+fn calls_fail_at_once_while_the_server_is_down() {
     let server = PostgresServer::start();
     let address = server.address_over_tcp();
     let mut store = open(&address);
@@ -83,7 +83,7 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
 }
 
 #[test]
-fn a_server_that_does_not_answer_holds_no_call_for_long() {
+fn an_unresponsive_server_does_not_block_calls_for_long() {
     let server = PostgresServer::start();
     let address = server.address_over_tcp();
     let mut store = open(&address);
@@ -107,7 +107,7 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
 }
 
 #[test]
-fn a_connection_that_was_dropped_is_made_again_unnoticed() {
+fn a_dropped_connection_is_silently_reopened() {
     let server = PostgresServer::start();
     let mut store = open(&server.address());
     for number in 1..=4_u8 {
@@ -123,7 +123,7 @@ fn a_connection_that_was_dropped_is_made_again_unnoticed() {
 }
 
 #[test]
-fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
+fn a_change_of_unknown_outcome_is_reported_and_not_retried() {
     let server = PostgresServer::shared();
     let proxy = Proxy::before(server.port());
     let mut store = open(&proxy.address(&server.address_over_tcp(), server.port()));
@@ -141,7 +141,7 @@ fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
 }
 
 #[test]
-fn a_change_that_is_not_kept_is_made_again() {
+fn a_rolled_back_change_is_retried() {
     let server = PostgresServer::shared();
     let address = server.address_over_tcp();
     // Each case has a connection of its own, because the text of a statement crosses a connection
@@ -160,7 +160,7 @@ fn a_change_that_is_not_kept_is_made_again() {
 }
 
 #[test]
-fn a_password_is_needed_and_never_shown() {
+fn a_password_is_required_and_never_shown() {
     let server = PostgresServer::start();
     server.sql("CREATE ROLE guarded LOGIN PASSWORD 'ge@heim'");
     server.sql("CREATE SCHEMA AUTHORIZATION guarded");

@@ -127,7 +127,7 @@ fn played(catalog: &Arc<Catalog>, header: Header, most: usize, before: u64, seed
 }
 
 #[test]
-fn every_level_in_every_mode_plays_on() {
+fn a_restored_room_plays_on_in_every_level_and_mode() {
     let catalog = Arc::new(Catalog::builtin());
     for (number, level) in (1..).zip(LEVELS) {
         for mode in Mode::ALL {
@@ -146,7 +146,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn a_round_that_ends_plays_on(
+    fn a_restored_room_plays_on_after_a_round_ends(
         mode in prop::sample::select(&Mode::ALL[..]),
         before in 0..9000_u64,
         most in 1..5_usize,
@@ -169,7 +169,7 @@ fn busy(mode: Mode, seed: u64) -> (Arc<Catalog>, Vec<u8>) {
 }
 
 #[test]
-fn every_part_of_a_checkpoint_is_refused() {
+fn truncated_checkpoints_are_refused() {
     for mode in Mode::ALL {
         let (catalog, bytes) = busy(mode, 5);
         for length in 0..bytes.len() {
@@ -182,7 +182,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn damaged_checkpoints_are_refused_or_a_room(
+    fn damaged_checkpoints_are_refused_or_playable(
         mode in prop::sample::select(&Mode::ALL[..]),
         seed in 0..4_u64,
         // Whether only the first bytes are damaged. Later ones are mostly players' positions.
@@ -205,7 +205,7 @@ proptest! {
 }
 
 #[test]
-fn members_whom_no_room_has_had_are_refused() {
+fn impossible_members_are_refused() {
     let (catalog, bytes) = busy(Mode::Tag, 7);
     let room = Room::restore(&catalog, &bytes).unwrap();
     let is_restored = |next_member, id| {
@@ -219,7 +219,7 @@ fn members_whom_no_room_has_had_are_refused() {
 }
 
 #[test]
-fn a_checkpoint_of_another_version_or_of_an_unknown_level_is_refused_with_a_sentence() {
+fn checkpoints_of_other_versions_or_unknown_levels_are_refused() {
     let (catalog, bytes) = busy(Mode::Tag, 7);
     let refused = |catalog: &Arc<Catalog>, bytes: &[u8]| Room::restore(catalog, bytes).unwrap_err();
     let line = first_line(KIND);
@@ -236,7 +236,7 @@ fn a_checkpoint_of_another_version_or_of_an_unknown_level_is_refused_with_a_sent
 
 /// A checksum must detect each of these changes, and must ignore the chat.
 #[test]
-fn a_checksum_notices_the_round_the_members_and_the_game() {
+fn a_checksum_covers_the_round_the_members_and_the_game() {
     let (catalog, bytes) = busy(Mode::Tag, 7);
     let room = Room::restore(&catalog, &bytes).unwrap();
     let differs = |change: &dyn Fn(&mut Room)| {
@@ -263,7 +263,7 @@ fn a_checksum_notices_the_round_the_members_and_the_game() {
 /// With `--nocapture`, prints for each level the size of a checkpoint with up to eight members after a
 /// minute, and the time for a step, for a checkpoint and for restoring it.
 #[test]
-fn checkpoints_of_levels_are_small() {
+fn level_checkpoints_are_small() {
     let catalog = Arc::new(Catalog::builtin());
     for level in LEVELS {
         let header = Header::new(level.name, Mode::Together, Difficulty::Normal, 1);

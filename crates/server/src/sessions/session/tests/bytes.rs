@@ -38,7 +38,7 @@ fn compressed(frames: &[Vec<u8>]) -> usize {
 }
 
 #[test]
-fn compressed_exact_frames_take_fewer_bytes_than_coarse_ones() {
+fn compressed_exact_frames_are_smaller_than_coarse_ones() {
     let of = |frames: &[Vec<u8>]| frames.iter().map(Vec::len).sum::<usize>() / frames.len();
     let [exact, high] = [Fidelity::EXACT, Fidelity::HIGH].map(walk);
     assert!(exact.len() > 60 && high.len() > 60, "{} {}", exact.len(), high.len());

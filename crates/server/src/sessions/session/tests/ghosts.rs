@@ -83,7 +83,7 @@ fn a_room_is_the_same_with_and_without_ghosts() {
 }
 
 #[test]
-fn a_ghost_is_of_the_level_that_is_played() {
+fn ghosts_of_other_levels_are_not_shown() {
     let (mut rig, mara) = race([]);
     let late = ghost(Some("Jon"));
     rig.pump(4_000);

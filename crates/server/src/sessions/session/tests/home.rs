@@ -46,7 +46,7 @@ fn point(rig: &mut Rig, index: usize, column: u16) {
 }
 
 #[test]
-fn the_mouse_turns_by_two_degrees_a_cell() {
+fn the_mouse_turns_the_view_two_degrees_per_cell() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let before = heading(&rig);
@@ -72,7 +72,7 @@ fn the_mouse_turns_by_two_degrees_a_cell() {
 }
 
 #[test]
-fn at_the_edge_of_the_window_the_mouse_turns_once_around() {
+fn at_the_window_edge_the_mouse_makes_one_turn() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     rig.press(one, "v");
@@ -92,7 +92,7 @@ fn at_the_edge_of_the_window_the_mouse_turns_once_around() {
 }
 
 #[test]
-fn a_run_that_the_mouse_has_steered_is_recorded_with_its_turns() {
+fn a_run_steered_by_mouse_is_recorded_with_its_turns() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     for key in ALONE {
@@ -116,7 +116,7 @@ fn a_run_that_the_mouse_has_steered_is_recorded_with_its_turns() {
 }
 
 #[test]
-fn the_bell_rings_for_those_who_want_it_when_they_are_hurt() {
+fn the_bell_rings_for_hurt_players_who_enabled_it() {
     let spikes = HALL
         .replace("@............", "@^^^^^^^^^^^^")
         .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
@@ -139,7 +139,7 @@ fn the_bell_rings_for_those_who_want_it_when_they_are_hurt() {
 }
 
 #[test]
-fn a_preset_of_keys_is_chosen_and_kept() {
+fn a_key_preset_can_be_chosen_and_is_stored() {
     let mut rig = Rig::new(Mode::Roam);
     let mara = Visitor { key: Some(key()), ..guest("Mara", (80, 24)) };
     let one = rig.connect(mara.clone(), Speaks::Plain, ColorDepth::Mono);
@@ -169,7 +169,7 @@ fn a_preset_of_keys_is_chosen_and_kept() {
 }
 
 #[test]
-fn a_notice_about_the_key_stands_in_the_lobby() {
+fn a_notice_about_the_key_appears_in_the_lobby() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.session(one, |session, _| {
@@ -181,7 +181,7 @@ fn a_notice_about_the_key_stands_in_the_lobby() {
 }
 
 #[test]
-fn compression_is_advised_only_where_it_would_help() {
+fn compression_is_advised_only_if_it_would_help() {
     for (compresses, is_limited, advises) in [
         (false, None, true),
         (false, Some(false), false),
@@ -222,7 +222,7 @@ fn only_ascii_is_sent_until_half_blocks_are_chosen() {
 }
 
 #[test]
-fn frames_begin_exact_where_the_connection_compresses() {
+fn frames_start_exact_on_compressed_connections() {
     let first = |fidelity| {
         let options = SessionOptions {
             fidelity,

@@ -8,7 +8,7 @@ use super::*;
 use crate::config::Config;
 
 #[test]
-fn who_does_nothing_among_others_who_do_nothing_costs_no_bytes() {
+fn idle_visitors_cost_no_bytes() {
     for speaks in [Speaks::Kitty, Speaks::Plain] {
         let mut rig = Rig::new(Mode::Roam);
         let visitors = [
@@ -25,7 +25,7 @@ fn who_does_nothing_among_others_who_do_nothing_costs_no_bytes() {
 }
 
 #[test]
-fn a_terminal_that_does_not_answer_gets_no_second_frame() {
+fn an_unresponsive_terminal_gets_no_second_frame() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Kitty);
     let other = rig.member("Jon", (80, 24), Speaks::Kitty);
@@ -56,7 +56,7 @@ fn a_window_without_columns_gets_no_frame_after_the_first() {
 }
 
 #[test]
-fn acts_tell_the_step_that_was_seen() {
+fn actions_carry_the_step_that_was_seen() {
     for milliseconds in [0, 100, 200] {
         let mut rig = Rig::new(Mode::Roam);
         let one = rig.member("Mara", (80, 24), Speaks::Kitty);
@@ -100,7 +100,7 @@ fn a_key_is_answered_before_the_next_regular_frame() {
 }
 
 #[test]
-fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
+fn keys_without_effect_are_not_timed() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Kitty);
     let other = rig.member("Jon", (80, 24), Speaks::Kitty);
@@ -156,7 +156,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn nothing_that_arrives_is_a_fault_of_the_session(
+    fn no_input_breaks_a_session(
         events in events(),
         mode in prop::sample::select(&Mode::ALL[..5]),
     ) {

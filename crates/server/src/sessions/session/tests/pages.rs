@@ -7,7 +7,7 @@ use crate::sessions::session::pages::RoomTarget;
 use crate::simulation::emulator::{Emulator, Modes};
 
 #[test]
-fn enter_alone_leads_to_a_first_walk() {
+fn enter_alone_leads_into_a_room() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("amber-fox", (80, 24), Speaks::Kitty);
     assert_eq!(rig.page(one), Page::Name);
@@ -22,7 +22,7 @@ fn enter_alone_leads_to_a_first_walk() {
 }
 
 #[test]
-fn a_name_is_typed_in_place_of_the_offer() {
+fn a_typed_name_replaces_the_offer() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("amber-fox", (80, 24), Speaks::Plain);
     rig.press(one, "\x1b]0;evil\x07\x1b[31mMara\x1b[2J\u{9b}31m\u{202e} v");
@@ -35,7 +35,7 @@ fn a_name_is_typed_in_place_of_the_offer() {
 }
 
 #[test]
-fn a_name_that_is_refused_is_typed_again() {
+fn a_refused_name_can_be_typed_again() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("g", (80, 24), Speaks::Plain);
     rig.press(one, "\x7f\r");
@@ -69,7 +69,7 @@ fn escape_goes_back_and_asks_before_it_leaves() {
 }
 
 #[test]
-fn arrow_keys_put_nobody_out() {
+fn arrow_keys_never_end_a_session() {
     for speaks in [Speaks::Plain, Speaks::Kitty] {
         let mut rig = Rig::new(Mode::Roam);
         let one = rig.visitor("Mara", (80, 24), speaks);
@@ -89,7 +89,7 @@ fn arrow_keys_put_nobody_out() {
 }
 
 #[test]
-fn who_presses_no_key_is_warned_and_put_out() {
+fn an_idle_visitor_is_warned_and_disconnected() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Kitty);
     rig.pump(240_000);
@@ -107,7 +107,7 @@ fn who_presses_no_key_is_warned_and_put_out() {
 }
 
 #[test]
-fn a_room_is_opened_and_watched() {
+fn a_room_can_be_opened_and_watched() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.press(one, ENTER);
@@ -134,7 +134,7 @@ fn a_room_is_opened_and_watched() {
 }
 
 #[test]
-fn keys_beyond_what_anybody_types_are_dropped() {
+fn excess_keys_are_dropped() {
     let mut rig = Rig::new(Mode::Roam);
     let [fast, slow] = ["Mara", "Jon"].map(|name| {
         let visitor = rig.visitor(name, (80, 24), Speaks::Plain);
@@ -158,7 +158,7 @@ fn keys_beyond_what_anybody_types_are_dropped() {
 }
 
 #[test]
-fn a_line_that_is_pasted_is_whole() {
+fn a_pasted_line_is_kept_whole() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let line: String =
@@ -169,7 +169,7 @@ fn a_line_that_is_pasted_is_whole() {
 }
 
 #[test]
-fn boards_settings_and_help_lead_back() {
+fn boards_settings_and_help_return_to_the_lobby() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.press(one, ENTER);
@@ -193,7 +193,7 @@ fn boards_settings_and_help_lead_back() {
 }
 
 #[test]
-fn rooms_in_maps_that_this_host_lacks_are_not_listed() {
+fn rooms_in_missing_maps_are_not_listed() {
     use crate::rooms::room::Phase;
     use crate::rooms::summary::RoomSummary;
     use cellcaster::world::Difficulty;

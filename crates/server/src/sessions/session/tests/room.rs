@@ -12,7 +12,7 @@ fn two(mode: Mode) -> (Rig, usize, usize) {
 }
 
 #[test]
-fn members_see_each_other_walk_with_their_names() {
+fn members_see_each_other_walk_with_names() {
     let (mut rig, one, other) = two(Mode::Roam);
     for _ in 0..12 {
         rig.press(other, "w");
@@ -32,7 +32,7 @@ fn members_see_each_other_walk_with_their_names() {
 }
 
 #[test]
-fn what_is_said_reaches_the_others_as_text() {
+fn chat_reaches_the_others_as_plain_text() {
     let (mut rig, one, other) = two(Mode::Roam);
     rig.press(one, "\r");
     assert_eq!(rig.page(one), Page::Chat);
@@ -51,7 +51,7 @@ fn what_is_said_reaches_the_others_as_text() {
 }
 
 #[test]
-fn emotions_and_members_are_shown() {
+fn emotes_and_members_are_shown() {
     let (mut rig, one, other) = two(Mode::Roam);
     rig.press(one, "1");
     assert!(rig.text(one).contains("calls for help"), "{}", rig.text(one));
@@ -68,7 +68,7 @@ fn emotions_and_members_are_shown() {
 }
 
 #[test]
-fn a_round_of_tag_is_told_and_ends_with_standings() {
+fn a_round_of_tag_is_announced_and_ends_with_standings() {
     let (mut rig, one, other) = two(Mode::Tag);
     rig.pump(2_000);
     rig.pump(4_000);
@@ -97,7 +97,7 @@ fn seekers_see_nothing_while_the_others_hide() {
 }
 
 #[test]
-fn a_tap_and_a_held_key_walk_as_far_as_at_home() {
+fn taps_and_held_keys_walk_as_far_as_at_home() {
     // A tap walks a quarter of a cell. A key that repeats walks on until it stops.
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
@@ -129,7 +129,7 @@ fn a_tap_and_a_held_key_walk_as_far_as_at_home() {
 }
 
 #[test]
-fn each_tap_of_an_act_counts_once() {
+fn each_tap_of_an_action_counts_once() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let heading = |rig: &Rig| {
@@ -147,7 +147,7 @@ fn each_tap_of_an_act_counts_once() {
 }
 
 #[test]
-fn a_member_who_is_put_out_is_told_why() {
+fn a_removed_member_is_told_why() {
     let (mut rig, one, _) = two(Mode::Roam);
     rig.visitors.say("be quiet");
     rig.clients[one].drain();
@@ -165,7 +165,7 @@ fn a_member_who_is_put_out_is_told_why() {
 
 /// This holds in the lobby as well as in a room.
 #[test]
-fn the_seconds_to_the_end_of_the_server_are_counted_down() {
+fn the_seconds_until_shutdown_are_counted_down() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
@@ -189,7 +189,7 @@ fn the_seconds_to_the_end_of_the_server_are_counted_down() {
 }
 
 #[test]
-fn the_dead_go_on_or_begin_again() {
+fn dead_players_go_on_or_start_again() {
     let spikes = HALL
         .replace("@............", "@^^^^^^^^^^^^")
         .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
@@ -224,7 +224,7 @@ fn the_dead_go_on_or_begin_again() {
 }
 
 #[test]
-fn capitals_and_signs_are_typed_in_both_protocols() {
+fn capitals_and_symbols_can_be_typed_in_both_protocols() {
     for (speaks, typed) in [
         (Speaks::Plain, "Hi! \u{e9}\u{e4}"),
         (Speaks::Kitty, "\x1b[104:72;2u\x1b[105u\x1b[49:33;2u\x1b[32u\x1b[233u\x1b[228u"),
@@ -244,7 +244,7 @@ fn capitals_and_signs_are_typed_in_both_protocols() {
 }
 
 #[test]
-fn a_finisher_reads_place_and_time_and_watches_the_others() {
+fn a_finisher_sees_place_and_time_and_watches_the_others() {
     let map = HALL
         .replace("............>#", ".............#")
         .replace("@............#", "@.......>....#");
@@ -287,7 +287,7 @@ fn a_finisher_reads_place_and_time_and_watches_the_others() {
 }
 
 #[test]
-fn members_see_each_other_when_they_come_in() {
+fn members_see_each_other_on_arrival() {
     let (rig, one, other) = two(Mode::Roam);
     assert!(rig.position(one).distance(rig.position(other)) >= 1.0);
     // Once in the chat line that announces him, and once above his head.

@@ -10,7 +10,7 @@ use crate::play::enter_room;
 use crate::transport::folder;
 
 #[test]
-fn a_host_that_is_cut_off_is_replaced_and_takes_what_the_others_have_played() {
+fn a_cut_off_host_is_replaced_and_catches_up_later() {
     let network = Network::new();
     let hosts = Hosts::start_behind(&network);
     // The host of the first player writes the room.
@@ -36,7 +36,7 @@ fn a_host_that_is_cut_off_is_replaced_and_takes_what_the_others_have_played() {
 }
 
 #[test]
-fn a_short_cut_is_a_pause() {
+fn a_short_network_outage_only_pauses_the_room() {
     let network = Network::new();
     let hosts = Hosts::start_behind(&network);
     let mara = hosts.player(0, "Mara");

@@ -13,7 +13,7 @@ const TOO_OFTEN: &str = "This host takes at most 1 connection with one key";
 const ONE: &str = "connections-per-key = 1\n";
 
 #[test]
-fn a_key_is_limited_over_all_hosts() {
+fn a_key_is_limited_across_all_hosts() {
     let hosts = Hosts::start_with(2, ONE);
     let key = user_key(&folder());
     let player = |host: usize| hosts.running[host].0.player(Some(&key));
@@ -32,7 +32,7 @@ fn a_key_is_limited_over_all_hosts() {
 }
 
 #[test]
-fn an_address_is_limited_over_all_hosts() {
+fn an_address_is_limited_across_all_hosts() {
     let hosts = Hosts::start_with(2, "connections-per-address = 2\n");
     let guests = [0, 1].map(|host| hosts.running[host].0.visitor());
     for guest in &guests {
@@ -45,7 +45,7 @@ fn an_address_is_limited_over_all_hosts() {
 }
 
 #[test]
-fn the_visits_of_a_host_that_is_killed_shut_nobody_out() {
+fn visits_on_a_killed_host_do_not_lock_anyone_out() {
     let mut hosts = Hosts::start_with(2, ONE);
     let key = user_key(&folder());
     let mara = hosts.running[0].0.player(Some(&key));
@@ -61,7 +61,7 @@ fn the_visits_of_a_host_that_is_killed_shut_nobody_out() {
 }
 
 #[test]
-fn those_who_play_go_on_while_the_database_is_away_and_count_afterwards() {
+fn players_stay_during_a_database_outage_and_count_afterwards() {
     let hosts = Hosts::start_with(2, ONE);
     let key = user_key(&folder());
     let mara = hosts.running[0].0.player(Some(&key));

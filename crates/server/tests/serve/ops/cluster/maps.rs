@@ -9,7 +9,7 @@ use crate::postgres_server::PostgresServer;
 use crate::transport::wait_until;
 
 #[test]
-fn rooms_are_listed_by_hosts_that_have_their_maps_and_operators_see_the_difference() {
+fn hosts_list_rooms_of_their_maps_and_report_differences() {
     let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
     let (bus, store) = (nats.address(), postgres.address());
     let other_hall = HALL.replace("#@....>.#", "#@...>..#");

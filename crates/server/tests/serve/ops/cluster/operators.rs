@@ -11,7 +11,7 @@ use crate::play::enter_room;
 use crate::transport::folder;
 
 #[test]
-fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
+fn operators_see_and_reach_visitors_on_all_hosts() {
     let hosts = Hosts::start(2);
     let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
     let key = user_key(&folder());
@@ -44,7 +44,7 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
 }
 
 #[test]
-fn hosts_are_listed_with_the_rooms_that_they_write_and_those_that_do_not_answer() {
+fn the_host_list_shows_written_rooms_and_unresponsive_hosts() {
     let hosts = Hosts::start(2);
     let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
     let _mara = hosts.player(0, "Mara");
@@ -73,7 +73,7 @@ fn hosts_are_listed_with_the_rooms_that_they_write_and_those_that_do_not_answer(
 }
 
 #[test]
-fn a_host_that_ends_is_listed_no_more() {
+fn a_stopped_host_is_no_longer_listed() {
     let mut hosts = Hosts::start(2);
     hosts.running[0].0.signal(Signal::TERM);
     assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));

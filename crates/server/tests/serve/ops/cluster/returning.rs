@@ -54,7 +54,7 @@ fn returned(hosts: &Hosts, host: usize, key: &Path) -> (Player, Duration) {
 }
 
 #[test]
-fn a_player_of_a_host_that_drains_is_where_they_were() {
+fn a_player_returns_to_their_place_after_a_drain() {
     let mut hosts = Hosts::start(2);
     let (mara, key) = walker(&hosts, 0);
     let jon = hosts.player(1, "Jon");
@@ -83,7 +83,7 @@ fn a_player_of_a_host_that_drains_is_where_they_were() {
 }
 
 #[test]
-fn players_of_a_host_that_has_ended_return_and_guests_are_gone() {
+fn players_of_a_stopped_host_return_and_guests_are_gone() {
     let mut hosts = Hosts::start(2);
     let (mut mara, key) = walker(&hosts, 0);
     let _guest = hosts.player(0, "Kim");
@@ -106,7 +106,7 @@ fn players_of_a_host_that_has_ended_return_and_guests_are_gone() {
 }
 
 #[test]
-fn a_player_of_a_host_that_is_killed_is_where_they_were() {
+fn a_player_returns_to_their_place_after_a_kill() {
     let hosts = Hosts::start(2);
     let (mara, key) = walker(&hosts, 0);
     let before = picture(&mara);
