@@ -110,7 +110,7 @@ fn a_game_in_an_own_map_goes_on_unless_the_map_has_changed() {
     title.choose("Continue");
     assert_eq!(title.app.screen(), Screen::Title);
     let shown = text(&mut title.app, 80, 24);
-    assert!(shown.contains("The map of the saved game is not as it was."), "{shown}");
+    assert!(shown.contains("The map of the saved game has changed."), "{shown}");
 }
 
 #[test]

@@ -231,7 +231,7 @@ fn a_checkpoint_of_another_version_or_of_an_unknown_level_is_refused_with_a_sent
     let none = Arc::new(Catalog::default());
     assert_eq!(refused(&none, &bytes), "there is no level called hall");
     let longer = [&bytes[..], b"x"].concat();
-    assert_eq!(refused(&catalog, &longer), "the state goes on after its end");
+    assert_eq!(refused(&catalog, &longer), "the state has bytes after its end");
 }
 
 /// A checksum must detect each of these changes, and must ignore the chat.
