@@ -36,7 +36,7 @@ pub use replay::ROOM_RECORDING;
 
 use crate::render::DynCaster;
 
-/// A raycaster game in the terminal, and its pictures in scripts
+/// A raycaster game for the terminal, and a renderer for scripts
 #[derive(Debug, Parser)]
 #[command(
     name = "cellcaster",

@@ -78,10 +78,8 @@ impl Faults {
     pub fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
             let line = 1 + line_breaks(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
-            let message = format!(
-                "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
-            );
-            Self::of_whole_file(name, &message, &format!("save the {what} in the encoding UTF-8"))
+            let message = format!("{name} is not UTF-8 text: line {line} has an invalid byte");
+            Self::of_whole_file(name, &message, &format!("save the {what} as UTF-8"))
         })
     }
 

@@ -91,7 +91,7 @@ impl Action {
         ("throw", "throw a pebble", Self::Want(Intent::Throw), &[Key::Char('t')]),
         ("shoot", "shoot a dart", Self::Want(Intent::Shoot), &[Key::Char('n')]),
         ("smoke", "throw smoke", Self::Want(Intent::Smoke), &[Key::Char('y')]),
-        ("lamp", "light, put out", Self::Want(Intent::Lamp), &[Key::Char('l')]),
+        ("lamp", "lamp on or off", Self::Want(Intent::Lamp), &[Key::Char('l')]),
         ("look-up", "look up", Self::Want(Intent::LookUp), &[Key::PageUp]),
         ("look-down", "look down", Self::Want(Intent::LookDown), &[Key::PageDown]),
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead), &[Key::Home]),

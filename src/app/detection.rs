@@ -57,10 +57,10 @@ impl Detection {
             None => "--colors or the configuration says so",
             Some(ColorSource::NoColor) => "NO_COLOR is set",
             Some(ColorSource::ForceColor) => "FORCE_COLOR or CLICOLOR_FORCE says so",
-            Some(ColorSource::Term) => "TERM names no more; see docs/terminals.md",
+            Some(ColorSource::Term) => "limited by TERM; see docs/terminals.md",
             Some(ColorSource::Tmux) => return Some(format!("{count}: {}", self.tmux())),
             Some(ColorSource::Nothing) if self.is_tmux => {
-                "tmux did not say which terminal is around it; see docs/terminals.md"
+                "tmux did not report the outer terminal; see docs/terminals.md"
             }
             Some(
                 ColorSource::ColorTerm
@@ -86,7 +86,7 @@ impl Detection {
     /// The line about key releases that the terminal does not report.
     fn releases(&self) -> Option<String> {
         (self.reports_releases == Some(false)).then(|| {
-            "no key releases: keys are held while they repeat; see docs/keys.md".to_owned()
+            "no key releases: a key counts as held while it repeats; see docs/keys.md".to_owned()
         })
     }
 
@@ -133,7 +133,7 @@ mod tests {
         let tmux = Some(ColorSource::Tmux);
         insta::assert_snapshot!(said("title|kitty(0.42.1)|xterm-kitty", few, tmux), @"256 colours: tmux sends your terminal no more. Add to ~/.tmux.conf: set -as terminal-features ',xterm-kitty:RGB' (or run: tmux set -as terminal-features ',xterm-kitty:RGB'), then detach and attach again");
         insta::assert_snapshot!(said("title||vt340", few, tmux), @"256 colours: tmux sends your terminal no more; see docs/terminals.md");
-        insta::assert_snapshot!(said("", few, Some(ColorSource::Nothing)), @"256 colours: tmux did not say which terminal is around it; see docs/terminals.md");
+        insta::assert_snapshot!(said("", few, Some(ColorSource::Nothing)), @"256 colours: tmux did not report the outer terminal; see docs/terminals.md");
         assert_eq!(said("RGB|iTerm2 3.5|xterm-256color", ColorDepth::True, tmux), "");
         let own = Some(ColorSource::Palette);
         insta::assert_snapshot!(said("", ColorDepth::True, own), @"24-bit colours in a palette of 232: your terminal did not offer more");
@@ -152,19 +152,19 @@ mod tests {
         };
         insta::assert_snapshot!(lines(&plain).join("\n"), @r"
         256 colours: your terminal did not offer more; see docs/terminals.md
-        no key releases: keys are held while they repeat; see docs/keys.md
+        no key releases: a key counts as held while it repeats; see docs/keys.md
         ASCII only: LANG=C is not UTF-8; try --glyphs half
         ");
         let visitor = Detection { source: None, is_visitor: true, ..plain };
         insta::assert_snapshot!(lines(&visitor).join("\n"), @r"
         256 colours: your settings say so
-        no key releases: keys are held while they repeat; see docs/keys.md
+        no key releases: a key counts as held while it repeats; see docs/keys.md
         ASCII only: LANG=C is not UTF-8; see Characters in the settings
         ");
         for (source, said) in [
             (None, "no colours: --colors or the configuration says so"),
             (Some(ColorSource::NoColor), "no colours: NO_COLOR is set"),
-            (Some(ColorSource::Term), "no colours: TERM names no more; see docs/terminals.md"),
+            (Some(ColorSource::Term), "no colours: limited by TERM; see docs/terminals.md"),
         ] {
             let mono = Detection { depth: ColorDepth::Mono, source, ..Detection::default() };
             assert_eq!(lines(&mono), [said]);

@@ -355,7 +355,7 @@ impl App {
 }
 
 /// The message for a daily run that does not count.
-const PRACTICE: &str = "Practice: the first try of the day counts";
+const PRACTICE: &str = "Practice: only the day's first try counts";
 
 impl App {
     /// The menu before the daily run. It offers to begin or continue the try that counts, or to
@@ -363,14 +363,15 @@ impl App {
     pub(crate) fn daily_menu(&self) -> Menu<MenuChoice> {
         let menu = Menu::new("daily run");
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
-        let menu = menu.line(format!("The descent of {}, the same for all.", date_of(date.into())));
+        let date_text = date_of(date.into());
+        let menu = menu.line(format!("The descent of {date_text}, the same for everyone."));
         let rules = Rules { difficulty: Difficulty::default(), seed: date.into() };
         let id = save_of_descent(Descent::Daily, rules).id();
         let menu = match self.store.daily(date) {
             None if !self.store.has_room_for(id) => self.with_removal(menu),
             None => menu
-                .line("One try counts, and it ends with your death.")
-                .line("If you leave, it is saved, and you can go on.")
+                .line("Only one try counts, and it ends when you die.")
+                .line("If you leave, it is saved for later.")
                 .entry("Begin the try that counts", MenuChoice::Daily),
             Some(_) if self.store.has_saved(id) => menu
                 .line("The try that counts is where you left it.")

@@ -681,7 +681,7 @@ pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect 
 pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
-    let text = format!("{keys}Enter {effect}\nany other key goes on");
+    let text = format!("{keys}Enter {effect}\nany other key cancels");
     message(canvas, picture, "leave?", Text::from(text).centered());
 }
 

@@ -104,9 +104,9 @@ impl App {
         let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
         let menu = menu
             .lines(self.store.saves().find(|save| save.id() == id).map(described))
-            .line("A new game takes its place when you leave it or win.")
+            .line("A new game replaces it when you leave or win.")
             .entry("Continue", MenuChoice::Resume(id))
-            .entry("Begin anew", MenuChoice::GoOn);
+            .entry("Start over", MenuChoice::GoOn);
         self.with_leaving(menu)
     }
 
@@ -119,7 +119,7 @@ impl App {
     /// Adds an entry that removes the oldest saved game.
     pub(crate) fn with_removal(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
         let oldest = self.store.saves().last();
-        menu.line(format!("{MAX_SAVES} games are saved, and no more are kept."))
+        menu.line(format!("{MAX_SAVES} games are saved, which is the maximum."))
             .entries(oldest.map(|it| ("Remove the oldest", name_of(it), MenuChoice::RemoveOldest)))
     }
 
@@ -289,7 +289,7 @@ impl App {
         let what = if self.is_descent() { "The floors of descents have" } else { "The level has" };
         let menu = Menu::new("the saved game")
             .line(format!("{what} changed since you left it."))
-            .entry("Begin anew", MenuChoice::BeginAnew(id));
+            .entry("Start over", MenuChoice::BeginAnew(id));
         self.with_leaving(menu)
     }
 
@@ -317,7 +317,7 @@ impl App {
     }
 }
 
-const NO_MAP: &str = "The map of the saved game is not as it was.";
+const NO_MAP: &str = "The map of the saved game has changed.";
 
 /// The name of a saved game, for the player.
 fn name_of(save: &Save) -> String {

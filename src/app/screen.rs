@@ -246,7 +246,7 @@ impl App {
     fn level_menu(&self) -> Menu<MenuChoice> {
         let difficulty = self.store.preferences().difficulty;
         Menu::new(format!("levels, {}", difficulty.name()))
-            .line("left and right: another difficulty")
+            .line("left and right pick the difficulty")
             .entries(builtin::LEVELS.iter().enumerate().map(|(index, level)| {
                 let best = self.best_of(level.name, difficulty);
                 (capitalized(level.name), best, MenuChoice::Level(index))
@@ -273,7 +273,7 @@ impl App {
         let difficulty = self.store.preferences().difficulty;
         let menu = Menu::new(format!("my maps, {}", difficulty.name()));
         if self.own_maps.is_empty() {
-            return menu.line("There is no map file here. docs/maps.md says how to write one.");
+            return menu.line("No map files here. docs/maps.md says how to write one.");
         }
         menu.entries(self.own_maps.iter().enumerate().map(|(index, map)| {
             let best = self.best_of(&map.key, difficulty);
@@ -285,7 +285,7 @@ impl App {
         let keys = self.settings.bindings.key_names(Action::TogglePause);
         let carried = self.game.grid().into_iter().flat_map(Game::keys);
         let menu = Menu::new("paused")
-            .line(format!("{keys} goes on"))
+            .line(format!("{keys} resumes"))
             .line(self.goal.text())
             .lines(self.level_lines())
             .line(whole_seconds(self.game.elapsed()).to_string())
@@ -306,7 +306,7 @@ impl App {
 
 fn new_game_menu(usual: Difficulty) -> Menu<MenuChoice> {
     let about = |difficulty| match difficulty {
-        Difficulty::Easy => "what you found stays found",
+        Difficulty::Easy => "you keep what you've found",
         Difficulty::Normal => "guards call each other",
         Difficulty::Hard => "no checkpoints",
     };

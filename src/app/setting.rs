@@ -205,7 +205,7 @@ pub enum MapDisplay {
 
 impl Choice for MapDisplay {
     const ALL: &'static [NamedValue<Self>] = &[
-        (Self::Seen, "seen", "what was seen"),
+        (Self::Seen, "seen", "explored area"),
         (Self::All, "all", "all"),
         (Self::Off, "off", "off"),
     ];
@@ -393,7 +393,7 @@ fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
         let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
         format!("write one of {}", all.join(", "))
     };
-    entry.reject(format!("{} is no value of {}", quoted(text), quoted(entry.key)), "", help)
+    entry.reject(format!("{} is not a value of {}", quoted(text), quoted(entry.key)), "", help)
 }
 
 /// Reports that the value of `entry` must be `wanted`. `example` is a complete valid entry.

@@ -177,19 +177,20 @@ impl Default for Configuration {
 const SETTINGS: [Setting<Configuration>; 9] = [
     Setting {
         key: "preset",
-        about: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
+        about: "the keyboard layout of the default keys: \"qwerty\", \"azerty\" or \"hjkl\"",
         value: &At(|it: &mut Configuration| &mut it.preset),
     },
     Setting {
         key: "colors",
-        about: "how many colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what the\nterminal has",
+        about: "the number of colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what\n\
+                  the terminal has",
         value: &At(|it: &mut Configuration| &mut it.colors),
     },
     Setting {
         key: "glyphs",
-        about: "characters for pixels: \"half\" (two a cell), \"quadrant\" (four), \"sextant\" (six),\n\
-                  \"octant\" (eight), \"ascii\", \"ramp\" (by brightness), or \"auto\" for what the\n\
-                  terminal can show",
+        about: "the characters that show pixels: \"half\" (two per cell), \"quadrant\" (four),\n\
+                  \"sextant\" (six), \"octant\" (eight), \"ascii\", \"ramp\" (by brightness),\n\
+                  or \"auto\" for the best that the terminal can show",
         value: &At(|it: &mut Configuration| &mut it.glyphs),
     },
     Setting {
@@ -199,28 +200,29 @@ const SETTINGS: [Setting<Configuration>; 9] = [
     },
     Setting {
         key: "fps",
-        about: "the most frames a second, from 1 to 240",
+        about: "the maximum number of frames per second, from 1 to 240",
         value: &At(|it: &mut Configuration| &mut it.frames_per_second),
     },
     Setting {
         key: "mouse",
-        about: "whether the mouse turns the player at first: true or false",
+        about: "true if the mouse turns the player at the start of the game, false if not",
         value: &At(|it: &mut Configuration| &mut it.mouse),
     },
     Setting {
         key: "minimap",
-        about: "the map in the corner: \"seen\" (what has been seen so far), \"all\" or \"off\"",
+        about: "the map in the corner: \"seen\" (the cells that you have seen), \"all\" or \"off\"",
         value: &At(|it: &mut Configuration| &mut it.minimap),
     },
     Setting {
         key: "fidelity",
-        about: "how exact colours are while something moves: \"exact\", \"high\", \"low\", a\n\
-                  tolerance from 0 to 255, or \"auto\" for what the link allows",
+        about: "the fidelity of colours while something moves: \"exact\", \"high\", \"low\", a\n\
+                  tolerance from 0 to 255, or \"auto\" for the best that the link allows",
         value: &At(|it: &mut Configuration| &mut it.fidelity),
     },
     Setting {
         key: "art",
-        about: "a folder, beside this file, whose PNG files replace the built-in pictures with\ntheir names; \"\" for none",
+        about: "a folder beside this file whose PNG files replace the built-in pictures with\n\
+                  the same names; \"\" for none",
         value: &ArtFolder,
     },
 ];
@@ -346,7 +348,7 @@ impl Bound {
 
 fn bound_twice(key: Key, place: Range<usize>) -> Fault {
     Fault::new(place, format!("the key {} is bound to two actions", quoted(&key.to_string())))
-        .label("another action has it too")
+        .label("another action has this key too")
         .help("give each key to one action")
 }
 
@@ -357,13 +359,15 @@ impl fmt::Display for Configuration {
         let default = Self::default();
         for Setting { key, about, value } in &SETTINGS {
             about.lines().try_for_each(|line| writeln!(f, "# {line}"))?;
-            writeln!(f, "# default: {}", value.write(&default).trim_matches('"'))?;
+            let default = value.write(&default);
+            let default = match default.trim_matches('"') {
+                "" => "none",
+                named => named,
+            };
+            writeln!(f, "# default: {default}")?;
             writeln!(f, "{key} = {}\n", value.write(self))?;
         }
-        writeln!(
-            f,
-            "# The keys of each action, in place of the preset's; those of the preset are comments."
-        )?;
+        writeln!(f, "# The keys of each action. Keys that match the preset are in comments.")?;
         writeln!(f, "# A key is one character or a name, such as \"up\", \"space\", \"f1\".")?;
         writeln!(f, "[{KEYS}]")?;
         let usual = self.preset.bindings();

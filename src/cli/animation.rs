@@ -32,10 +32,10 @@ use crate::tui::CellAspect;
 /// The window in which a replay is drawn, and the animated PNG of it.
 #[derive(Args, Clone, Debug)]
 pub struct Animation {
-    /// Write what the screen shows as an animated PNG
+    /// Write the screen as an animated PNG
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub png: Option<PathBuf>,
-    /// The seconds that the animated PNG shows, such as 12.5-20 [default: all]
+    /// The part of the replay to show, in seconds, such as 12.5-20 [default: all]
     #[arg(long, value_name = "FROM-TO", value_parser = part, requires = "png")]
     pub part: Option<(f64, f64)>,
     /// The size of the window in cells, with sides up to 1000 and up to 200000 cells

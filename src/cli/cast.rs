@@ -13,20 +13,20 @@ use crate::cast::{Caster, Ray, Side};
 use crate::render::DynCaster;
 use crate::world::World;
 
-/// Rays from standard input, hits to standard output
+/// Read rays from standard input, and write hits to standard output
 #[derive(Args, Debug)]
 #[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]
 pub(crate) struct Cast {
-    /// A map file, or a built-in level, as "cellcaster levels" lists them
+    /// A map file or a built-in level (see "cellcaster levels")
     #[arg(value_hint = ValueHint::FilePath)]
     map: Option<OsString>,
-    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS,
-    /// table:ANGLES or march:STEP
+    /// The method that finds walls: exact; with cellcaster-lab also dda, dda32, accumulate, fixed:BITS, table:ANGLES or
+    /// march:STEP
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
     pub(crate) caster: String,
 }
 
-const LONG_ABOUT: &str = r##"Rays from standard input, hits to standard output
+const LONG_ABOUT: &str = r##"Read rays from standard input, and write hits to standard output
 
 Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
 
@@ -43,7 +43,8 @@ const EXAMPLES: &str = "Examples:\n  echo \"1.5 1.5 1 0\" | cellcaster cast my.t
 pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
     if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) {
         return Err(Error::mistake(
-            "cast reads rays from standard input, so the map can't come from there, too; name a file",
+            "cast reads rays from standard input, so the map can't come from there too: name a \
+             file",
         ));
     }
     let world = level::load_grid(options.map.as_deref())?;
@@ -76,7 +77,7 @@ fn verdict(wrong_lines: u64) -> Result<(), Error> {
         1 => "1 line of the input is".to_owned(),
         count => format!("{count} lines of the input are"),
     };
-    Err(Error::mistake(format!("{lines} not a ray; each has its reason in the output")))
+    Err(Error::mistake(format!("{lines} not a ray; the output gives the reason for each")))
 }
 
 /// The output line for one ray.
@@ -118,11 +119,11 @@ fn read_ray(line: &[u8]) -> Result<Ray, String> {
     let mut numbers = [0.0; 4];
     let mut words = text.split_whitespace();
     for number in &mut numbers {
-        let word = words.next().ok_or_else(|| format!("{FORM}; this is fewer"))?;
-        *number = word.parse().map_err(|_| format!("{FORM}; \"{word}\" is no number"))?;
+        let word = words.next().ok_or_else(|| format!("{FORM}; this line has fewer"))?;
+        *number = word.parse().map_err(|_| format!("{FORM}; \"{word}\" is not a number"))?;
     }
     if words.next().is_some() {
-        return Err(format!("{FORM}; this is more"));
+        return Err(format!("{FORM}; this line has more"));
     }
     let [x, y, dx, dy] = numbers;
     Ray::new(DVec2::new(x, y), DVec2::new(dx, dy)).map_err(|error| error.to_string())

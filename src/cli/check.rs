@@ -11,10 +11,10 @@ use crate::fault::printable;
 use crate::game::is_exit_out_of_reach;
 use crate::map::Level;
 
-/// Say everything that is wrong with maps
+/// Report every fault in maps
 ///
-/// Names every fault of every map, each with its place and what to write instead. The exit status is 0 if all maps are
-/// right, and 2 if one is not. Remarks on a level without an exit, or with one that nobody can reach, leave it at 0.
+/// Reports every fault in every map, with its position and what to write instead. The exit status is 0 if all maps are
+/// valid, otherwise 2. A remark about a level without an exit, or with an exit out of reach, leaves it at 0.
 #[derive(Args, Debug)]
 #[command(
     after_long_help = "Examples:\n  cellcaster check maps/*.toml\n  cellcaster check --deny remarks my.toml"
@@ -23,7 +23,7 @@ pub(crate) struct Check {
     /// Map files, or "-" for standard input
     #[arg(value_name = "MAP", required = true, value_hint = ValueHint::FilePath)]
     maps: Vec<OsString>,
-    /// End with status 2 after a remark, too
+    /// Exit with status 2 after a remark too
     #[arg(long, value_name = "KIND", value_enum)]
     deny: Option<Denied>,
 }
@@ -37,7 +37,7 @@ enum Denied {
 /// Checks all maps, even after a fault, and prints a line for each valid one.
 pub(crate) fn run(options: &Check) -> Result<(), Error> {
     if options.maps.iter().filter(|map| *map == STANDARD_INPUT).count() > 1 {
-        return Err(Error::mistake("standard input holds one map, and \"-\" stands there twice"));
+        return Err(Error::mistake("standard input holds only one map: write \"-\" only once"));
     }
     let (mut wrong, mut remarks) = (0_usize, 0_usize);
     for map in &options.maps {
@@ -47,7 +47,7 @@ pub(crate) fn run(options: &Check) -> Result<(), Error> {
                 let (size, remark) = (size(&level), remark(&level));
                 remarks += usize::from(remark.is_some());
                 let note = remark.map(|it| format!("; {it}")).unwrap_or_default();
-                writeln!(io::stdout(), "{name}: right, {size}{note}")
+                writeln!(io::stdout(), "{name}: valid, {size}{note}")
                     .map_err(|error| Error::of_output(&error))?;
             }
             Err(error) => {
@@ -60,7 +60,7 @@ pub(crate) fn run(options: &Check) -> Result<(), Error> {
         (0, _) if options.deny.is_some() && remarks > 0 => Err(denied(remarks)),
         (0, _) => Ok(()),
         (1, 1) => Err(Error::reported()),
-        (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps are wrong, as said above"))),
+        (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps have faults; see above"))),
     }
 }
 
@@ -77,12 +77,11 @@ fn remark(level: &Level) -> Option<&'static str> {
     if !world.has_exit() {
         return Some("it has no exit");
     }
-    is_exit_out_of_reach(world).then_some(
-        "but nobody can reach an exit: no way leads there from the start, not even by jumps",
-    )
+    is_exit_out_of_reach(world)
+        .then_some("but no exit can be reached from the start, not even by jumping")
 }
 
 fn denied(remarks: usize) -> Error {
     let maps = if remarks == 1 { "1 map has" } else { &format!("{remarks} maps have") };
-    Error::mistake(format!("{maps} a remark, as said above, and --deny remarks allows none"))
+    Error::mistake(format!("{maps} a remark (see above), which --deny remarks does not allow"))
 }

@@ -15,13 +15,14 @@ use crate::fault::printable;
 /// The size limit of a configuration file, in bytes.
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// Print the settings in force, as a file with comments
+/// Print the current settings as a file with comments
 ///
-/// Says where the file lies and what each setting means. What it prints may be written to that file, and changed there.
+/// Shows the path of the file and the meaning of each setting. To change settings, save the output to that file and
+/// edit it.
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:\n  cellcaster config > config.toml")]
 pub(crate) struct Config {
-    /// The settings [default: cellcaster/config.toml in the folder for configuration files]
+    /// The settings file [default: cellcaster/config.toml in the folder for configuration files]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     config: Option<PathBuf>,
 }
@@ -40,12 +41,11 @@ pub(crate) fn run(options: Config) -> Result<(), Error> {
     let place = match path {
         Some(path) if is_there => format!("# Settings of Cellcaster, from {}", path.display()),
         Some(path) => format!(
-            "# Settings of Cellcaster: the defaults, as there is no file {}",
+            "# Settings of Cellcaster: the defaults, because there is no file {}",
             path.display()
         ),
-        None => {
-            "# Settings of Cellcaster: the defaults, as there is no folder for a file".to_owned()
-        }
+        None => "# Settings of Cellcaster: the defaults, because there is no folder for the file"
+            .to_owned(),
     };
     let text = format!("{}\n\n{configuration}", printable(&place));
     print(text.as_bytes())

@@ -87,7 +87,7 @@ pub(crate) fn more(play_examples: &str, commands: &Command) -> String {
 }
 
 const ABOUT: &str = "\
-A raycaster game in the terminal, and its pictures in scripts.
+A raycaster game for the terminal, and a renderer for scripts.
 
 You are a thief. Take the treasure that a level asks for, keep out of sight and hearing of its guards, \
 and reach the exit, which the map shows as a green square. A level ends with its time, treasure, \
@@ -95,8 +95,8 @@ alarms and a rank, and your best results are kept.
 
 Without MAP the title screen offers the saved games, a new game at one of three difficulties, the levels \
 with your best results, the daily run, endless games, the maps in this folder, settings and help. With \
-MAP, --generate or --endless the game begins at once, and asks first only if a game in that level is \
-saved. --daily asks before the try that counts.
+MAP, --generate or --endless the game begins at once, unless that level has a saved game: then it asks \
+first. --daily asks before the try that counts.
 ";
 
 const MAP: &str = "
@@ -104,8 +104,8 @@ MAP is a map file, \"-\" for standard input, or a built-in level; --generate maz
 one in its place. An option may also stand before the command. The built-in levels are ";
 
 pub(crate) const WHERE_TO_READ_ON: &str = "\
-\"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
---help\" tells of one command.";
+\"cellcaster --help\" lists all commands with their options, keys and examples; \"cellcaster COMMAND \
+--help\" describes one command.";
 
 const OTHER_PROGRAMS: &str = "\
 Other programs: cellcaster NAME runs cellcaster-NAME, which is beside this
@@ -117,8 +117,8 @@ program or on the PATH.
 ";
 
 const EXIT_STATUS: &str = "
-Exit status: 0; 2 for a mistake in the arguments, a map or a script; 1 where the
-machine refuses something, or where replay --verify does not reach an exit.";
+Exit status: 0 for success; 2 for a mistake in the arguments, a map or a script;
+1 for an error of the system, or if replay --verify does not reach an exit.";
 
 fn page(program: Command) -> io::Result<Vec<u8>> {
     // The text after the options would repeat other sections of the page.

@@ -161,8 +161,7 @@ pub(crate) fn generate(
 /// The default seed of generated levels.
 const FIRST_SEED: u64 = 1;
 
-const NO_START: &str =
-    "there is nowhere to stand at --start or --camera: that is outside the level";
+const NO_START: &str = "--start or --camera is outside the level";
 
 /// The index of the built-in level `name`; `None` if there is a file with that name, which takes
 /// precedence.
@@ -202,7 +201,7 @@ fn own_map(path: PathBuf) -> Option<OwnMap> {
 /// A sentence for the player.
 pub(crate) fn load_own(path: &Path) -> Result<OwnLevel, String> {
     if !path.is_file() {
-        return Err(format!("{} is no file now", path.display()));
+        return Err(format!("{} is no longer a file", path.display()));
     }
     let level = map::load_level(path).map_err(|faults| faults.summary())?;
     own_level(path, level).ok_or_else(|| format!("{} can't be read", path.display()))

@@ -20,7 +20,7 @@ use crate::world::{Difficulty, World};
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:\n  cellcaster levels\n  cellcaster levels --format json")]
 pub(crate) struct LevelsCommand {
-    /// How the list is written
+    /// The format of the list
     #[arg(long, value_enum, default_value_t)]
     format: ListFormat,
 }

@@ -40,7 +40,7 @@ pub(crate) const COMMANDS: [&str; 10] = [
 /// The level of a command: a map, or a generated level.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LevelOptions {
-    /// A map file, "-" for standard input, or a built-in level, as "cellcaster levels" lists them
+    /// A map file, "-" for standard input, or a built-in level (see "cellcaster levels")
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) map: Option<OsString>,
     /// Generate a level in place of MAP
@@ -50,10 +50,10 @@ pub(crate) struct LevelOptions {
     /// The seed of the generated level [default: 1]
     #[arg(long, value_name = "N", value_parser = seed, requires = "generate")]
     pub(crate) seed: Option<u64>,
-    /// Generate a level with walls around it, and an exit [default: without an end]
+    /// The size of a generated level with outer walls and an exit [default: endless]
     #[arg(long, value_name = "COLSxROWS", value_parser = extent, requires = "generate")]
     pub(crate) level_size: Option<Extent>,
-    /// The cell of the generated level to start at [default: the first corner]
+    /// The cell to start at in the generated level [default: the first corner]
     #[arg(long, value_name = "COLUMN,ROW", value_parser = site, requires = "generate")]
     pub(crate) start: Option<Site>,
 }
@@ -61,22 +61,22 @@ pub(crate) struct LevelOptions {
 /// How a picture is seen and drawn; the command decides what is not given.
 #[derive(Args, Debug)]
 pub(crate) struct PictureOptions {
-    /// The height of a cell over its width, from 0.1 to 10 [default: 2; when playing, what the terminal says]
+    /// The height of a cell divided by its width, from 0.1 to 10 [default: 2; when playing, as the terminal reports]
     #[arg(long, value_name = "RATIO", value_parser = cell_aspect)]
     pub(crate) cell_aspect: Option<CellAspect>,
-    /// What a cell shows: two pixels (half), four (quadrant), six (sextant) or eight (octant) in two colours, one as a
-    /// character (ascii), or one as a character for its brightness (ramp) [default: half]
+    /// The characters that show pixels: each cell shows two (half), four (quadrant), six (sextant) or eight (octant) in
+    /// two colours, or one as a character for its colour (ascii) or brightness (ramp) [default: half]
     #[arg(long, value_name = "SET", value_parser = choice::<GlyphSet>())]
     pub(crate) glyphs: Option<GlyphSet>,
-    /// How pixels are computed: from textures averaged where they are far (mip), from raw texels (nearest), or from all
-    /// that they cover, with smooth edges (area)
+    /// How textures are sampled: averaged in the distance (mip), as single texels (nearest), or averaged over each
+    /// pixel, with smooth edges (area)
     #[arg(long, value_name = "FILTER", default_value = Filter::default().name(), value_parser = filter())]
     pub(crate) filter: Filter,
-    /// Show the PNG files of a folder in place of the built-in pictures with their names, as in maps/art
+    /// Replace built-in pictures with the PNG files in this folder that have the same names, as in maps/art
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) art: Option<PathBuf>,
-    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS,
-    /// table:ANGLES or march:STEP
+    /// The method that finds walls: exact; with cellcaster-lab also dda, dda32, accumulate, fixed:BITS, table:ANGLES or
+    /// march:STEP
     #[arg(long, value_name = "METHOD", default_value = EXACT)]
     pub(crate) caster: String,
     #[command(flatten)]
@@ -89,7 +89,7 @@ pub(crate) struct ViewOptions {
     /// The field of view from left to right, above 0 and below 180 degrees [default: 66]
     #[arg(long = "fov", value_name = "DEG", value_parser = field_of_view)]
     pub(crate) field_of_view: Option<FieldOfView>,
-    /// How many colours there are [default: true; when playing, what the terminal has]
+    /// The number of colours [default: true; when playing, as many as the terminal has]
     #[arg(long = "colors", value_name = "DEPTH", value_parser = choice::<ColorDepth>())]
     pub(crate) depth: Option<ColorDepth>,
 }
@@ -173,7 +173,7 @@ fn field_of_view(text: &str) -> Result<FieldOfView, Takes> {
 
 fn cell_aspect(text: &str) -> Result<CellAspect, Takes> {
     let aspect = text.parse().ok().and_then(CellAspect::new);
-    aspect.ok_or(Takes("the height of a cell over its width, from 0.1 to 10"))
+    aspect.ok_or(Takes("the height of a cell divided by its width, from 0.1 to 10"))
 }
 
 fn extent(text: &str) -> Result<Extent, Takes> {

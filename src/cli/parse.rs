@@ -139,7 +139,7 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
                 choices => one_of(choices),
             };
             if value.is_empty() {
-                format!("{name} takes {choices}, and nothing follows it")
+                format!("{name} takes {choices}, but nothing follows it")
             } else {
                 format!("{name} takes {choices}, not \"{value}\"")
             }
@@ -148,11 +148,11 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
             let options = command.get_arguments().filter_map(|it| it.get_long());
             let options: Vec<String> = options.map(|name| format!("--{name}")).collect();
             let options: Vec<&str> = options.iter().map(String::as_str).chain(["--help"]).collect();
-            format!("{command_name} has no option {argument}; {}", or_help(&options))
+            format!("unknown option {argument} for {command_name}; {}", or_help(&options))
         }
         ErrorKind::InvalidSubcommand => {
             let names: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
-            format!("\"{argument}\" is no command; {}", or_help(&names))
+            format!("\"{argument}\" is not a command; {}", or_help(&names))
         }
         ErrorKind::UnknownArgument => surplus(argument),
         ErrorKind::ArgumentConflict if text(error, ContextKind::InvalidSubcommand).is_some() => {
@@ -170,9 +170,9 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
             let others = texts(error, ContextKind::PriorArg).iter().map(String::as_str);
             let others = others.chain(text(error, ContextKind::PriorArg)).map(name_of);
             let others = others.collect::<Vec<_>>().join(" and ");
-            format!("{name} goes without {others}: leave one of them out")
+            format!("{name} cannot be combined with {others}: leave one of them out")
         }
-        ErrorKind::TooManyValues => format!("{name} takes no value, and \"{value}\" is one"),
+        ErrorKind::TooManyValues => format!("{name} takes no value: leave out \"{value}\""),
         _ => first_line(error),
     }
 }

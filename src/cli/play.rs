@@ -24,22 +24,22 @@ use crate::world::Difficulty;
 
 /// Play; without MAP, from the title screen
 ///
-/// Plays in the terminal. "?" shows the keys, and Ctrl-C leaves. What you have reached is kept in the folder for data
-/// files, or in the one that `CELLCASTER_DATA` names. Over SSH it takes "ssh -t HOST cellcaster".
+/// Plays in the terminal. "?" shows the keys, and Ctrl-C leaves. Your progress is saved in the folder for data files,
+/// or in the folder in `CELLCASTER_DATA`. Over SSH, run "ssh -t HOST cellcaster".
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 pub(crate) struct Play {
-    /// How hard MAP or the endless game is [default: as chosen in the game, or normal]
+    /// The difficulty of MAP or the endless game [default: as chosen in the game, or normal]
     #[arg(long, value_name = "LEVEL", value_parser = choice::<Difficulty>())]
     difficulty: Option<Difficulty>,
-    /// Play the floors of the day, which are the same for all, at normal difficulty; the first try counts
+    /// Play the daily run: the same floors for everyone, at normal difficulty; only the first try counts
     #[arg(long, conflicts_with_all = ["endless", "map", "generate", "watch", "difficulty"])]
     daily: bool,
     /// Play floor after floor, each harder than the one before
     #[arg(long, conflicts_with_all = ["map", "generate", "watch"])]
     endless: bool,
-    /// The settings [default: cellcaster/config.toml in the folder for configuration files]
+    /// The settings file [default: cellcaster/config.toml in the folder for configuration files]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     config: Option<PathBuf>,
     /// At most N frames a second, from 1 to 240 [default: 30]
@@ -47,21 +47,20 @@ pub(crate) struct Play {
     frames_per_second: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) look: PictureOptions,
-    /// How exact colours are while something moves: as the link allows (auto), exact, high, low, or how far they may be
-    /// off, from 0 to 255 [default: auto]
+    /// The fidelity of colours while something moves: as the link allows (auto), exact, high, low, or the largest
+    /// colour error, from 0 to 255 [default: auto]
     #[arg(long, value_name = "LEVEL", value_parser = fidelity_or_auto)]
     fidelity: Option<AutoFidelity>,
     /// Show frames and bytes a second, round trip and fidelity
     #[arg(long)]
     stats: bool,
-    /// Load the map anew whenever its file, or a PNG that it uses, changes
+    /// Reload the map when its file or a PNG that it uses changes
     #[arg(long)]
     watch: bool,
-    /// Write FILE.cast, which is what the terminal is sent, as asciicast v3; or FILE.script, which is what you do, for
-    /// replay and wire
+    /// Record the terminal's output as asciicast v3 (FILE.cast), or your actions for replay and wire (FILE.script)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     record: Option<PathBuf>,
-    /// Let --record replace a file
+    /// Let --record overwrite a file
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -223,8 +222,8 @@ fn levels(options: &Play) -> Result<Levels, Error> {
     if options.watch {
         if options.record.as_deref().is_some_and(RecordingFile::is_script) {
             return Err(Error::mistake(
-                "a script is about a map that stays as it is, and --watch loads it anew: leave one \
-                 of them out, or record a .cast",
+                "a script needs a map that does not change, but --watch reloads it: leave one of \
+                 them out, or record a .cast",
             ));
         }
         let (level, mut watch) = level::watch(&options.place)?;
@@ -236,8 +235,8 @@ fn levels(options: &Play) -> Result<Levels, Error> {
     {
         take_keys_from_terminal().map_err(|_| {
             Error::mistake(
-                "standard input held the map, and there is no terminal to take keys from: name a \
-                 file instead",
+                "the map came from standard input, and there is no other terminal to read keys \
+                 from: name a map file instead",
             )
         })?;
     }

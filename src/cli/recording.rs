@@ -54,7 +54,7 @@ impl RecordingFile {
         private::restrict_file(&mut options);
         let file = options.write(true).open(path).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Error::mistake(format!(
-                "{} is there already: name another file, or replace it with --force",
+                "{} already exists: name another file, or replace it with --force",
                 path.display()
             )),
             _ => unwritable(path, &error),
@@ -104,8 +104,8 @@ impl RecordingKind {
             Ok(Self::Script)
         } else {
             Err(Error::mistake(format!(
-                "--record takes a file that ends in .cast, for what the terminal is sent, or in \
-                 .script, for what you do, not \"{}\"",
+                "--record takes a file that ends in .cast (for the terminal's output) or in \
+                 .script (for your actions), not \"{}\"",
                 path.display()
             )))
         }

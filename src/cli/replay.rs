@@ -29,13 +29,13 @@ use crate::game::{Game, Header, LevelName, Outcome, Rules, Script};
 use crate::terminal::{CellWriter, Fidelity};
 use crate::world::World;
 
-/// Play a script off screen, and write it as asciicast or animated PNG, or check what it achieves
+/// Play a script off screen, and write it as an asciicast or animated PNG, or check its result
 ///
-/// A script is lines such as "2.5 s forward run" or "12 steps turn-left open"; "stand" is nothing,
-/// a name in square brackets begins a section, and # a comment. Lines at its top may name the game:
-/// "level cellar", "difficulty hard" and "seed 7"; a level may also be a map file, or "floor 1" of
-/// an endless game, which goes on with the floors below. MAP takes precedence. play --record writes
-/// such a script.
+/// A script has lines such as "2.5 s forward run" or "12 steps turn-left open". "stand" does
+/// nothing, a name in square brackets begins a section, and # begins a comment. Lines at the top
+/// may name the game: "level cellar", "difficulty hard" and "seed 7"; a level may also be a map
+/// file, or "floor 1" of an endless game, which continues with the next floors. MAP takes
+/// precedence. play --record writes such a script.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -44,20 +44,20 @@ Examples:
   cellcaster replay walk.script --size 100x30 --fps 15 --part 2-10 --png walk.png
   cellcaster replay walk.script --verify")]
 pub(crate) struct ReplayCommand {
-    /// What is played
+    /// The script to play
     #[arg(value_hint = ValueHint::FilePath)]
     script: PathBuf,
-    /// Say level, time, treasure and rank instead; the exit status is 0 if the script reaches an exit, else 1
+    /// Print level, time, treasure and rank instead; the exit status is 0 if the script reaches an exit, else 1
     #[arg(long, conflicts_with_all = ["generate", "png"])]
     verify: bool,
-    /// Where to write [default: standard output]
+    /// The output file [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "png")]
     cast: Option<PathBuf>,
     #[command(flatten)]
     animation: Animation,
     #[command(flatten)]
     view: ViewOptions,
-    /// How exact colours are while something moves: exact, high, low, or how far they may be off, from 0 to 255
+    /// The fidelity of colours while something moves: exact, high, low, or the largest colour error, from 0 to 255
     #[arg(long, value_name = "LEVEL", default_value = "exact", value_parser = fidelity)]
     fidelity: Fidelity,
     #[command(flatten)]
@@ -91,7 +91,8 @@ pub(crate) fn run(options: &ReplayCommand) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         if options.animation.png.is_some() {
             return Err(Error::mistake(
-                "only cellcaster-server draws the recording of a room: write cellcaster-server replay",
+                "only cellcaster-server can draw the recording of a room: run cellcaster-server \
+                 replay",
             ));
         }
         let words = [Some(options.script.clone().into_os_string()), options.place.map.clone()];

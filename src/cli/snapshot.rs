@@ -32,10 +32,10 @@ use crate::space::{self, Elevation, Scene};
 use crate::tui::{FirstPerson, View};
 use crate::world::{Camera, Cell, FieldOfView, Heading, Pitch, TileKind, World};
 
-/// One frame to standard output
+/// Write one frame to standard output
 ///
-/// Draws what the game would show, without a terminal, the same bytes on every machine. Of a map of bodies, --eye and
-/// --pitch are as at its start where they are not given.
+/// Draws what the game would show. It needs no terminal, and writes the same bytes on every machine. In a map of
+/// bodies, --eye and --pitch default to the values of its start.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -44,27 +44,27 @@ Examples:
   cellcaster snapshot my.toml --camera 2.5,3.5,90 --format json
   cellcaster snapshot my.toml --format ansi --watch")]
 pub(crate) struct Snapshot {
-    /// The size of the picture in cells, from 1x1 to 4096x4096 [default: 80x24; with --watch, that of the window]
+    /// The size of the picture in cells, from 1x1 to 4096x4096 [default: 80x24; with --watch, the size of the window]
     #[arg(long, value_name = "COLSxROWS", value_parser = size)]
     size: Option<Size>,
-    /// Where to look from, in cells, and which way, in degrees: 0 is east, 90 south [default: the map's start]
+    /// The position in cells and the heading in degrees: 0 is east, 90 south [default: the map's start]
     #[arg(long, value_name = "X,Y,HEADING", value_parser = position_and_heading)]
     camera: Option<(DVec2, Heading)>,
-    /// How high the eye is above floor level, in cells [default: 0.5]
+    /// The height of the eye above floor level, in cells [default: 0.5]
     #[arg(long, value_name = "HEIGHT", value_parser = eye)]
     eye: Option<f64>,
-    /// Look down, from -30 degrees, or up, to 30 [default: 0]
+    /// The pitch, from -30 (down) to 30 degrees (up) [default: 0]
     #[arg(long, value_name = "DEG", value_parser = pitch)]
     pitch: Option<Pitch>,
     #[command(flatten)]
     pub(crate) look: PictureOptions,
-    /// How it is written: characters (text), with colours (ansi), a list of cells (json) or a picture of them (png)
+    /// The output format: characters (text), characters with colours (ansi), a list of cells (json) or a picture (png)
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Say how the frame is drawn and what it costs, in its place
+    /// Print how the frame is drawn and what it costs, instead of the frame
     #[arg(long)]
     explain: bool,
-    /// Load the map anew whenever its file, or a PNG that it uses, changes
+    /// Reload the map when its file or a PNG that it uses changes
     #[arg(long)]
     watch: bool,
     #[command(flatten)]
@@ -108,12 +108,12 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
     if is_png && options.watch {
         return Err(Error::mistake(
-            "a PNG is one picture, and --watch draws several: leave one of them out",
+            "a PNG holds one picture, but --watch draws several: leave one of them out",
         ));
     }
     if is_png && io::stdout().is_terminal() {
         return Err(Error::mistake(
-            "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
+            "standard output is a terminal, which cannot show a PNG: redirect it to a file, as in \
              \"cellcaster snapshot --format png > picture.png\"",
         ));
     }
@@ -187,9 +187,9 @@ fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Erro
     let position = position.extend(options.eye.unwrap_or(start.position().z));
     let elevation = options.pitch.and_then(|pitch| Elevation::from_degrees(pitch.degrees()));
     let camera = space::Camera::new(position, heading, options.field_of_view());
-    camera.map(|camera| camera.with_elevation(elevation.unwrap_or(start.elevation))).ok_or_else(
-        || Error::mistake("--camera or --eye is further away than a map of bodies reaches"),
-    )
+    camera
+        .map(|camera| camera.with_elevation(elevation.unwrap_or(start.elevation)))
+        .ok_or_else(|| Error::mistake("--camera or --eye is outside the range of a map of bodies"))
 }
 
 /// Renders the view of `camera` into `scene` once, and converts it to cells band by band.
@@ -237,7 +237,7 @@ fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
         && (0.0..f64::from(grid.height())).contains(&position.y);
     if !is_on_map {
         let (columns, rows) = (grid.width(), grid.height());
-        return Some(format!("the camera is off the map, which has {columns}×{rows} cells"));
+        return Some(format!("the camera is outside the map, which has {columns}×{rows} cells"));
     }
     let cell = Cell::at(position);
     let tile = world.tile_in(cell)?;
@@ -248,10 +248,13 @@ fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     Some(if matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_)) {
         "the camera is inside a wall".to_owned()
     } else if eye < floor {
-        format!("the camera is below the floor: the eye at a height of {eye}, the floor at {floor}")
+        format!(
+            "the camera is below the floor: the eye is at a height of {eye}, the floor at {floor}"
+        )
     } else {
         format!(
-            "the camera is inside what hangs overhead: the eye at a height of {eye}, the ceiling at {ceiling}"
+            "the camera is inside the ceiling: the eye is at a height of {eye}, the ceiling at \
+             {ceiling}"
         )
     })
 }

@@ -133,7 +133,7 @@ fn end_of_unclosed_line(text: &str) -> Option<usize> {
 }
 
 fn too_many_tokens(place: Range<usize>) -> Fault {
-    Fault::new(place, format!("a file has {MAX_TOKENS} TOML tokens at most"))
+    Fault::new(place, format!("a file may have at most {MAX_TOKENS} TOML tokens"))
         .label("this is one too many")
         .help("leave some definitions out; a string is one token, however long")
 }

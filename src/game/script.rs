@@ -305,7 +305,7 @@ impl Header {
         }
         if value.is_empty() {
             return Err(Fault::new(first, format!("{} has no value", quoted(word)))
-                .label("which one?")
+                .label("a value is missing")
                 .help(example(word)));
         }
         let is_read = match word {
@@ -463,7 +463,7 @@ impl ScriptReader<'_> {
         let read = if self.sections.is_empty() {
             self.header.read_line(self.text, line)
         } else {
-            Err(Fault::new(line, "what a script is about stands before everything else")
+            Err(Fault::new(line, "level, difficulty and seed come before everything else")
                 .label("too late")
                 .help("move this line to the top"))
         };
@@ -504,9 +504,9 @@ impl ScriptReader<'_> {
         let (steps, rest) = self.duration(line.clone())?;
         let words = words(self.text, rest);
         if words.is_empty() {
-            return Err(Fault::new(line, "a line says what is wanted after how long it is")
-                .label("and then?")
-                .help(format!("write {STAND:?} where nothing is")));
+            return Err(Fault::new(line, "a line needs an intent after its duration")
+                .label("an intent is missing")
+                .help(format!("write {STAND:?} to do nothing")));
         }
         Ok(Stretch { steps, intents: self.intents(&words)? })
     }
@@ -518,7 +518,7 @@ impl ScriptReader<'_> {
         let number = line.start..line.start + length;
         let Ok(amount) = text[..length].parse::<f64>() else {
             let first = words(self.text, line).swap_remove(0);
-            return Err(Fault::new(first, "a line begins with how long it lasts")
+            return Err(Fault::new(first, "a line begins with its duration")
                 .label("not a number")
                 .help("write 2.5 s forward, or 12 steps forward turn-left"));
         };
@@ -528,13 +528,13 @@ impl ScriptReader<'_> {
             "s" => (amount * f64::from(STEPS_PER_SECOND)).round(),
             "step" | "steps" if amount.fract() == 0.0 => amount,
             "step" | "steps" => {
-                return Err(Fault::new(number, "there is no part of a step")
+                return Err(Fault::new(number, "a step cannot be divided")
                     .label("not a whole number")
                     .help(format!("a second has {STEPS_PER_SECOND} steps")));
             }
             _ => {
-                return Err(Fault::new(unit, "a time is in seconds or in steps")
-                    .label("no unit of time")
+                return Err(Fault::new(unit, "a duration is in seconds or in steps")
+                    .label("not a unit of time")
                     .help("write 2.5 s, or 150 steps"));
             }
         };
@@ -552,8 +552,11 @@ impl ScriptReader<'_> {
             match (&self.text[place.clone()], words.len()) {
                 (STAND, 1) => {}
                 (STAND, _) => {
-                    return Err(Fault::new(place, "who stands wants nothing else")
-                        .label("take this away, or all the rest"));
+                    return Err(Fault::new(
+                        place,
+                        "\"stand\" cannot be combined with other intents",
+                    )
+                    .label("remove this, or all the others"));
                 }
                 (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
                 (word, _) => match Intent::named(word) {
@@ -572,14 +575,14 @@ impl ScriptReader<'_> {
         if self.faults.is_empty() && self.sections.is_empty() {
             return Err(Faults::of_whole_file(
                 name,
-                &format!("{name} holds no stretch of time"),
+                &format!("{name} has no line with a duration"),
                 "write a line such as 2.5 s forward",
             ));
         }
         if self.faults.is_empty() {
             let empty = self.sections.iter().filter(|named| named.section.stretches.is_empty());
             self.faults.extend(empty.map(|named| {
-                Fault::new(named.place.clone(), "a section holds at least one stretch of time")
+                Fault::new(named.place.clone(), "a section needs at least one line with a duration")
                     .label("this one is empty")
             }));
         }
@@ -605,12 +608,12 @@ fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents,
         return Err(wanted_twice(name, place));
     }
     let Some(hundredths) = intent::hundredths(degrees) else {
-        let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
+        let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the maximum");
         return Err(Fault::new(
             place,
-            "an angle is in degrees and not 0, with two digits at most after the point",
+            "an angle is in degrees, not 0, and has at most two decimals",
         )
-        .label("no such angle")
+        .label("not valid")
         .help(help));
     };
     *amount = hundredths;
@@ -618,16 +621,16 @@ fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents,
 }
 
 fn wanted_twice(word: &str, place: Range<usize>) -> Fault {
-    Fault::new(place, format!("{} is wanted twice", quoted(word))).label("once is enough")
+    Fault::new(place, format!("{} is repeated", quoted(word))).label("once is enough")
 }
 
 fn unknown(word: &str, place: Range<usize>) -> Fault {
     let names: Vec<&str> = Intent::ALL.into_iter().map(Intent::name).chain([STAND]).collect();
     let help = match nearest(word, &names) {
         Some(meant) => format!("the nearest is {}", quoted(meant)),
-        None => format!("there are {}", names.join(", ")),
+        None => format!("known intents: {}", names.join(", ")),
     };
-    Fault::new(place, format!("nobody can want {}", quoted(word))).label("unknown").help(help)
+    Fault::new(place, format!("unknown intent {}", quoted(word))).label("unknown").help(help)
 }
 
 /// The words in a part of `text`.

@@ -70,12 +70,13 @@ impl fmt::Display for Unrestorable {
         match self {
             Self::OtherVersion => write!(
                 f,
-                "the state is not one of version {} of Cellcaster with version {RULES_VERSION} of the rules",
+                "the state is not from version {} of Cellcaster with version {RULES_VERSION} of \
+                 the rules",
                 env!("CARGO_PKG_VERSION")
             ),
-            Self::OtherLevel => f.write_str("the state is one of another level or other rules"),
+            Self::OtherLevel => f.write_str("the state belongs to another level or other rules"),
             Self::Cut => f.write_str("the state ends too early"),
-            Self::Longer => f.write_str("the state goes on after its end"),
+            Self::Longer => f.write_str("the state has bytes after its end"),
             Self::TooLong => write!(f, "the state is longer than {MAX_BYTES} bytes"),
             Self::Damaged(what) => write!(f, "the state is damaged: {what} is out of its range"),
         }

@@ -56,7 +56,8 @@ fn names(folder: &Path) -> Result<Vec<String>, ArtError> {
     if names.is_empty() {
         let folder = folder.display();
         return Err(ArtError(format!(
-            "the folder {folder} has no PNG file: copy a sheet of maps/art into it, and change that"
+            "the folder {folder} has no PNG file: copy a sheet from maps/art into it, and edit the \
+             copy"
         )));
     }
     names.sort();
@@ -75,7 +76,7 @@ fn sheet(
         let meant = nearest(stem, &known).map_or(String::new(), |known| {
             format!(", and the nearest is {}", quoted(&format!("{known}.png")))
         });
-        return Err(format!("has the name of no built-in picture{meant}: rename or remove it"));
+        return Err(format!("is not named after a built-in picture{meant}: rename or remove it"));
     };
     let bytes = files.read(name).map_err(PictureError::Unreadable);
     let picture = bytes

@@ -53,7 +53,7 @@ pub(crate) fn too_many(
     max: usize,
     things: &str,
 ) -> Option<Fault> {
-    let message = format!("the grid has {count} {things}, and {max} at most can be there");
+    let message = format!("the grid has {count} {things}, but at most {max} are allowed");
     (count > max).then(|| Fault::new(place, message).help("draw fewer of them"))
 }
 
@@ -71,11 +71,11 @@ fn too_many_driven(plan: Plan<'_>) -> Option<Fault> {
     let (count, symbol, most) = plan.count(|symbol| symbol.driver().is_some())?;
     let place = symbol.driver()?.place.clone();
     let message =
-        format!("switches move {count} cells of the grid, and {MAX_DRIVEN} at most can move");
+        format!("switches move {count} cells of the grid, but at most {MAX_DRIVEN} can move");
     (count > MAX_DRIVEN).then(|| {
         Fault::new(place, message)
             .label(format!("{most} of them here"))
-            .help("draw fewer of them, and plain floor or wall in their place")
+            .help("replace some of them with plain floor or wall")
     })
 }
 
@@ -86,7 +86,7 @@ fn undefined_characters(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     plan.drawing.characters().filter(is_undefined).filter_map(move |character| {
         let place = plan.drawing.first_places(character).into_iter().next()?;
         let fault = if character.is_control() {
-            let message = format!("the grid has the control character {character:?} in it");
+            let message = format!("the grid contains the control character {character:?}");
             Fault::new(place, message).help("draw open floor as '.' or a space")
         } else {
             let message = format!("the grid's character {character:?} is not defined");
@@ -141,7 +141,7 @@ fn wrong_supports(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
             }
             None => !plan.legend.is_complete,
         };
-        let message = format!("a thing stands on open floor, and {tile:?} is none");
+        let message = format!("a thing stands on open floor, but {tile:?} is not open floor");
         let help = "write the character of a tile that has no wall, door, mask or glass";
         (!is_fine).then(|| Fault::new(place.clone(), message).help(help))
     })
@@ -161,9 +161,13 @@ fn wrong_patrols(plan: Plan<'_>) -> Vec<Fault> {
         let fault = |message| Fault::new(patrol.place.clone(), message);
         if let Some(missing) = missing {
             let name = missing.to_string();
-            faults.push(fault(format!("the patrol names {missing:?}, which is no waypoint")).help(
-                format!("under [things] write {name:?} = {{ waypoint = true }}, and draw it once"),
-            ));
+            faults.push(
+                fault(format!("the patrol names {missing:?}, which is not a waypoint")).help(
+                    format!(
+                        "under [things] write {name:?} = {{ waypoint = true }}, and draw it once"
+                    ),
+                ),
+            );
         } else if let Some(undrawn) = undrawn {
             let message = format!("the waypoint {undrawn:?} of the patrol is not drawn");
             faults.push(fault(message).help(format!("draw one {undrawn:?} in the grid")));
@@ -290,7 +294,7 @@ fn low_start(drawing: &Drawing<'_>, cells: Cells<'_>, start: Start) -> Option<Fa
         let message = "the player has no room to stand where they start";
         Fault::new(drawing.place_of(start.cell), message)
             .label(format!("the ceiling is {room} above the floor here"))
-            .help(format!("the player starts where it is {MIN_HEADROOM} or more"))
+            .help(format!("start the player where it is {MIN_HEADROOM} or more"))
     })
 }
 
@@ -307,7 +311,7 @@ pub(crate) fn missing_treasure(
     });
     let total: u64 = worth.sum();
     (total < u64::from(needed)).then(|| {
-        Fault::new(place.clone(), "the exit asks for more treasure than lies in the map")
+        Fault::new(place.clone(), "the exit asks for more treasure than the map has")
             .label(format!("treasure worth {total} is drawn"))
             .help("draw more, such as { treasure = 50 }, or ask for less")
     })
@@ -369,7 +373,7 @@ fn misplaced_doors(plan: Plan<'_>, cells: Cells<'_>) -> Vec<Fault> {
     let faults = misplaced.into_iter().map(|(first, others)| {
         let message = "a door stands between two walls, with open floor before and behind it";
         let fault = Fault::new(plan.drawing.place_of(first), message)
-            .help("draw it in a gap of a wall, such as \"#+#\", or use { wall = … }");
+            .help("draw it in a gap in a wall, such as \"#+#\", or use { wall = … }");
         match others {
             0 => fault.label("this one does not"),
             others => fault.label(format!("this one does not, and {others} more")),
@@ -417,7 +421,8 @@ fn keys_out_of_reach(plan: Plan<'_>, cells: Cells<'_>, start: Start) -> Vec<Faul
         let (message, help) = if drawn.contains(lock.text) {
             (
                 format!("the key {name} cannot be reached from the start"),
-                "put the key where one gets without opening the doors that ask for it".to_owned(),
+                "put the key where the player can get it without opening the doors that need it"
+                    .to_owned(),
             )
         } else {
             (

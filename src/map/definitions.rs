@@ -87,7 +87,7 @@ fn goal(entry: &Entry<'_, '_>) -> Option<String> {
     } else if goal.trim().is_empty() {
         "the goal is empty".to_owned()
     } else if length > MAX_GOAL {
-        format!("the goal has {length} characters, and {MAX_GOAL} fit the screen")
+        format!("the goal has {length} characters, but only {MAX_GOAL} fit on the screen")
     } else {
         return Some(goal.to_owned());
     };
@@ -108,9 +108,9 @@ fn ceiling_height(entry: &Entry<'_, '_>) -> Option<f64> {
     let height = HEIGHT.read(entry)?;
     (height >= MIN_HEADROOM).then_some(height).or_else(|| {
         entry.reject(
-            format!("the ceiling of a map is at {MIN_HEADROOM} cells or above"),
+            format!("the ceiling of a map must be at {MIN_HEADROOM} cells or above"),
             "nobody has room to stand below this",
-            "lower the ceiling in places, by a tile with a ceiling_height",
+            "to lower the ceiling in places, draw a tile with a ceiling_height",
         )
     })
 }

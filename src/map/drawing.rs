@@ -48,7 +48,7 @@ impl<'a> Drawing<'a> {
         let widest = widths.iter().copied().max().unwrap_or_default();
         if widest > MAX_SIDE || height.get() > MAX_SIDE {
             let message = format!(
-                "the grid is {widest}×{height} cells, and may be {MAX_SIDE}×{MAX_SIDE} at most"
+                "the grid is {widest}×{height} cells, but at most {MAX_SIDE}×{MAX_SIDE} is allowed"
             );
             entry.faults.push(Fault::new(entry.key_place.clone(), message));
             return None;

@@ -45,7 +45,7 @@ pub trait TextureFiles {
 pub enum TextureFileError {
     /// The file does not exist.
     Missing,
-    /// The file is a link out of the map's folder.
+    /// The file links to a file outside the map's folder.
     Outside,
     /// The name belongs to a folder or a device.
     NotAFile,
@@ -59,9 +59,9 @@ impl fmt::Display for TextureFileError {
     /// Writes the reason, to follow the name of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing => f.write_str("is not there"),
-            Self::Outside => f.write_str("is a link out of the map's folder"),
-            Self::NotAFile => f.write_str("is no file"),
+            Self::Missing => f.write_str("does not exist"),
+            Self::Outside => f.write_str("links to a file outside the map's folder"),
+            Self::NotAFile => f.write_str("is not a file"),
             Self::TooLarge => write!(f, "is larger than {} MiB", MAX_FILE_BYTES >> 20),
             Self::Unreadable(error) => write!(f, "cannot be read: {}", error.kind()),
         }
@@ -169,7 +169,7 @@ pub(crate) fn open(path: &Path, name: &str) -> Result<File, Faults> {
 
 pub(crate) fn too_large(name: &str) -> Faults {
     let limit = MAX_BYTES >> 20;
-    let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
+    let message = format!("{name} is larger than {limit} MiB, the maximum for a map");
     Faults::of_whole_file(name, &message, "")
 }
 

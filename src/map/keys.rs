@@ -175,10 +175,10 @@ impl CharacterTable {
                 _ => format!("\"{}\" or {last:?}", others.join("\", \"")),
             };
             let help = match owners.len() {
-                1 | 2 => format!("name a {} in the same braces", owners.join(" or a ")),
-                _ => "name one of them in the same braces".to_owned(),
+                1 | 2 => format!("add {to} in the same braces"),
+                _ => "add one of them in the same braces".to_owned(),
             };
-            return fault(format!("\"{key}\" goes with {to}, and there is none")).help(help);
+            return fault(format!("\"{key}\" needs {to}, which is missing")).help(help);
         }
         let other = match self {
             Self::Tiles => Self::Things,

@@ -140,7 +140,11 @@ fn support(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<(char, Range<us
         return Some((tile, entry.value_place));
     }
     let message = format!("{} is not the character of a tile", quoted(text));
-    entry.reject(message, "", "write the character that the floor is drawn with elsewhere")
+    entry.reject(
+        message,
+        "",
+        "write the character that stands for this floor elsewhere in the grid",
+    )
 }
 
 /// Reads the character that `entry` defines.
@@ -213,7 +217,7 @@ fn unsuitable(
 ) -> Option<Fault> {
     if let Some(place) = surroundings.mechanism.clone() {
         let message = "only a floor can be water, a plate, or move to another height";
-        let fault = Fault::new(place, message).label("this tile is no floor");
+        let fault = Fault::new(place, message).label("this tile is not a floor");
         return Some(fault.help("draw the two with characters of their own"));
     }
     match meaning {
@@ -224,7 +228,7 @@ fn unsuitable(
             let light = entry.beside(table, "light")?.key_place;
             let message = "a door, a mask or glass has no light of its own";
             let fault = Fault::new(light, message);
-            let fault = fault.label("open floor, walls and shapes have one");
+            let fault = fault.label("only open floor, walls and shapes have light");
             Some(fault.help("leave it out, and give the floor beside it a light"))
         }
         _ => None,

@@ -69,16 +69,24 @@ impl fmt::Display for PictureError {
             Self::Unreadable(error) => write!(f, "{error}"),
             Self::Broken(error) => {
                 let error = error.to_string();
-                write!(f, "is no whole PNG picture: {}", error.trim_end_matches('.'))
+                write!(f, "is not a complete PNG image: {}", error.trim_end_matches('.'))
             }
-            Self::BrokenPalette => f.write_str("is no whole PNG picture: its palette is broken"),
+            Self::BrokenPalette => {
+                f.write_str("is not a complete PNG image: its palette is broken")
+            }
             Self::TooLarge { width, height } => {
-                write!(f, "is {width}×{height} texels, and may be {MAX_SIDE}×{MAX_SIDE} at most")
+                write!(
+                    f,
+                    "is {width}×{height} texels, but at most {MAX_SIDE}×{MAX_SIDE} is allowed"
+                )
             }
             Self::OneTooMany => {
                 let megabytes = MAX_BYTES >> 20;
-                write!(f, "is too much: the pictures of a map have {MAX_TEXELS} texels and ")?;
-                write!(f, "{megabytes} MiB at most")
+                write!(
+                    f,
+                    "is too much: the pictures of a map may have at most {MAX_TEXELS} texels and "
+                )?;
+                write!(f, "{megabytes} MiB")
             }
         }
     }

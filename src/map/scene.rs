@@ -35,19 +35,19 @@ const START_EXAMPLE: &str = "start = { at = [0, 0, 0.5], heading = 0 }";
 const AMBIENT: Quantity<Fraction> = Quantity {
     of: Fraction::new,
     wanted: "the ambient light must be a number from 0 to 1",
-    label: "this is none",
-    help: "write 0.2 for dark shades, 1 for none",
+    label: "this is not",
+    help: "write 0.2 for dark shading, 1 for no shading",
 };
 const HEADING: Quantity<Heading> = Quantity {
     of: Heading::from_degrees,
     wanted: "a heading must be a finite number of degrees",
-    label: "this is none",
+    label: "this is not",
     help: "",
 };
 const PITCH: Quantity<Elevation> = Quantity {
     of: Elevation::from_degrees,
     wanted: "a pitch must be degrees from -90, down, to 90, up",
-    label: "this is none",
+    label: "this is not",
     help: "",
 };
 const SCALE: Quantity<Scale> = Quantity {
@@ -242,7 +242,8 @@ impl BodyKind {
             (Some(shape), Some(texture)) => return Some(Body { shape, texture }),
             (None, _) => format!("{} needs {}", self.name, self.needs),
             (_, None) => {
-                let message = "has either a color, or a checker of two and perhaps a scale";
+                let message =
+                    "needs either a color, or a checker of two colors and optionally a scale";
                 format!("{} {message}", self.name)
             }
         };

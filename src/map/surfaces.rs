@@ -64,8 +64,8 @@ impl<'a> SurfaceText<'a> {
 pub(crate) fn file_name<'a>(entry: &Entry<'_, '_>, name: &'a str) -> Option<&'a str> {
     stays_inside(name).then_some(name).or_else(|| {
         let message = format!("{} is not a file in the map's folder", quoted(name));
-        let help = "copy the picture beside the map, and separate folders by /";
-        entry.reject(message, "leads elsewhere", help)
+        let help = "copy the picture beside the map, and separate folders with /";
+        entry.reject(message, "outside the folder", help)
     })
 }
 
@@ -121,11 +121,11 @@ impl<'a> CoveringText<'a> {
         match (patterns.pop(), patterns.is_empty()) {
             (Some(pattern), true) => Some(Self { pattern, scale }),
             (None, _) => {
-                let message = format!("the {key} does not say what it is laid with");
+                let message = format!("the {key} does not name a texture or pattern");
                 owner.reject(message, "", format!(r#"write {key} = {{ texture = "tile" }}"#))
             }
             (Some(_), false) => {
-                let message = format!("the {key} is laid with several patterns at once");
+                let message = format!("the {key} has several patterns at once");
                 owner.reject(message, "", "keep one of texture, checker and stripes")
             }
         }
@@ -211,7 +211,7 @@ impl<'a> SkyText<'a> {
         if skies.len() == 1 {
             return skies.pop();
         }
-        let label = if skies.is_empty() { "this is none" } else { "this is both" };
+        let label = if skies.is_empty() { "this has neither" } else { "this has both" };
         let message = "a sky is either a gradient or a panorama";
         entry.reject(message, label, format!("write {SKY_EXAMPLE}"))
     }
@@ -259,7 +259,7 @@ pub(crate) fn fog(entry: &Entry<'_, '_>) -> Option<Fog> {
     distance.number().and_then(|distance| Fog::new(fog_color, distance)).or_else(|| {
         distance.reject(
             "the distance of a fog must be a finite number of cells above 0",
-            "this is none",
+            "this is not",
             "write 12.0 for a fog that hides half of what is twelve cells away",
         )
     })

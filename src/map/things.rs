@@ -145,8 +145,9 @@ fn cost_of_lamps(lamp: Lamp, count: usize) -> u64 {
 }
 
 fn too_many_lamps(symbol: &Symbol<'_>) -> Fault {
-    let message =
-        format!("the lamps of a map light {MAX_LIT_CELLS} cells at most, counted for each lamp");
+    let message = format!(
+        "the lamps of a map may light at most {MAX_LIT_CELLS} cells, counted for each lamp"
+    );
     Fault::new(symbol.place.clone(), message)
         .label("with these, they light more")
         .help("draw fewer lamps, or let them reach less far")

@@ -145,7 +145,7 @@ impl Builder<'_, '_> {
         {
             return Some(TileKind::Mask(id));
         }
-        let message = "a mask needs a texture with holes, and this has none";
+        let message = "a mask needs a texture with holes, but this one has none";
         let help = "write { mask = \"grate\" }, or { wall = … } for a wall without holes";
         self.textures.faults.push(Fault::new(surface.place.clone(), message).help(help));
         None
@@ -292,14 +292,12 @@ fn heights(
     let fault = |height: &Height, message: &str| Fault::new(height.place.clone(), message);
     let is_open = overhead == Ceiling::Sky;
     Err(match (&own.ceiling_height, &own.floor_height, &own.roof_height) {
-        (Some(height), ..) if is_open => {
-            fault(height, "there is no ceiling here to be at a height")
-                .label("this tile is open to the sky")
-                .help("give it one, such as ceiling = \"wood\", or leave its height out")
-        }
-        (.., Some(height)) if is_open => fault(height, "there is no roof here to be at a height")
+        (Some(height), ..) if is_open => fault(height, "a ceiling_height needs a ceiling")
             .label("this tile is open to the sky")
-            .help("give it a ceiling, such as ceiling = \"wood\", or leave the roof out"),
+            .help("add a ceiling, such as ceiling = \"wood\", or leave ceiling_height out"),
+        (.., Some(height)) if is_open => fault(height, "a roof_height needs a ceiling")
+            .label("this tile is open to the sky")
+            .help("add a ceiling, such as ceiling = \"wood\", or leave roof_height out"),
         (Some(height), ..) | (None, Some(height), _) if !is_open && floor >= ceiling => {
             fault(height, "a ceiling must be above its floor")
                 .label(format!("the floor is at {floor} here, the ceiling at {ceiling}"))
@@ -340,7 +338,7 @@ fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
         return Some(fault.help(format!("write, for example, crumbles = {}", floor - 3.0)));
     }
     if end.cells == floor {
-        let fault = fault("this floor moves to the height that it has");
+        let fault = fault("this floor moves to the height that it already has");
         return Some(fault.help("write another height, or leave moves_to out"));
     }
     if matches!(tile.ceiling, Ceiling::Covered(_)) && end.cells >= ceiling {

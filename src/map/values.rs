@@ -21,42 +21,42 @@ pub(crate) struct Quantity<T> {
 pub(crate) const HEADING: Quantity<Heading> = Quantity {
     of: Heading::from_degrees,
     wanted: "a heading must be a finite number of degrees",
-    label: "this is none",
+    label: "this is not",
     help: "write 0 for east, 90 for south, 180 for west, 270 for north",
 };
 pub(crate) const LIGHT: Quantity<Light> = Quantity {
     of: Light::new,
     wanted: "a light must be a number from 0 to 1",
-    label: "this is none",
+    label: "this is not",
     help: "write 0 for darkness, 1 for full brightness",
 };
 pub(crate) const OPACITY: Quantity<f64> = Quantity {
     of: |opacity| (0.0..=1.0).contains(&opacity).then_some(opacity),
     wanted: "an opacity must be a number from 0 to 1",
-    label: "this is none",
+    label: "this is not",
     help: "write 0 for clear glass, 1 for glass that hides what is behind it",
 };
 pub(crate) const SCALE: Quantity<Scale> = Quantity {
     of: Scale::new,
     wanted: "a scale must be a finite number of cells above 0",
-    label: "this is none",
+    label: "this is not",
     help: "write 2.0 to stretch a texture over two cells",
 };
 pub(crate) const HEIGHT: Quantity<f64> = Quantity {
     of: |height| (height.abs() <= Heights::MAX).then_some(height),
     wanted: "a height must be a number of cells from -1000000000 to 1000000000",
-    label: "this is none",
+    label: "this is not",
     help: "write 0.25 for a quarter of a cell above the map's floor",
 };
 pub(crate) const SHAPE_HEIGHT: Quantity<ShapeHeight> = Quantity {
     of: ShapeHeight::new,
-    wanted: "the height of a shape is above 0 and at most 1000000000 cells",
+    wanted: "the height of a shape must be above 0 and at most 1000000000 cells",
     label: "this is not",
     help: "",
 };
 pub(crate) const PILLAR_RADIUS: Quantity<PillarRadius> = Quantity {
     of: PillarRadius::new,
-    wanted: "the radius of a pillar is above 0 and at most 0.5, half a cell",
+    wanted: "the radius of a pillar must be above 0 and at most 0.5, half a cell",
     label: "this is not",
     help: "",
 };
@@ -81,7 +81,7 @@ impl<'a> Name<'a> {
     pub(crate) fn read(entry: &Entry<'a, '_>, owner: &str, example: &str) -> Option<Self> {
         let text = entry.string(example)?;
         if text.is_empty() || text.contains(char::is_control) {
-            let message = format!("a {owner}'s name is some characters on one line");
+            let message = format!("a {owner}'s name must be one line with at least one character");
             return entry.reject(message, "", format!("write {example}"));
         }
         Some(Self { text, place: entry.value_place.clone() })

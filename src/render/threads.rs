@@ -85,7 +85,7 @@ impl fmt::Display for Threads {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::One(WhyOne::Small) => f.write_str("one: the picture is small"),
-            Self::One(WhyOne::Only) => f.write_str("one: there may be no others"),
+            Self::One(WhyOne::Only) => f.write_str("one: no others are allowed"),
             Self::Bands(count) => write!(f, "{count}, by bands of rows: the picture is large"),
         }
     }

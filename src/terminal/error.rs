@@ -32,10 +32,10 @@ pub(crate) enum TerminalErrorKind {
     )]
     Teletype { term: &'static str },
     /// This process already has a session.
-    #[error("this program has taken the terminal already, and has not left it yet")]
+    #[error("this program has already taken the terminal, and has not released it yet")]
     AlreadyTaken,
     /// A panic in another thread has ended the session.
-    #[error("the terminal was given back when another part of the program failed")]
+    #[error("the terminal was restored when another part of the program failed")]
     GivenBack,
     /// An error occurred while `doing` something (such as "reading keys").
     #[error("{doing} failed: {source}")]

@@ -72,7 +72,7 @@ impl FromStr for Fidelity {
 
 /// The error for a text that is not a fidelity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no fidelity: write exact, high, low or a number up to 255")]
+#[error("'{0}' is not a fidelity: write exact, high, low or a number up to 255")]
 pub struct UnknownFidelity(String);
 
 #[cfg(test)]
@@ -93,7 +93,7 @@ mod tests {
     fn the_error_names_the_invalid_text() {
         for text in ["", "medium", "256", "-1", "4.5"] {
             let error = text.parse::<Fidelity>().unwrap_err().to_string();
-            assert!(error.starts_with(&format!("'{text}' is no fidelity")), "{error}");
+            assert!(error.starts_with(&format!("'{text}' is not a fidelity")), "{error}");
         }
     }
 }

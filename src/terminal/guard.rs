@@ -339,11 +339,11 @@ fn report(info: &PanicHookInfo) {
     _ = match info.location() {
         Some(place) => writeln!(
             io::stderr(),
-            "This program has a fault, and had to end: {message} (at {}:{}).",
+            "This program has a bug and had to stop: {message} (at {}:{}).",
             place.file(),
             place.line()
         ),
-        None => writeln!(io::stderr(), "This program has a fault, and had to end: {message}."),
+        None => writeln!(io::stderr(), "This program has a bug and had to stop: {message}."),
     };
 }
 

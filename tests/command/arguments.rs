@@ -202,13 +202,13 @@ fn a_missing_file_is_the_only_reported_fault() {
     insta::assert_snapshot!(complaint, @r"
     error: there is no file absent.toml
     error: there is no file absent2.toml
-    cellcaster: 2 of 2 maps are wrong, as said above
+    cellcaster: 2 of 2 maps have faults; see above
     ");
     let output = cellcaster(&["check", MAP, "tests/bad_maps/no_start.toml"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stdout).contains("cross.toml: right"));
     let report = String::from_utf8(output.stderr).unwrap();
-    assert!(report.ends_with("cellcaster: 1 of 2 maps are wrong, as said above\n"), "{report}");
+    assert!(report.ends_with("cellcaster: 1 of 2 maps have faults; see above\n"), "{report}");
 }
 
 #[test]
@@ -221,9 +221,9 @@ fn a_recording_replaces_no_file_and_needs_a_known_extension() {
         let words = [&["play", "--record", path.to_str().unwrap()], options].concat();
         complaint_about(&words).replace(&format!("{}/", folder.display()), "")
     };
-    insta::assert_snapshot!(told("taken.cast", &[]), @"cellcaster: taken.cast is there already: name another file, or replace it with --force");
+    insta::assert_snapshot!(told("taken.cast", &[]), @"cellcaster: taken.cast already exists: name another file, or replace it with --force");
     assert_eq!(fs::read_to_string(&taken).unwrap(), "precious");
-    insta::assert_snapshot!(told("walk.txt", &[]), @r#"cellcaster: --record takes a file that ends in .cast, for what the terminal is sent, or in .script, for what you do, not "walk.txt""#);
+    insta::assert_snapshot!(told("walk.txt", &[]), @r#"cellcaster: --record takes a file that ends in .cast (for the terminal's output) or in .script (for your actions), not "walk.txt""#);
     assert_eq!(told("cast", &[]), told("walk.txt", &[]).replace("walk.txt", "cast"));
     // Without a terminal, the game leaves no file that would prevent the next recording.
     for name in ["new.cast", "new.script"] {

@@ -54,7 +54,7 @@ fn a_folder_that_replaces_nothing_is_a_mistake() {
     let empty = folder("empty", &[]);
     assert_refused(
         &empty,
-        "the folder DIR has no PNG file: copy a sheet of maps/art into it, and change that",
+        "the folder DIR has no PNG file: copy a sheet from maps/art into it, and edit the copy",
     );
     assert_refused(&empty.join("none"), "the folder DIR cannot be read: entity not found");
 }
@@ -64,7 +64,8 @@ fn a_file_that_cannot_replace_its_picture_is_a_mistake() {
     let misspelt = folder("misspelt", &[("brick", "brik.png")]);
     assert_refused(
         &misspelt,
-        "DIR/brik.png has the name of no built-in picture, and the nearest is \"brick.png\": rename or remove it",
+        "DIR/brik.png is not named after a built-in picture, and the nearest is \"brick.png\": \
+         rename or remove it",
     );
     let wrong_shape = folder("wrong_shape", &[("warden", "brick.png")]);
     assert_refused(
@@ -75,6 +76,7 @@ fn a_file_that_cannot_replace_its_picture_is_a_mistake() {
     fs::write(broken.join("brick.png"), "no picture").unwrap();
     assert_refused(
         &broken,
-        "DIR/brick.png is no whole PNG picture: Invalid PNG signature: save the picture again, as PNG",
+        "DIR/brick.png is not a complete PNG image: Invalid PNG signature: save the picture again, \
+         as PNG",
     );
 }

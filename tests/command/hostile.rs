@@ -128,7 +128,7 @@ fn only_regular_files_are_opened_as_maps() {
         (&["check", "fifo.png"], "fifo.png is a pipe or a device, not a map"),
         (&["check", "/dev/zero"], "/dev/zero is a pipe or a device, not a map"),
         (&["check", "/"], "/ is a folder, not a map"),
-        (&["check", "map.toml"], "the texture \"fifo.png\" is no file"),
+        (&["check", "map.toml"], "the texture \"fifo.png\" is not a file"),
         (&["snapshot", "fifo.png"], "fifo.png is a pipe or a device"),
         (&["cast", "fifo.png"], "fifo.png is a pipe or a device"),
         (&["play", "fifo.png"], "fifo.png is a pipe or a device"),

@@ -167,7 +167,7 @@ fn a_descent_takes_no_level() {
         let output = cellcaster(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let sentence = String::from_utf8(output.stderr).unwrap();
-        assert!(sentence.contains(" goes without "), "{sentence}");
+        assert!(sentence.contains(" cannot be combined with "), "{sentence}");
     }
 }
 
@@ -187,7 +187,7 @@ fn missing_input_is_reported_in_one_sentence() {
     let broken = run_with_input(&["replay", path.to_str().unwrap(), "--verify"], b"");
     let sentence = String::from_utf8(broken.stderr).unwrap();
     assert_eq!(broken.status.code(), Some(2));
-    assert!(sentence.contains("line 2 has a byte"), "{sentence}");
+    assert!(sentence.contains("line 2 has an invalid byte"), "{sentence}");
     assert!(told("faulty", "level cellar\n1 s fly\n", &[]).contains("fly"));
     assert!(told("absent", "level nowhere.toml\n1 s forward\n", &[]).contains("no file"));
 }

@@ -91,7 +91,7 @@ fn a_grid_too_wide_or_too_high_is_refused() -> Outcome {
     let path = folder.join("wide.toml");
     fs::write(&path, map_with_grid(&format!("@{}\n", "#".repeat(4096))))?;
     insta::assert_snapshot!(without_folder(&faults(&path)?, &folder), @r"
-    error: the grid is 4097×1 cells, and may be 4096×4096 at most
+    error: the grid is 4097×1 cells, but at most 4096×4096 is allowed
      --> wide.toml:1:1
       |
     1 | grid = '''
@@ -100,7 +100,7 @@ fn a_grid_too_wide_or_too_high_is_refused() -> Outcome {
     let path = folder.join("high.toml");
     fs::write(&path, map_with_grid(&format!("@\n{}", "#\n".repeat(4096))))?;
     insta::assert_snapshot!(without_folder(&faults(&path)?, &folder), @r"
-    error: the grid is 1×4097 cells, and may be 4096×4096 at most
+    error: the grid is 1×4097 cells, but at most 4096×4096 is allowed
      --> high.toml:1:1
       |
     1 | grid = '''
@@ -116,7 +116,7 @@ fn an_oversized_file_is_refused() -> Outcome {
     fs::File::create(&path)?.set_len(map::MAX_BYTES as u64 + 1)?;
     let report = without_folder(&faults(&path)?, &folder);
     fs::remove_file(&path)?;
-    insta::assert_snapshot!(report, @"error: large.toml is larger than 64 MiB, the most that a map may have");
+    insta::assert_snapshot!(report, @"error: large.toml is larger than 64 MiB, the maximum for a map");
     let text = " ".repeat(map::MAX_BYTES + 1);
     assert!(map::parse_str(&text).is_err());
     Ok(())
@@ -136,7 +136,7 @@ fn a_link_out_of_the_folder_is_refused() -> Outcome {
     let path = inside.join("map.toml");
     fs::write(&path, format!("floor = \"link.png\"\n{}", map_with_grid("@#\n")))?;
     insta::assert_snapshot!(without_folder(&faults(&path)?, &inside), @r#"
-    error: the texture "link.png" is a link out of the map's folder
+    error: the texture "link.png" links to a file outside the map's folder
      --> map.toml:1:9
       |
     1 | floor = "link.png"

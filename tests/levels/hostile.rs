@@ -55,7 +55,7 @@ fn text_of_many_tokens_is_refused_before_it_is_parsed() {
 fn the_fault_of_too_many_tokens_has_a_place() {
     let text = format!("title = 'Hall'\n{}", "k = 1\n".repeat(100_000));
     insta::assert_snapshot!(read(&text, SMALL_MAP).unwrap_err(), @r"
-    error: a file has 262144 TOML tokens at most
+    error: a file may have at most 262144 TOML tokens
          --> map:43691:5
           |
     43691 | k = 1
@@ -120,7 +120,7 @@ fn the_total_number_of_texels_is_limited() {
     let faults = read_with(&files, &sheets, SMALL_MAP).unwrap_err();
     // After the first picture that is one too many, no picture is read.
     assert_eq!((faults.len(), files.reads.get()), (1, 17));
-    insta::assert_snapshot!(faults.summary(), @r#"map:20: the sprite "16.png" is too much: the pictures of a map have 16777216 texels and 64 MiB at most"#);
+    insta::assert_snapshot!(faults.summary(), @r#"map:20: the sprite "16.png" is too much: the pictures of a map may have at most 16777216 texels and 64 MiB"#);
     let wall = |it| format!("{it:?} = {{ wall = \"{}.png\" }}", u32::from(it));
     let walls = characters(200).map(wall).collect::<Vec<_>>().join("\n");
     let row: String = characters(200).collect();
@@ -146,7 +146,7 @@ fn the_number_of_cells_lit_by_lamps_is_limited() {
     let lamp = r#"{ sprite = "lamp", light = 1, reach = 32 }"#;
     assert!(read(&lamps(100, lamp), SMALL_MAP).is_ok());
     insta::assert_snapshot!(read(&lamps(103, lamp), SMALL_MAP).unwrap_err(), @r#"
-    error: the lamps of a map light 33554432 cells at most, counted for each lamp
+    error: the lamps of a map may light at most 33554432 cells, counted for each lamp
        --> map:109:1
         |
     109 | "l" = { sprite = "lamp", light = 1, reach = 32 }
@@ -171,7 +171,7 @@ fn the_number_of_cells_lit_by_lamps_is_limited() {
 #[test]
 fn the_number_of_things_is_limited() {
     let map = lamps(1025, "{ treasure = 1 }");
-    insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, and 1048576 at most can be there");
+    insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, but at most 1048576 are allowed");
 }
 
 /// A map in which one switch moves `lifts` floors, and in which `spikes` spikes come out.

@@ -157,7 +157,7 @@ fn a_panic_in_another_thread_ends_the_session() {
     player.send("x");
     player.wait_for_end().assert_given_back();
     assert_palette_given_back(&player);
-    player.wait_for("had to end: beside");
+    player.wait_for("had to stop: beside");
 }
 
 #[test]

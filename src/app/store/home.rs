@@ -105,7 +105,7 @@ impl Home {
         known: &Progress,
     ) -> Result<ChangeResult, String> {
         let not_kept = |folder: &Path, error: &io::Error| {
-            format!("{} can't be written: {error}; this game is not kept", printable_path(folder))
+            format!("{} can't be written: {error}; this game is not saved", printable_path(folder))
         };
         let lock = self
             .disk
@@ -127,7 +127,7 @@ impl Home {
                     io::ErrorKind::FileTooLarge => Some(Damage::TooLarge),
                     _ => {
                         let file = printable_path(&file);
-                        return Err(format!("{file} can't be read: {error}; nothing is kept"));
+                        return Err(format!("{file} can't be read: {error}; nothing is saved"));
                     }
                 };
                 return Ok(Found { damage, ..Found::default() });
@@ -138,8 +138,8 @@ impl Home {
                 Ok(Found { progress, damage: (!is_sound).then_some(Damage::Parts(content)) })
             }
             Err(version) => Err(format!(
-                "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
-                 nothing is kept",
+                "{} was written by a newer Cellcaster (version {version}): it is left unchanged, \
+                 and nothing is saved",
                 printable_path(&file)
             )),
         }
@@ -183,11 +183,11 @@ impl Home {
         let kept = match damage {
             Damage::Parts(content) => {
                 self.write_whole(Path::new(&name), &content)?;
-                "everything in it that can be read stays in force"
+                "everything readable in it is still used"
             }
             Damage::TooLarge => {
                 self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
-                "it is too large to be read"
+                "it is too large to read"
             }
         };
         numbers.retain(|&known| known != number);

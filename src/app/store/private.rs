@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// An error for a path that is not a regular file.
 #[derive(Debug, thiserror::Error)]
-#[error("it is {0}, and must be a file: move it away")]
+#[error("it is {0}, not a file: move it away")]
 struct NoFile(&'static str);
 
 /// Opens a file to read it, without ever waiting. Anything but a regular file is an error. In
@@ -45,7 +45,7 @@ pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
     let content = read(file, most)?;
     String::from_utf8(content)
-        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))
 }
 
 /// Creates a folder and its parents, unless the folder exists. Only the owner can look into it.

@@ -67,10 +67,10 @@ pub struct SaveId(u64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSaved {
     /// There are already [`MAX_SAVES`] other saved games.
-    #[error("{MAX_SAVES} other games are saved, and no more are kept")]
+    #[error("{MAX_SAVES} other games are saved, which is the maximum")]
     Full,
     /// The script is longer than the longest script that the store reads.
-    #[error("it is longer than a game that can be kept")]
+    #[error("it is too long to save")]
     TooLong,
 }
 

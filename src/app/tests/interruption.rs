@@ -55,7 +55,7 @@ fn q_is_answered_between_two_bands() {
     rig.tap(Key::Char('q'), 20);
     // The question is shown over the unfinished picture.
     assert_eq!(render(&mut rig.app, q, 1), (Rendered::Partial, 1));
-    assert!(text(&mut rig.app).contains("any other key goes on"));
+    assert!(text(&mut rig.app).contains("any other key cancels"));
     // Then the picture is rendered again, and any key interrupts it.
     assert!(rig.app.is_stale());
     assert_eq!(render(&mut rig.app, press(Key::Enter), 3), (Rendered::Interrupted, 4));

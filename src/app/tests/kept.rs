@@ -110,7 +110,7 @@ fn a_game_in_the_players_own_map_resumes_unless_it_changed() {
     title.choose("Continue");
     assert_eq!(title.app.screen(), AppScreen::Title);
     let shown = text(&mut title.app, 80, 24);
-    assert!(shown.contains("The map of the saved game is not as it was."), "{shown}");
+    assert!(shown.contains("The map of the saved game has changed."), "{shown}");
 }
 
 #[test]

@@ -252,9 +252,9 @@ fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
     rig.choose("Daily run");
     rig.choose("Practise");
     assert_eq!(rig.app.levels.descent, Some(Descent::Practice));
-    assert!(text(&mut rig.app, 120, 24).contains("Practice: the first try"));
+    assert!(text(&mut rig.app, 120, 24).contains("Practice: only the day"));
     assert_eq!(rig.game().world().grid(), floor.grid(), "it is the same for all");
-    let practice = "Practice: the first try of the day counts";
+    let practice = "Practice: only the day's first try counts";
     assert!(rig.app.descent_lines().eq(["0 floors", practice]));
     rig.app.record_floor();
     assert_eq!(rig.app.store.daily(20_261_122).unwrap().floors, 0);

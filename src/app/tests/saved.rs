@@ -74,7 +74,7 @@ fn a_game_in_a_changed_level_can_start_over() {
     assert_eq!(rig.app.screen(), AppScreen::Title);
     assert_eq!(newest(&rig), Some(changed), "a look costs nothing");
     rig.choose("Continue");
-    rig.choose("Begin anew");
+    rig.choose("Start over");
     assert_eq!((rig.app.screen(), newest(&rig)), (AppScreen::Playing, None));
     assert!(rig.game().elapsed() < 1.0);
 
@@ -189,7 +189,7 @@ fn a_level_with_a_saved_game_asks_before_replacing_it() {
     let mut rig = started("cellar", quit(rig));
     assert!(saved(&rig).unwrap().script.len() >= first.script.len());
 
-    rig.choose("Begin anew");
+    rig.choose("Start over");
     assert_eq!(rig.app.screen(), AppScreen::Playing);
     assert!(rig.game().elapsed() < 1.0);
     assert!(saved(&rig).is_some(), "it is kept while the new game is played");
@@ -287,7 +287,7 @@ fn a_full_store_asks_first_and_the_game_says_it_is_not_saved() {
     rig.app.leave();
     assert_eq!(ids(&rig), before);
     let left = rig.app.left.clone().unwrap();
-    let sentence = "The game is not saved: 100 other games are saved, and no more are kept.";
+    let sentence = "The game is not saved: 100 other games are saved, which is the maximum.";
     assert!(left.ends_with(sentence), "{left}");
 
     let mut rig = started("cellar", quit(rig));
@@ -317,7 +317,7 @@ fn the_daily_run_asks_first_and_resumes_as_the_same_try() {
     let mut rig = Rig::of(App::opened(opening, Settings::default(), Store::in_memory()), None);
     assert_eq!(rig.app.screen(), AppScreen::Daily);
     let shown = text(&mut rig.app, 80, 24);
-    for words in ["The descent of 2026-11-22", "One try counts", "it is saved"] {
+    for words in ["The descent of 2026-11-22", "Only one try counts", "it is saved"] {
         assert!(shown.contains(words), "{words}: {shown}");
     }
     rig.tap(Key::Escape, 30);
@@ -381,7 +381,7 @@ fn a_game_in_a_map_file_resumes_from_any_folder() {
     let offering = |text: &'static str| {
         let load = move |path: &str| {
             assert_eq!(path, file);
-            if text.is_empty() { Err(format!("{path} is no file now")) } else { Ok(own(text)) }
+            if text.is_empty() { Err(format!("{path} is no longer a file")) } else { Ok(own(text)) }
         };
         Offers { load: Some(Box::new(load)), ..Offers::default() }
     };
@@ -390,7 +390,7 @@ fn a_game_in_a_map_file_resumes_from_any_folder() {
     rig.choose("Continue");
     assert_eq!(rig.app.screen(), AppScreen::Title);
     let shown = text(&mut rig.app, 80, 24);
-    assert!(shown.contains("/somewhere/else/pit.toml is no file now"), "{shown}");
+    assert!(shown.contains("/somewhere/else/pit.toml is no longer a file"), "{shown}");
     rig.app.offers = Some(offering(PIT));
     rig.choose("Continue");
     assert!(rig.game().tally().steps >= left.tally().steps);

@@ -49,7 +49,7 @@ fn rhythm(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Rhythm> {
     let seconds = entry.number().filter(|&seconds| Rhythm::new(seconds, 0.0).is_some());
     let Some(seconds) = seconds else {
         return entry.reject(
-            "the period of spikes is from 1 to 60 seconds",
+            "the period of spikes must be from 1 to 60 seconds",
             "this is not",
             "write 2.0 for spikes that come out every two seconds",
         );
@@ -57,7 +57,7 @@ fn rhythm(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Rhythm> {
     let Some(delay) = entry.beside(table, "delay") else { return Rhythm::new(seconds, 0.0) };
     delay.number().and_then(|delay| Rhythm::new(seconds, delay)).or_else(|| {
         delay.reject(
-            "the delay of spikes is a number of seconds from 0, below their period",
+            "the delay of spikes must be 0 seconds or more, and shorter than their period",
             format!("the period is {seconds} s"),
             "write 0.5 for spikes that come out half a second later than others",
         )
@@ -69,7 +69,7 @@ pub(crate) fn note<'a>(entry: &Entry<'a, '_>) -> Option<&'a str> {
     let text = entry.string(r#"{ note = "The key is in the well." }"#)?;
     let length = text.chars().count();
     let message = if length > MAX_NOTE {
-        format!("the note has {length} characters, and {MAX_NOTE} fit the panel")
+        format!("the note has {length} characters, but only {MAX_NOTE} fit in the panel")
     } else if text.trim().is_empty() {
         "the note is empty".to_owned()
     } else if text.contains(|it: char| it.is_control() && it != '\n') {
@@ -256,7 +256,7 @@ impl<'a> GuardText<'a> {
             entry.faults.push(
                 Fault::new(second.clone(), "a guard has one duty: patrol, wander or asleep")
                     .label("this is another")
-                    .help("keep one of them, or none for a guard who stands"),
+                    .help("keep one of them, or none for a guard that stands still"),
             );
         }
         Some(Self { kind: kind?, heading, duty, patrol: waypoints, from })
@@ -277,7 +277,10 @@ fn difficulty(entry: &Entry<'_, '_>) -> Option<Difficulty> {
     let name = entry.string(r#"difficulty = "normal""#)?;
     Difficulty::named(name).or_else(|| {
         let names = Difficulty::ALL.map(Difficulty::name);
-        let help = format!("write one of {}: the guard is there from it on", names.join(", "));
+        let help = format!(
+            "write one of {}: the guard appears at that difficulty and above",
+            names.join(", ")
+        );
         entry.reject(format!("there is no difficulty {}", quoted(name)), "", help)
     })
 }
@@ -292,7 +295,7 @@ fn patrol<'a>(entry: &Entry<'a, '_>) -> Option<Name<'a>> {
     }
     if count > MAX_PATROL {
         let message =
-            format!("the patrol has {count} waypoints, and {MAX_PATROL} at most are allowed");
+            format!("the patrol has {count} waypoints, but at most {MAX_PATROL} are allowed");
         let help = "leave some out; a guard finds the way from one to the next";
         return entry.reject(message, "", help);
     }

@@ -175,7 +175,7 @@ fn line(entry: &Entry<'_, '_>, what: &str, lines: &[(&str, Line)], example: &str
     line.or_else(|| {
         let names: Vec<&str> = lines.iter().map(|&(name, _)| name).collect();
         let help = nearest_or_all(name, &names, "the nearest is", "write one of");
-        entry.reject(format!("{} is no {what}", quoted(name)), "", help)
+        entry.reject(format!("{} is not a {what}", quoted(name)), "", help)
     })
 }
 

@@ -56,16 +56,16 @@ fn leaving_asks_first_and_escape_continues_the_game() {
     let mut game = Game::with(Speaks::Plain, (80, 24), None, &[], &[]);
     for _ in 0..2 {
         game.send("q");
-        game.wait_for("any other key goes on");
+        game.wait_for("any other key cancels");
         game.send("\x1b");
-        game.wait_until("went on", |emulator| !emulator.text().contains("goes on"));
+        game.wait_until("went on", |emulator| !emulator.text().contains("cancels"));
     }
     game.send("?");
     game.wait_for("strafe left");
     game.send("\x1b");
     game.wait_until("closed the help", |emulator| !emulator.text().contains("strafe left"));
     game.send("\x1b");
-    game.wait_for("any other key goes on");
+    game.wait_for("any other key cancels");
     game.send("\r");
     game.wait_for_end().assert_given_back();
 }
@@ -126,7 +126,7 @@ fn a_panic_restores_the_terminal_and_then_prints_one_sentence() {
     let ending = game.wait_for_end();
     ending.assert_given_back();
     assert_eq!(ending.status.code(), Some(101));
-    game.wait_for("had to end: CELLCASTER_PANIC is set, and F12 was pressed (at");
+    game.wait_for("had to stop: CELLCASTER_PANIC is set, and F12 was pressed (at");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn a_full_disk_is_reported_and_loses_no_stored_data() {
     fs::write(&progress, &another_day).unwrap();
     let screen = play_daily_by(&WITHOUT_ROOM, &folder, &[]).replace('\n', "");
     assert_eq!(screen.matches("cellcaster: ").count(), 1, "{screen}");
-    assert!(screen.contains("File too large") && screen.contains("not kept"), "{screen}");
+    assert!(screen.contains("File too large") && screen.contains("not saved"), "{screen}");
     assert_eq!(fs::read_to_string(&progress).unwrap(), another_day);
     let names = fs::read_dir(&folder).unwrap().chain(fs::read_dir(folder.join("runs")).unwrap());
     let names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();

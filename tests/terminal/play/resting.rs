@@ -32,7 +32,7 @@ fn while_nothing_moves_nothing_is_written_and_the_processor_rests() {
     assert_rests("pushing against a wall");
     game.press(Key::Right);
     game.press(Key::Char('p'));
-    game.wait_for("p goes on");
+    game.wait_for("p resumes");
     assert_rests("paused while turning");
 }
 

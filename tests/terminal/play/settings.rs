@@ -88,7 +88,7 @@ fn a_pipe_as_a_configuration_is_refused_without_waiting() {
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     for command in ["play", "config"] {
         let complaint = complaint_about(&[command, "--config", pipe.to_str().unwrap()]);
-        let expected = "pipe.toml can't be read: it is a named pipe, and must be a file";
+        let expected = "pipe.toml can't be read: it is a named pipe, not a file";
         assert!(complaint.contains(expected), "{complaint}");
     }
 }

@@ -135,7 +135,7 @@ fn a_pause_stops_the_clock_and_everything_else() {
     let started = Instant::now();
     let game = Game::start_map("way_out");
     game.tap(Key::Char('p'));
-    game.wait_for("p goes on");
+    game.wait_for("p resumes");
     let paused = Instant::now();
     game.tap(Key::Char('w'));
     game.press(Key::Char('w'));

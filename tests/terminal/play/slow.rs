@@ -40,7 +40,7 @@ fn q_asks_before_a_slow_picture_is_complete_and_enter_leaves() {
     let mut player = among_spheres("slow_q");
     player.send("q");
     player.wait_until("asked, over an incomplete picture", |emulator| {
-        emulator.text().contains("any other key goes on") && is_incomplete(emulator)
+        emulator.text().contains("any other key cancels") && is_incomplete(emulator)
     });
     player.send("\r");
     player.wait_for_end().assert_given_back();

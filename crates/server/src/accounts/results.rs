@@ -232,8 +232,8 @@ mod tests {
             (&WON.replace("seed 0", "seed 1"), "another seed"),
             (&long, "longer than half an hour"),
             (&"#".repeat(MAX_SCRIPT_BYTES + 1), "longer than half an hour"),
-            ("level cellar\n2 s fly\n", "nobody can want"),
-            ("", "no stretch of time"),
+            ("level cellar\n2 s fly\n", "unknown intent"),
+            ("", "no line with a duration"),
         ] {
             let sentence = verify(script, |_| None).unwrap_err().to_string();
             assert!(sentence.contains(expected), "{sentence}");

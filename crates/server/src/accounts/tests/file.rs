@@ -234,7 +234,7 @@ fn a_named_pipe_is_refused_without_waiting() {
         HostStore::open_to_read(&folder.0).unwrap_err().to_string(),
     ];
     for sentence in sentences {
-        assert!(sentence.contains("it is a named pipe, and must be a file"), "{sentence}");
+        assert!(sentence.contains("it is a named pipe, not a file"), "{sentence}");
     }
 }
 

@@ -231,7 +231,7 @@ fn checkpoints_of_other_versions_or_unknown_levels_are_refused() {
     let none = Arc::new(Catalog::default());
     assert_eq!(refused(&none, &bytes), "there is no level called hall");
     let longer = [&bytes[..], b"x"].concat();
-    assert_eq!(refused(&catalog, &longer), "the state goes on after its end");
+    assert_eq!(refused(&catalog, &longer), "the state has bytes after its end");
 }
 
 /// A checksum must detect each of these changes, and must ignore the chat.
