@@ -43,19 +43,19 @@ pub struct Plan {
     /// [default: all]
     #[arg(long = "caster", value_name = "METHOD")]
     pub methods: Vec<Method>,
-    /// How many rays each scene has, from 1 to 1000000
+    /// The number of rays in each scene, from 1 to 1000000
     #[arg(long, value_name = "N", value_parser = rays, default_value_t = RAYS)]
     pub rays: usize,
-    /// Where chance begins
+    /// The seed of the random numbers
     #[arg(long, value_name = "N", value_parser = seed, default_value_t = SEED)]
     pub seed: u64,
-    /// How often each candidate is timed; with 0 there are no times, and every run writes the same
+    /// The number of timings of each candidate; 0 omits the times, so that every run writes the same report
     #[arg(long, value_name = "N", value_parser = rounds, default_value_t = 15)]
     pub rounds: usize,
-    /// The player's friction per second, for the motion
+    /// The player's friction per second, for the part motion
     #[arg(long, value_name = "RATE", value_parser = friction, default_value_t = FRICTION)]
     pub friction: f64,
-    /// The steps of the game in a second, for the motion
+    /// The game's steps per second, for the part motion
     #[arg(long, value_name = "N", value_parser = steps_per_second, default_value_t = STEPS_PER_SECOND.into())]
     pub steps_per_second: f64,
 }

@@ -135,7 +135,7 @@ impl FromStr for Method {
         };
         let plain = |method| match parameter {
             None => Ok(method),
-            Some(_) => Err(ParseMethodError(format!("the caster \"{name}\" has no parameter"))),
+            Some(_) => Err(ParseMethodError(format!("the caster \"{name}\" takes no parameter"))),
         };
         match name {
             "exact" => plain(Self::Exact),
@@ -153,7 +153,9 @@ impl FromStr for Method {
             }
             _ => {
                 let names = Self::NAMES.join(", ");
-                Err(ParseMethodError(format!("there is no caster \"{name}\"; there are {names}")))
+                Err(ParseMethodError(format!(
+                    "there is no caster \"{name}\"; the casters are {names}"
+                )))
             }
         }
     }
@@ -221,9 +223,9 @@ mod tests {
         .map(error)
         .join("\n");
         insta::assert_snapshot!(errors, @r#"
-        there is no caster "bresenham"; there are exact, dda, dda32, accumulate, fixed, table, march
-        there is no caster ""; there are exact, dda, dda32, accumulate, fixed, table, march
-        the caster "dda" has no parameter
+        there is no caster "bresenham"; the casters are exact, dda, dda32, accumulate, fixed, table, march
+        there is no caster ""; the casters are exact, dda, dda32, accumulate, fixed, table, march
+        the caster "dda" takes no parameter
         the caster "fixed" takes 4 to 26 fraction bits, not "3"
         the caster "fixed" takes 4 to 26 fraction bits, not "27"
         the caster "fixed" takes 4 to 26 fraction bits, not ""

@@ -29,13 +29,13 @@ enum Command {
     Wire(wire::Wire),
     #[cfg(target_os = "linux")]
     Load(load::Load),
-    /// The game's command of this name, with a caster to compare
+    /// Run the game's command of this name, with a caster to compare
     #[command(disable_help_flag = true)]
     Cast(Forwarded),
-    /// The game's command of this name, with a caster to compare
+    /// Run the game's command of this name, with a caster to compare
     #[command(disable_help_flag = true)]
     Snapshot(Forwarded),
-    /// The game's command of this name, with a caster to compare
+    /// Run the game's command of this name, with a caster to compare
     #[command(disable_help_flag = true)]
     Play(Forwarded),
 }

@@ -68,7 +68,7 @@ fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
         return bus::run(rooms, plan);
     }
     if plan.hosts > 1 && (plan.cluster.is_none() || plan.store.is_none()) {
-        return Err("several hosts need --cluster and --store".into());
+        return Err("--hosts above 1 needs --cluster and --store".into());
     }
     let servers = start(plan)?;
     if servers.len() == 1 {

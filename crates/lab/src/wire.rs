@@ -76,7 +76,7 @@ pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
     Table {
         name: "encoders",
         title: format!(
-            "{frames} frames of {}×{} cells, {} a second, and the first one, which paints everything",
+            "{frames} frames of {}×{} cells, {} a second, after a first one that paints everything",
             plan.size.width, plan.size.height, plan.frames_per_second
         ),
         keys: ["section", "encoder", ""],

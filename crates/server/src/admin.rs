@@ -162,17 +162,21 @@ impl Target {
             Self::Name(name) => {
                 let name = Name::kept(name);
                 let has_text = !name.as_str().is_empty();
-                has_text.then_some(BanTarget::Name(name)).ok_or("this is no name".to_owned())
+                has_text
+                    .then_some(BanTarget::Name(name))
+                    .ok_or("the name contains no printable character".to_owned())
             }
             Self::Key(key) => AccountKey::parse(key).map(BanTarget::Key).ok_or_else(|| {
-                "a key is written as its fingerprint, SHA256: and 43 characters".to_owned()
+                "write a key as its fingerprint, SHA256: and 43 characters".to_owned()
             }),
             Self::Address(range) => {
                 let range = AddressPrefix::parse(range).map(BanTarget::Addresses);
-                range.ok_or_else(|| "addresses are written as 203.0.113.0/24 or as one".to_owned())
+                range.ok_or_else(|| {
+                    "write one address, or a range such as 203.0.113.0/24".to_owned()
+                })
             }
             Self::Session(_) => {
-                Err("a session is no target of a ban: name a player, a key or addresses".to_owned())
+                Err("a session can't be banned: name a player, a key or addresses".to_owned())
             }
         }
     }

@@ -131,22 +131,22 @@ impl Refusal {
         match self {
             Self::Full => {
                 let most = counted(connections);
-                format!("This host takes at most {most} at a time: try again later.")
+                format!("This host accepts at most {most} at a time: try again later.")
             }
             Self::Address => {
                 let most = counted(per_address);
                 format!(
-                    "This host takes at most {most} from one address (/64 of IPv6): end another game first."
+                    "This host accepts at most {most} from one address (/64 of IPv6): end another game first."
                 )
             }
             Self::Key => {
                 let most = counted(per_key);
-                format!("This host takes at most {most} with one key: end another game first.")
+                format!("This host accepts at most {most} with one key: end another game first.")
             }
             Self::Startups => {
                 let most = counted(startups);
                 format!(
-                    "Too many visitors log in just now, most of them from your network (at most {most} at a \
+                    "Too many visitors are logging in, most of them from your network (at most {most} at a \
                      time): try again in a few seconds."
                 )
             }
@@ -154,7 +154,7 @@ impl Refusal {
                 let seconds = limits.forget.as_secs();
                 format!(
                     "Too many connections from your network have failed (one is forgotten every {seconds} s): \
-                     try again."
+                     try again later."
                 )
             }
         }

@@ -78,7 +78,7 @@ impl Cluster {
         presence: HostStore,
         notice: HostNotice,
     ) -> Result<Self, String> {
-        let no_thread = |error: io::Error| format!("no thread can be started: {error}");
+        let no_thread = |error: io::Error| format!("a thread can't be started: {error}");
         // Start the threads before anything can fail, because dropping a database blocks, too.
         let leases = StoreWorker::start("leases", MAX_CALLS, leases).map_err(no_thread);
         let presence = StoreWorker::start("visits", MAX_CALLS, presence).map_err(no_thread);

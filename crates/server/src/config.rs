@@ -174,7 +174,8 @@ impl Config {
     fn check_room_count(&self, document: &DeTable, faults: &FaultList) {
         let (standing, most) = (self.standing.len(), self.rooms as usize);
         if let Some((key, _)) = document.get_key_value("room").filter(|_| standing > most) {
-            let message = format!("{standing} standing rooms are more than the limit of rooms");
+            let message =
+                format!("there are {standing} standing rooms, more than the limit of {most} rooms");
             let help = format!("write rooms = {standing} or more");
             faults.push(Fault::new(key.span(), message).help(help));
         }
@@ -217,7 +218,7 @@ impl fmt::Display for Config {
             value => writeln!(f, "{} = {value}", METRICS_LISTEN.key)?,
         }
         if !self.standing.is_empty() {
-            writeln!(f, "\n# the rooms that are always there")?;
+            writeln!(f, "\n# the rooms that always exist")?;
         }
         self.standing.iter().try_for_each(|RoomWish { level, mode, difficulty }| {
             writeln!(f, "[[room]]\nmode = \"{}\"\nlevel = \"{level}\"", mode.name())?;
@@ -316,7 +317,8 @@ fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
         return None;
     };
     if list.len() > MAX_ROOMS {
-        let message = format!("there are {} standing rooms, of at most {MAX_ROOMS}", list.len());
+        let message =
+            format!("there are {} standing rooms, and the limit is {MAX_ROOMS}", list.len());
         entry.faults.push(Fault::new(entry.key_place.clone(), message));
         return None;
     }
@@ -376,7 +378,7 @@ const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
 
 const LISTEN: Setting<Config> = Setting {
     key: "listen",
-    about: "the address and port to listen at",
+    about: "the address and port to listen on",
     value: &Text {
         at: |it| &mut it.listen,
         read: |entry| address(entry, LISTEN_EXAMPLE),
@@ -387,7 +389,7 @@ const LISTEN: Setting<Config> = Setting {
 /// Writes an empty string if there is no value.
 const MAPS: Setting<Config> = Setting {
     key: "maps",
-    about: "the folder of the host's own maps; none without this line",
+    about: "the folder of the host's own maps; without this line there are none",
     value: &Text {
         at: |it| &mut it.maps,
         read: |entry| folder(entry).map(Some),
@@ -400,7 +402,7 @@ const MAPS: Setting<Config> = Setting {
 /// The only setting in the table `[metrics]`. Writes an empty string if there is no value.
 const METRICS_LISTEN: Setting<Config> = Setting {
     key: "listen",
-    about: "where Prometheus reads metrics; nowhere without this line",
+    about: "the address at which Prometheus reads metrics; without this line there is none",
     value: &Text {
         at: |it| &mut it.metrics,
         read: |entry| Some(address(entry, METRICS_EXAMPLE)),
@@ -413,18 +415,18 @@ const TEXTS: [Setting<Config>; 5] = [
     LISTEN,
     Setting {
         key: "name",
-        about: "the name of the host, which the lobby shows",
+        about: "the name of the host, shown in the lobby",
         value: &Text { at: |it| &mut it.name, read: name, write: |name| toml_string(name) },
     },
     Setting {
         key: "message",
-        about: "the message of the day, which the lobby shows",
+        about: "the message of the day, shown in the lobby",
         value: &Text { at: |it| &mut it.message, read: message, write: |text| toml_string(text) },
     },
     Setting {
         key: "log",
-        about: "what is logged: off, error, warn, info, debug or trace, and others for the topics host, \
-                connections, rooms, results and admin",
+        about: "the level of the log, and the levels of single topics; a level is off, error, warn, info, debug \
+                or trace, and a topic is host, connections, rooms, results or admin",
         value: &Text { at: |it| &mut it.log, read: log, write: |log| format!("\"{log}\"") },
     },
     MAPS,
@@ -434,75 +436,75 @@ const TEXTS: [Setting<Config>; 5] = [
 const NUMBERS: [Setting<Config>; 21] = [
     Setting {
         key: "connections",
-        about: "the most visitors at a time who have logged in",
+        about: "the limit of visitors who have logged in",
         value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.connections)),
     },
     Setting {
         key: "connections-per-address",
-        about: "the most connections of one address, or of one /64 of IPv6; behind a proxy, all\n\
-                visitors have the same",
+        about: "the limit of connections from one IPv4 address or IPv6 /64; behind a proxy, all\n\
+                visitors have the same address",
         value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.per_address)),
     },
     Setting {
         key: "connections-per-key",
-        about: "the most connections with one public key",
+        about: "the limit of connections with one public key",
         value: &Number(1..=1000, NumberField::U32(|it| &mut it.admission.per_key)),
     },
     Setting {
         key: "startups",
-        about: "the most connections at a time that have not logged in, besides; one more displaces\n\
-                the oldest one of the busiest network",
+        about: "the limit of further connections that have not logged in yet; one more displaces\n\
+                the oldest of the busiest network",
         value: &Number(1..=10_000, NumberField::U32(|it| &mut it.admission.startups)),
     },
     Setting {
         key: "failures",
-        about: "failed connections of one network after which nearly all of its new ones are\n\
-                refused for a while; successful ones make up for failed ones",
+        about: "the number of failed connections from one network after which most of its new ones\n\
+                are refused for a while; successful connections make up for failed ones",
         value: &Number(2..=1_000_000, NumberField::U32(|it| &mut it.admission.failures)),
     },
     Setting {
         key: "forget-seconds",
-        about: "the time after which one of them is forgotten",
+        about: "the time after which one failed connection is forgotten",
         value: &Number(1..=86_400, NumberField::Seconds(|it| &mut it.admission.forget)),
     },
     Setting {
         key: "accounts-per-hour",
-        about: "the new accounts that one network (/24, /64) may make in an hour",
+        about: "the number of accounts that one network (/24, /64) may create in an hour",
         value: &Number(1..=1_000_000, NumberField::U32(|it| &mut it.accounts.per_hour)),
     },
     Setting {
         key: "accounts-at-once",
-        about: "how many of them at once",
+        about: "the number of accounts that it may create at once",
         value: &Number(1..=1_000_000, NumberField::U32(|it| &mut it.accounts.at_once)),
     },
     Setting {
         key: "handshake-seconds",
-        about: "the time in which a client exchanges keys; its version has to arrive within 3",
+        about: "the time for the key exchange; the client must send its version within 3 seconds",
         value: &Number(1..=600, NumberField::Seconds(|it| &mut it.handshake)),
     },
     Setting {
         key: "login-seconds",
-        about: "the time in which a session begins; people look at a host key, and type a passphrase",
+        about: "the time for the login, in which people check the host key and type a passphrase",
         value: &Number(1..=3600, NumberField::Seconds(|it| &mut it.login)),
     },
     Setting {
         key: "login-bytes",
-        about: "the most bytes of a client before it is authenticated",
+        about: "the limit of bytes from a client before its login",
         value: &Number(8192..=16 << 20, NumberField::U32(|it| &mut it.login_bytes)),
     },
     Setting {
         key: "bytes-per-second",
-        about: "the most bytes that a client sends in a second after that; more have to wait",
+        about: "the limit of bytes from a client in a second after its login; further bytes wait",
         value: &Number(1024..=1 << 30, NumberField::U32(|it| &mut it.bytes_per_second)),
     },
     Setting {
         key: "silence-seconds",
-        about: "the time after which a client that answers nothing has gone",
+        about: "the time after which a client that answers nothing is disconnected",
         value: &Number(2..=3600, NumberField::Seconds(|it| &mut it.silence)),
     },
     Setting {
         key: "stall-seconds",
-        about: "the time after which a client that takes nothing is disconnected",
+        about: "the time after which a client that accepts no bytes is disconnected",
         value: &Number(2..=86_400, NumberField::Seconds(|it| &mut it.stall)),
     },
     Setting {
@@ -513,27 +515,27 @@ const NUMBERS: [Setting<Config>; 21] = [
     Setting { key: "rows", about: "", value: &Number(10..=1024, NumberField::U16(|it| &mut it.rows)) },
     Setting {
         key: "drain-seconds",
-        about: "the time for which sessions go on when the server ends",
+        about: "the time that sessions have when the server ends",
         value: &Number(0..=3600, NumberField::Seconds(|it| &mut it.drain)),
     },
     Setting {
         key: "rooms",
-        about: "the most rooms at a time",
+        about: "the limit of open rooms",
         value: &Number(2..=10_000, NumberField::U32(|it| &mut it.rooms)),
     },
     Setting {
         key: "watchers",
-        about: "the most visitors who watch one room",
+        about: "the limit of visitors who watch one room",
         value: &Number(0..=10_000, NumberField::U32(|it| &mut it.watchers)),
     },
     Setting {
         key: "empty-room-seconds",
-        about: "the time after which a room without members is closed",
+        about: "the time after which an empty room closes",
         value: &Number(0..=86_400, NumberField::Seconds(|it| &mut it.empty_room)),
     },
     Setting {
         key: "frames-per-second",
-        about: "the most frames that a visitor gets in a second; fewer, if the processor is busy",
+        about: "the limit of frames for each visitor in a second; fewer if the processor is busy",
         value: &Number(5..=60, NumberField::U32(|it| &mut it.frames_per_second)),
     },
 ];
@@ -634,8 +636,8 @@ impl Field<Config> for Number {
 fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
     let text = entry.string(example)?;
     text.parse().ok().or_else(|| {
-        let help = format!("write {example}; [::] is all addresses of this machine");
-        entry.reject(format!("{} is no address with a port", quoted(text)), "", help)
+        let help = format!("write {example}; [::] stands for all addresses of this machine");
+        entry.reject(format!("{} is not an address with a port", quoted(text)), "", help)
     })
 }
 
@@ -647,7 +649,7 @@ fn message(entry: &Entry<'_, '_>) -> Option<String> {
 fn name(entry: &Entry<'_, '_>) -> Option<String> {
     let text = entry.string("name = \"Cellcaster\"")?;
     if text.trim().is_empty() {
-        let help = "leave the setting out for \"Cellcaster\"";
+        let help = "write a name, or leave the setting out for \"Cellcaster\"";
         return entry.reject("the name of the host is empty", "", help);
     }
     line(entry, text, "the name of the host", MAX_NAME_LENGTH)
@@ -656,7 +658,11 @@ fn name(entry: &Entry<'_, '_>) -> Option<String> {
 /// Returns `text` if it is one line of at most `longest` characters. `what` names it in the fault.
 fn line(entry: &Entry<'_, '_>, text: &str, what: &str, longest: usize) -> Option<String> {
     if text.chars().count() > longest || text.contains(char::is_control) {
-        return entry.reject(format!("{what} is one line of at most {longest} characters"), "", "");
+        return entry.reject(
+            format!("{what} must be one line of at most {longest} characters"),
+            "",
+            "",
+        );
     }
     Some(text.to_owned())
 }
@@ -675,7 +681,7 @@ fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {
     entry.string(LOG_EXAMPLE)?.parse().map_or_else(
         |part: String| {
             let help = format!("write {LOG_EXAMPLE}; {}", LogFilter::GRAMMAR);
-            entry.reject(format!("{} is no level of the log", quoted(&part)), "", help)
+            entry.reject(format!("{} is not a level of the log", quoted(&part)), "", help)
         },
         Some,
     )

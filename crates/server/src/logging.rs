@@ -117,8 +117,8 @@ fn subscriber(
 
 impl LogFilter {
     /// The grammar of a filter, in a sentence.
-    pub const GRAMMAR: &str = "off, error, warn, info, debug or trace, and others for the topics host, \
-                               connections, rooms, results and admin";
+    pub const GRAMMAR: &str = "a level is off, error, warn, info, debug or trace, and a topic is host, \
+                               connections, rooms, results or admin";
 
     /// The filter for a subscriber. Events of this program without a topic belong to `host`. Events of libraries are
     /// not logged.

@@ -160,10 +160,10 @@ impl Metrics {
         for is_good in [false, true] {
             drop((self.results(is_good), self.checks(is_good)));
         }
-        let alone = "Steps of rooms that went on while the bus of the cluster did not answer";
+        let alone = "Steps that rooms took while the cluster's bus did not answer";
         for (name, help, counter) in [
-            ("connections_accepted", "Connections that were accepted", &self.accepted),
-            ("frames", "Frames that were sent", &self.frames),
+            ("connections_accepted", "Accepted connections", &self.accepted),
+            ("frames", "Sent frames", &self.frames),
             (
                 "frame_bytes",
                 "Bytes of frames, before compression and encryption",
@@ -171,34 +171,30 @@ impl Metrics {
             ),
             ("log_entries", "Entries of the logs of all rooms", &self.entries),
             ("room_steps_alone", alone, &self.steps_alone),
-            ("store_errors", "Calls of the store that failed", &self.store_errors),
+            ("store_errors", "Failed calls to the store", &self.store_errors),
         ] {
             page.register(name, help, counter.clone());
         }
         for (name, help, family) in [
-            ("connections_refused", "Connections that were refused", &self.refused),
-            ("room_checks", "Checksums of rooms, compared with those of other hosts", &self.checks),
-            ("results", "Results that were replayed, by what the replay says", &self.results),
+            ("connections_refused", "Refused connections", &self.refused),
+            ("room_checks", "Checksums of rooms, compared with other hosts", &self.checks),
+            ("results", "Replayed results, by verdict", &self.results),
         ] {
             page.register(name, help, family.clone());
         }
         for (name, help, gauge) in [
-            ("connections", "Connections that are open", &self.connections),
-            ("sessions", "Visitors whose session runs", &self.sessions),
-            ("held_bytes", "Bytes of frames that wait for clients", &self.held),
-            ("rooms", "Rooms that are open", &self.rooms),
+            ("connections", "Open connections", &self.connections),
+            ("sessions", "Running sessions", &self.sessions),
+            ("held_bytes", "Bytes of frames that wait for slow clients", &self.held),
+            ("rooms", "Open rooms", &self.rooms),
             ("members", "Members of all rooms", &self.members),
             ("watchers", "Visitors who watch a room", &self.watchers),
-            (
-                "results_waiting",
-                "Results that wait for a store that is away",
-                &self.results_waiting,
-            ),
+            ("results_waiting", "Results that wait for the store", &self.results_waiting),
         ] {
             page.register(name, help, gauge.clone());
         }
         for (name, help, histogram) in [
-            ("step_lateness_seconds", "How late the steps of rooms are", &self.step_lateness),
+            ("step_lateness_seconds", "The lateness of room steps", &self.step_lateness),
             ("frame_seconds", "The time to draw and encode a frame", &self.frame_time),
             (
                 "key_seconds",
@@ -209,7 +205,7 @@ impl Metrics {
             page.register(name, help, histogram.0.clone());
         }
         if let Ok(runtime) = Handle::try_current() {
-            let help = "Tasks: a few of the server, and some for each connection and room";
+            let help = "Running tasks: a few for the server, and some for each connection and room";
             let tasks = runtime.metrics().num_alive_tasks();
             page.register("tasks", help, ConstGauge::new(tasks as u64));
         }
@@ -252,7 +248,9 @@ impl Collector for RoomCollector {
         let gauges: [RoomFigure<Gauge>; 3] = [
             ("room_members", "Members of a room, on all hosts.", |it| &it.members),
             ("room_watchers", "Visitors of this host who watch a room.", |it| &it.watchers),
-            ("room_writes", "Whether this host writes the log of a room.", |it| &it.writes),
+            ("room_writes", "1 if this host writes the log of the room, otherwise 0.", |it| {
+                &it.writes
+            }),
         ];
         for (name, help, figure) in gauges {
             let mut lines = page.encode_descriptor(name, help, None, MetricType::Gauge)?;
@@ -270,7 +268,7 @@ impl Collector for RoomCollector {
                 figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
             }
         }
-        let help = "Checksums of a room, compared with those of other hosts.";
+        let help = "Checksums of a room, compared with other hosts.";
         let mut lines =
             page.encode_descriptor("each_room_checks", help, None, MetricType::Counter)?;
         for (room, figures) in &self.0 {
@@ -352,10 +350,12 @@ fn response(request: &[u8], text: impl Fn() -> String) -> String {
     let (method, target, version) = (words.next(), words.next(), words.next());
     let is_http = version.is_some_and(|version| version.starts_with(b"HTTP/1."));
     let (status, body) = match (method, target) {
-        _ if !ends(request) || !is_http => ("400 Bad Request", "no request of HTTP/1.1\n".into()),
+        _ if !ends(request) || !is_http => {
+            ("400 Bad Request", "this is not an HTTP/1.1 request\n".into())
+        }
         (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text()),
-        (Some(b"GET"), _) => ("404 Not Found", "the page is /metrics\n".into()),
-        _ => ("405 Method Not Allowed", "the method is GET\n".into()),
+        (Some(b"GET"), _) => ("404 Not Found", "the metrics are at /metrics\n".into()),
+        _ => ("405 Method Not Allowed", "use the method GET\n".into()),
     };
     let allow = if status.starts_with("405") { "Allow: GET\r\n" } else { "" };
     format!(

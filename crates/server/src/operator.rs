@@ -31,7 +31,7 @@ const SAID_COLUMNS: usize = 200;
 /// The longest reason, in columns.
 const REASON_COLUMNS: usize = 200;
 /// The reply to a request for hosts on a host without a cluster.
-const NO_CLUSTER: &str = "this host is in no cluster";
+const NO_CLUSTER: &str = "this host is not in a cluster";
 
 impl Operator {
     /// Creates an operator of these visitors and rooms. It notifies `drain` to end the server.
@@ -83,7 +83,7 @@ impl Operator {
                 }
             }
             AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
-                None => AdminReply::Fault("there is nothing to say".to_owned()),
+                None => AdminReply::Fault("the line contains no printable character".to_owned()),
                 Some(line) => {
                     let count = self.visitors.say(line.as_str());
                     logging::said(count);
@@ -102,7 +102,8 @@ impl Operator {
         if let Target::Session(text) = target
             && !is_banned
         {
-            let session = SessionId::parse(text).ok_or("a session is written as 3f9a-7")?;
+            let session =
+                SessionId::parse(text).ok_or("write the id of a session, such as 3f9a-7")?;
             let count = usize::from(self.visitors.remove_session(session, sentence));
             logging::removed_session(session, count);
             return Ok(count);

@@ -95,7 +95,7 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     rows.sort_by_key(|row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
     Table {
         name: "areas",
-        title: "What a window shows, compared with the mean light over each half of a cell (64 samples)"
+        title: "The picture in a window, compared with the mean light over each half of a cell (64 samples)"
             .to_owned(),
         keys: ["display", "filter", "window"],
         columns: headings([

@@ -71,7 +71,7 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     });
     Table {
         name: "features",
-        title: "Everything else that has a truth: a case is a ray, a pixel or a colour".to_owned(),
+        title: "Other features; a case is a ray, a pixel or a colour".to_owned(),
         keys: ["feature", "figure", "unit"],
         columns: headings(["cases", "wrong", "mean error", "worst error", "time, ns a case"]),
         rows: rows.collect(),

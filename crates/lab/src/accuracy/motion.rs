@@ -48,7 +48,7 @@ pub(crate) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Ta
     Table {
         name: "motion",
         title: format!(
-            "Ten seconds of a motion that a friction of {friction} per second damps, compared with the analytic solution"
+            "Ten seconds of motion with a friction of {friction} per second, compared with the analytic solution"
         ),
         keys: ["", "integrator", "step, s"],
         columns: headings([

@@ -235,7 +235,7 @@ pub(crate) fn pixels(world: &World, methods: &[Method], seed: u64) -> Table {
     Table {
         name: "pixels",
         title: format!(
-            "Pixels of {PICTURES} pictures of {}x{} that another method of casting changes",
+            "Wrong pixels of each method in {PICTURES} pictures of {}x{}",
             PICTURE.width, PICTURE.height
         ),
         keys: ["", "method", "parameter"],

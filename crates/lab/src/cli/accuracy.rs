@@ -17,24 +17,24 @@ use crate::report::{Format, Origin, Report, Table, markdown};
 use cellcaster::cli::output_file::OutputFile;
 use cellcaster::cli::{Error, level};
 
-/// Errors of everything that has a truth, against what it costs
+/// Measure errors against exact calculations, and the time that they cost
 ///
-/// Casts rays by every method, draws pictures with every filter and integrates motions, and compares each with an exact or
-/// a finer calculation. Without MAP and --set it takes four scenes, and then every stiff and extreme set. All formats have
-/// the same figures. Only times differ from run to run.
+/// Casts rays by every method, draws pictures with every filter, integrates motions, and compares each with an exact or
+/// finer calculation. Without MAP and --set, rays cross four scenes and then every stiff and extreme set. All formats
+/// contain the same figures. Only times differ from run to run.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-lab accuracy --caster exact --caster dda --set \"through corners\"\n  cellcaster-lab accuracy --part pictures citadel\n  cellcaster-lab accuracy --part rays --format svg > rays.svg"
 )]
 pub(crate) struct Accuracy {
-    /// A map file, \"-\" for standard input, or a built-in level
+    /// A map file, "-" for standard input, or a built-in level
     map: Option<OsString>,
     #[command(flatten)]
     plan: Plan,
-    /// How the report is written
+    /// The format of the report
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Replace the tables between the marks of this page, and the plots beside it
+    /// Replace the marked tables in this page, and the plots beside it
     #[arg(long = "update", value_name = "FILE", value_hint = ValueHint::FilePath)]
     page: Option<PathBuf>,
 }
@@ -48,7 +48,10 @@ pub(crate) fn run(options: &Accuracy) -> Result<(), Error> {
     show_progress("");
     let tables = tables.ok_or_else(|| {
         let name = options.plan.set.as_deref().unwrap_or_default();
-        Error::mistake(format!("there is no set \"{name}\"; there are {}", set_names().join(", ")))
+        Error::mistake(format!(
+            "there is no set \"{name}\"; the sets are {}",
+            set_names().join(", ")
+        ))
     })?;
     match &options.page {
         Some(page) => update(page, &Origin::this(), &tables),
@@ -64,7 +67,7 @@ fn update(path: &Path, origin: &Origin, tables: &[Table]) -> Result<(), Error> {
     for table in tables {
         page = replaced(&page, origin, table).ok_or_else(|| {
             Error::mistake(format!(
-                "{name} has no place for the table \"{}\", which is a line \"{}\" and later \"{END}\"",
+                "{name} has no place for the table \"{}\": add a line \"{}\" and below it a line \"{END}\"",
                 table.name,
                 begin(table),
             ))

@@ -14,16 +14,16 @@ use cellcaster::cli::options::within;
 use cellcaster::cli::output_file::OutputFile;
 use cellcaster::cli::parse::Takes;
 
-/// How fast this machine draws, and a link shows it
+/// Measure how fast this machine draws and encodes frames
 #[derive(Args, Debug)]
 pub(crate) struct Bench {
-    /// How long to measure, from 1 to 60 seconds; preparing comes on top
+    /// The time to measure, from 1 to 60 seconds, without the preparation
     #[arg(long, value_name = "N", default_value = "10", value_parser = seconds)]
     seconds: u8,
-    /// How the report is written
+    /// The format of the report
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Draw plots of it in FILE, too, as SVG
+    /// Also write plots of the report to FILE, as SVG
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
 }

@@ -20,39 +20,40 @@ use cellcaster::map::builtin;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::GlyphSet;
 
-/// Bytes a frame against what the viewer sees
+/// Measure the bytes of frames and the errors that a viewer sees
 ///
-/// Plays a script off screen, and measures what its frames take on their way to a terminal.
+/// Plays a script off screen, and measures the bytes that its frames send to a terminal.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-lab wire\n  cellcaster-lab wire --script walk.script cellar\n  cellcaster-lab wire --palette 256 --size 80x24\n  cellcaster-lab wire --glyphs all --format svg > glyphs.svg"
 )]
 pub(crate) struct Wire {
-    /// A map file, \"-\" for standard input, or a built-in level
+    /// A map file, "-" for standard input, or a built-in level
     map: Option<OsString>,
-    /// What is played [default: a walk in citadel]
+    /// The script to play [default: a walk in citadel]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     script: Option<PathBuf>,
     /// The size of the window in cells, with sides up to 1000 and up to 200000 cells
     #[arg(long, value_name = "COLSxROWS", default_value = "120x40", value_parser = window)]
     size: Size,
-    /// The frames in a second, from 1 to 240
+    /// The frames per second, from 1 to 240
     #[arg(long = "fps", value_name = "N", default_value = "30", value_parser = frames)]
     frames_per_second: NonZeroU32,
-    /// The colours
+    /// The colour depth
     #[arg(long = "colors", value_name = "DEPTH", default_value = "true", value_parser = choice::<ColorDepth>())]
     depth: ColorDepth,
-    /// What a cell shows: half, quadrant, sextant, octant, ascii or ramp; all compares half, quadrant, sextant and octant in
-    /// all levels
+    /// The glyph set: half, quadrant, sextant, octant, ascii or ramp; all compares half, quadrant, sextant and octant
+    /// in all levels
     #[arg(long, value_name = "SET", default_value = "half", value_parser = glyphs)]
     glyphs: Glyphs,
-    /// How far colours may be off: exact, high, low, or from 0 to 255; may be repeated [default: those that have a name]
+    /// The largest colour error: exact, high, low, or a number from 0 to 255; may be repeated [default: exact, high and
+    /// low]
     #[arg(long = "fidelity", value_name = "LEVEL", value_parser = fidelity)]
     fidelities: Vec<Fidelity>,
-    /// Compare ways to choose among the 256 or 16 colours, in all levels, in place of encoders
+    /// Compare ways to choose among 256 or 16 colours in all levels, instead of encoders
     #[arg(long, value_name = "DEPTH", value_parser = palette)]
     palette: Option<ColorDepth>,
-    /// How the report is written
+    /// The format of the report
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

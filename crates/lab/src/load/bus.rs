@@ -119,7 +119,10 @@ async fn write(
 fn report(rooms: usize, seconds: u64, mut times: Vec<Duration>) {
     times.sort();
     let rate = times.len() as f64 / seconds as f64;
-    println!("rooms         {rooms}, {:.1} messages a second and room", rate / rooms.max(1) as f64);
+    println!(
+        "rooms         {rooms}, {:.1} messages a second for each room",
+        rate / rooms.max(1) as f64
+    );
     println!(
         "append        p50 {:.1} ms, p99 {:.1} ms",
         percentile(&times, 50),

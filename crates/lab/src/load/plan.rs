@@ -7,16 +7,16 @@ use clap::Args;
 
 use super::server::Usage;
 
-/// Play by real SSH sessions on one server or several, and print what they cost
+/// Play in real SSH sessions on one or more servers, and print their cost
 #[derive(Args, Debug)]
 pub(crate) struct Load {
-    /// How many sessions play
+    /// The number of sessions that play
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub(crate) sessions: usize,
-    /// How many more sessions never read
+    /// The number of further sessions that never read
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) silent: usize,
-    /// Measure OpenSSH's server with a game for each session, in place of cellcaster-server
+    /// Measure OpenSSH's server with a game for each session, instead of cellcaster-server
     #[arg(long = "sshd")]
     pub(crate) uses_sshd: bool,
     /// How long to measure, in seconds
@@ -28,7 +28,7 @@ pub(crate) struct Load {
     /// How long each client waits before it answers a query of the server, in milliseconds
     #[arg(long, value_name = "MS", default_value_t = 0)]
     answer_delay: u64,
-    /// How many hosts of a cluster there are; more than one needs --cluster and --store
+    /// The number of hosts in a cluster; more than one needs --cluster and --store
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) hosts: usize,
     /// Measure the bus of a cluster alone, with this number of rooms
@@ -40,10 +40,10 @@ pub(crate) struct Load {
     /// The database of the cluster
     #[arg(long, value_name = "URL")]
     pub(crate) store: Option<String>,
-    /// Measure another process, too, such as that of the NATS server; may be repeated
+    /// Also measure this process, such as the NATS server; may be repeated
     #[arg(long, value_name = "PID")]
     beside: Vec<u32>,
-    /// Let clients come, walk, talk, resize their windows and leave for a long time
+    /// Let clients come, walk, talk, resize their windows and leave, until the time is over
     #[arg(long)]
     pub(crate) soak: bool,
     /// The seed of a soak
@@ -80,7 +80,7 @@ impl Load {
     pub(crate) fn print_others(&self, times: &[Duration]) {
         for (process, time) in self.beside.iter().zip(times) {
             let share = time.as_secs_f64() / self.seconds as f64;
-            println!("process {process:<6}{:.1} % of a processor", share * 100.0);
+            println!("process {process:<6}{:.1} % of a core", share * 100.0);
         }
     }
 }

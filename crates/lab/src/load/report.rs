@@ -26,15 +26,15 @@ pub(crate) fn print(tallies: &[Tally], seconds: u64, processor: &[Duration]) {
     let mut delays: Vec<Duration> = tallies.iter().flat_map(|it| it.delays.clone()).collect();
     delays.sort();
     let walking = tallies.iter().filter(|it| it.is_walking).count();
-    println!("sessions      {}, of which {walking} walk", tallies.len());
+    println!("sessions      {}, {walking} of them walking", tallies.len());
     println!(
-        "frames        {mean:.1} a second and session (least {:.1}, most {:.1})",
+        "frames        {mean:.1} a second for each session (least {:.1}, most {:.1})",
         frames.first().unwrap_or(&0.0),
         frames.last().unwrap_or(&0.0)
     );
-    println!("bytes         {:.1} KB a second and session", bytes / count / 1000.0);
+    println!("bytes         {:.1} KB a second for each session", bytes / count / 1000.0);
     println!(
-        "key to frame  p50 {:.1} ms, p99 {:.1} ms, {} keys, {} without an answer",
+        "key to frame  p50 {:.1} ms, p99 {:.1} ms, {} keys, {} unanswered",
         percentile(&delays, 50),
         percentile(&delays, 99),
         delays.len(),
@@ -43,7 +43,7 @@ pub(crate) fn print(tallies: &[Tally], seconds: u64, processor: &[Duration]) {
     let busy: Vec<f64> = processor.iter().map(|it| it.as_secs_f64() / seconds).collect();
     let each: Vec<String> = busy.iter().map(|it| format!("{:.1} %", it * 100.0)).collect();
     println!(
-        "processor     {} of one; {:.0} µs a frame",
+        "processor     {} of a core; {:.0} µs a frame",
         each.join(" and "),
         busy.iter().sum::<f64>() * 1e6 / (mean * count).max(1.0)
     );

@@ -64,7 +64,7 @@ impl ServerProcess {
         let mut line = String::new();
         BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
         let address = line.strip_prefix("Listening at ").and_then(|it| it.split(';').next());
-        let address = address.ok_or("the server does not listen")?.parse()?;
+        let address = address.ok_or("the server did not start to listen")?.parse()?;
         Ok(Self { child, folder, address, metrics: Some(metrics), access: Access::Guest })
     }
 
@@ -212,7 +212,7 @@ fn wait_for(port: u16) -> Result<(), Box<dyn Error>> {
     let deadline = Instant::now() + TIMEOUT;
     while TcpStream::connect(("127.0.0.1", port)).is_err() {
         if Instant::now() > deadline {
-            return Err("sshd does not listen".into());
+            return Err("sshd did not start to listen".into());
         }
         thread::sleep(Duration::from_millis(20));
     }

@@ -63,14 +63,14 @@ async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>>
     sleep(AFTERWARDS).await;
     report(server, begun, &ends)?;
     let ends = ends.lock().expect("no panic");
-    println!("visits by their end: {ends:?}");
+    println!("visits by outcome: {ends:?}");
     let figures = figures(server)?;
     let is_left = |name: &&str| figures.get(*name) != Some(&0.0);
     if let Some(name) = ["cellcaster_sessions", "cellcaster_members"].into_iter().find(is_left) {
         return Err(format!("{name} is not 0 after the last visit").into());
     }
     match ends.get(&None) {
-        Some(faults) => Err(format!("{faults} visits ended with a fault").into()),
+        Some(faults) => Err(format!("{faults} visits failed").into()),
         None => Ok(()),
     }
 }

@@ -54,8 +54,8 @@ pub fn measure_drawing(time: Duration) -> Table {
         .flat_map(|(scene, size)| compare(scene, size, time.mul_f64(share(scene, size) / all)));
     Table {
         name: "drawing",
-        title: "Nanoseconds a pixel of the renderer on one thread (ours), beside the loop that tutorials\n\
-                teach (classic) and a fill, and on the threads that the renderer uses by default"
+        title: "Nanoseconds a pixel of the renderer on one thread (ours), the loop that tutorials teach\n\
+                (classic), a fill, and the renderer on its default number of threads (threaded)"
             .to_owned(),
         keys: ["scene", "renderer", "picture"],
         columns: headings(["pixels", "threads", "time, ns a pixel", "over ours"]),
@@ -137,7 +137,7 @@ fn rows(scene: &Scene, size: FrameSize, threads: usize, times: &[Times]) -> Vec<
         ("fill", 1, fill),
     ];
     if threads > 1 {
-        renderers.push(("by threads", threads, mean(&|times| &times.by_threads)));
+        renderers.push(("threaded", threads, mean(&|times| &times.by_threads)));
     }
     let picture = format!("{}x{}", size.width, size.height);
     let pixels = f64::from(size.width.get()) * f64::from(size.height.get());

@@ -48,8 +48,8 @@ pub(crate) fn measure_footprint() -> Result<Table, Error> {
             window(FIRST_WINDOW),
             window(GAME_WINDOW)
         ),
-        keys: ["what", "", ""],
-        columns: headings(["is"]),
+        keys: ["figure", "", ""],
+        columns: headings(["value"]),
         rows: vec![
             row("start, ms to the first frame", start),
             row("size of the program, MiB", program),

@@ -60,7 +60,7 @@ pub(crate) fn measure_maps(time: Duration) -> Table {
             "ray ratio",
             "time, µs/frame",
             "frame ratio",
-            "time, ms read",
+            "time to read, ms",
             "bytes/cell",
         ]),
         rows: rows.collect(),
@@ -86,7 +86,7 @@ pub(crate) fn measure_crowds(time: Duration) -> Table {
     Table {
         name: "things",
         title: format!(
-            "Frames of 160x90, by the number of things on the map, some sixty of them in view, in a\n\
+            "Frames of 160x90, by the number of things on the map, about sixty in view, in a\n\
              straight hall and in a diagonal one. Ratios are to {} things",
             CROWDS[0]
         ),

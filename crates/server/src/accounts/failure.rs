@@ -22,31 +22,31 @@ pub enum StoreFailure {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AccountRefusal {
     /// Another account has this name, or one that looks like it.
-    #[error("Somebody has this name, or one that looks like it.")]
+    #[error("This name, or one that looks like it, is taken.")]
     NameTaken,
     /// The name is banned.
     #[error("This name is not allowed here.")]
     NameBanned,
     /// The key already has an account.
-    #[error("Your key has an account.")]
+    #[error("Your key already has an account.")]
     KeyKnown,
     /// There is no such account.
-    #[error("There is no such account.")]
+    #[error("This account does not exist.")]
     NoAccount,
     /// The current name is too recent.
-    #[error("A name can be changed after seven days.")]
+    #[error("You can change a name seven days after you chose it.")]
     TooEarly {
         /// The earliest time at which the name can change.
         next: UnixTime,
     },
     /// The network of a new account has created too many.
-    #[error("Your network makes too many accounts; try again in {}.", minutes(*seconds))]
+    #[error("Your network has created too many accounts; try again in {}.", minutes(*seconds))]
     TooManyAccounts {
         /// The seconds until it can create the next account.
         seconds: u64,
     },
     /// The store failed.
-    #[error("The host can't keep this now; try again later.")]
+    #[error("The host can't save this now; try again later.")]
     Failed(#[from] StoreFailure),
 }
 

@@ -44,22 +44,22 @@ pub struct Name(String);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NameFault {
     /// It is too short.
-    #[error("A name has at least {} letters.", Name::MIN_COLUMNS)]
+    #[error("A name needs at least {} letters.", Name::MIN_COLUMNS)]
     Short,
     /// It is too long.
-    #[error("A name is at most {} columns wide.", Name::MAX_COLUMNS)]
+    #[error("A name can be at most {} columns wide.", Name::MAX_COLUMNS)]
     Long,
     /// It contains a character that is not allowed.
-    #[error("A name has letters, digits, - and _, not {}.", shown(*.0))]
+    #[error("A name can contain letters, digits, - and _, but not {}.", shown(*.0))]
     Character(char),
     /// It does not begin with a letter.
-    #[error("A name begins with a letter.")]
+    #[error("A name must begin with a letter.")]
     Begin,
     /// It ends with `-` or `_`.
-    #[error("A name ends with a letter or a digit.")]
+    #[error("A name must end with a letter or a digit.")]
     End,
     /// Its letters belong to different scripts.
-    #[error("The letters of a name are of one script.")]
+    #[error("All letters of a name must belong to one script.")]
     Mixed,
     /// It is reserved, or looks like a reserved name.
     #[error("This name is reserved.")]

@@ -145,7 +145,9 @@ impl PostgresDatabase {
     fn new(address: &str, is_to_read: bool) -> Result<Self, StoreFailure> {
         let address = Address::parse(address)?;
         let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| {
-            StoreFailure::new(format!("the host's store can't have a connection: {error}"))
+            StoreFailure::new(format!(
+                "the connection to the host's store can't be set up: {error}"
+            ))
         })?;
         Ok(Self { address, is_to_read, runtime: Some(runtime), session: None, refused: None })
     }
@@ -293,7 +295,9 @@ impl StatementRunner<'_> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(StatementFault::Lost | StatementFault::Unknown) => {
                 self.fault.set(Some(StatementFault::Unknown));
-                StoreFailure::Away(format!("{failure}; the last change may be kept or not"))
+                StoreFailure::Away(format!(
+                    "{failure}; the last change may or may not have been saved"
+                ))
             }
             _ => failure,
         })
@@ -461,16 +465,17 @@ fn has_tables(call: &StatementRunner<'_>) -> Result<bool, StoreFailure> {
     let sql = "SELECT current_setting('server_encoding') = 'UTF8', \
                to_regclass('cellcaster') IS NOT NULL, to_regclass('accounts') IS NOT NULL";
     let row = call.row(sql, &[])?;
-    let row = row.ok_or_else(|| StoreFailure::new("the database says nothing of its tables"))?;
+    let row = row.ok_or_else(|| StoreFailure::new("the database did not list its tables"))?;
     let [is_utf8, has_version, has_accounts]: [bool; 3] = [row.get(0)?, row.get(1)?, row.get(2)?];
     if !is_utf8 {
         return Err(StoreFailure::new(
-            "the database does not hold texts of all languages: make one with the encoding UTF8",
+            "the database can't store text in all languages: create one with the encoding UTF8",
         ));
     }
     if !has_version && has_accounts {
         return Err(StoreFailure::new(
-            "the database belongs to another program: it has a table accounts, and is left as it is",
+            "the database belongs to another program, because it already has a table \"accounts\": create a \
+             database for the game",
         ));
     }
     if !has_version {
@@ -481,11 +486,12 @@ fn has_tables(call: &StatementRunner<'_>) -> Result<bool, StoreFailure> {
     if version == VERSION {
         return Ok(true);
     }
-    let by =
-        if version > VERSION { "a newer Cellcaster wrote" } else { "no Cellcaster of today reads" };
-    Err(StoreFailure::new(format!(
-        "the store has version {version}, which {by}: it is left as it is"
-    )))
+    let by = if version > VERSION {
+        "a newer Cellcaster wrote: upgrade this one"
+    } else {
+        "this Cellcaster can't read: use a new database"
+    };
+    Err(StoreFailure::new(format!("the store has version {version}, which {by}")))
 }
 
 impl Address {
@@ -525,8 +531,8 @@ fn host(config: &Config) -> Option<String> {
 
 fn no_address() -> StoreFailure {
     StoreFailure::new(
-        "the store is no address such as postgres://USER:PASSWORD@HOST:PORT/DATABASE; in a password, \
-         %40 stands for @, %2F for / and %25 for %",
+        "the address of the store is invalid: write postgres://USER:PASSWORD@HOST:PORT/DATABASE, and in a \
+         password %40 for @, %2F for / and %25 for %",
     )
 }
 

@@ -89,7 +89,8 @@ impl HostStore {
                 return Ok(Err(Duration::from_millis(row.count(0)?)));
             }
             let row = it.row(insert, params![host, visitor])?;
-            let row = row.ok_or_else(|| StoreFailure::new("the host's store began no visit"))?;
+            let row =
+                row.ok_or_else(|| StoreFailure::new("the host's store did not record the visit"))?;
             Ok(Ok(VisitId(row.get(0)?)))
         })
     }

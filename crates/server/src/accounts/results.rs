@@ -61,13 +61,13 @@ pub enum Unverified {
     #[error("The level has no board.")]
     OtherLevel,
     /// Its seed is not 0. All runs of a level have the same seed, so that they compare.
-    #[error("The level was played with another seed than all others.")]
+    #[error("The run has a different seed from all other runs of the level.")]
     OtherSeed,
     /// The player dies.
     #[error("The run ends with the player's death.")]
     Dead,
     /// No exit is reached.
-    #[error("The run reaches no exit.")]
+    #[error("The run does not reach an exit.")]
     NotWon,
 }
 
@@ -223,7 +223,7 @@ mod tests {
         let steps = |count: u64| format!("level cellar\n{count} steps stand\n").repeat(1);
         let long = steps(MAX_SCRIPT_STEPS) + "1 step stand\n";
         for (script, expected) in [
-            (shorter.as_str(), "reaches no exit"),
+            (shorter.as_str(), "does not reach an exit"),
             ("2 s forward\n", "has no board"),
             ("level tests/maps/way_out.toml\n2 s forward\n", "has no board"),
             ("level /dev/zero\n2 s forward\n", "has no board"),

@@ -52,8 +52,8 @@ pub(crate) fn open(
             replace(folder).map(|(connection, sentence)| (connection, Some(sentence)))
         }
         Err(OpenFault::Damaged) => Err(StoreFailure::new(format!(
-            "{} is damaged: put a backup in its place, or start once with --accept-empty, which keeps it as \
-             {} and goes on with the rows that can be read",
+            "{} is damaged: restore a backup, or start once with --accept-empty, which renames the file to {} \
+             and keeps the rows that can be read",
             printable_path(&folder.join(FILE)),
             free_name(folder)
         ))),
@@ -152,7 +152,10 @@ fn connect(file: &Path) -> Result<Connection, OpenFault> {
     check_content(&connection)?;
     let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;
     if !mode.eq_ignore_ascii_case("wal") {
-        let sentence = format!("{} can't have a write-ahead log here", printable_path(file));
+        let sentence = format!(
+            "{} can't have a write-ahead log on this file system: use a data folder on a local disk",
+            printable_path(file)
+        );
         return Err(OpenFault::Failure(StoreFailure::new(sentence)));
     }
     connection.execute_batch(
@@ -172,15 +175,18 @@ fn check_origin(connection: &Connection, file: &Path) -> Result<(), OpenFault> {
     let version = version(connection)?;
     let is_new = application == 0 && version == 0 && objects == 0;
     let sentence = if application != APPLICATION && !is_new {
-        format!("{} belongs to another program: it is left as it is", printable_path(file))
+        format!(
+            "{} belongs to another program: move it away, or use another data folder",
+            printable_path(file)
+        )
     } else if version > VERSION {
         format!(
-            "{} has version {version}, which a newer Cellcaster wrote: it is left as it is",
+            "{} has version {version}, which a newer Cellcaster wrote: upgrade this one",
             printable_path(file)
         )
     } else if ![0, VERSION].contains(&version) {
         format!(
-            "{} has version {version}, which no Cellcaster of today reads: it is left as it is; move it away",
+            "{} has version {version}, which this Cellcaster can't read: move it away",
             printable_path(file)
         )
     } else {
@@ -203,7 +209,7 @@ fn replace(folder: &Path) -> Result<(Connection, String), StoreFailure> {
     });
     let aside = aside.map_err(|error| {
         let file = printable_path(&file);
-        StoreFailure::new(format!("{file} is damaged, and can't be put aside: {error}"))
+        StoreFailure::new(format!("{file} is damaged and can't be renamed: {error}"))
     })?;
     let mut connection = connect(&file).map_err(|fault| fault.or_damage_of(&file))?;
     let damaged = folder.join(&aside);
@@ -211,7 +217,7 @@ fn replace(folder: &Path) -> Result<(Connection, String), StoreFailure> {
     let rows = if is_lost { 0 } else { salvage(&damaged, &mut connection)? };
     let file = printable_path(&file);
     let sentence = format!(
-        "{file} was damaged and is kept as {aside}; {rows} rows of it could be read and stay in force"
+        "{file} was damaged and is kept as {aside}; the new file has the {rows} rows that could be read"
     );
     Ok((connection, sentence))
 }

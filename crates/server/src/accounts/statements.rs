@@ -61,7 +61,8 @@ impl Row {
     pub(crate) fn get<T: FromSql>(&self, column: usize) -> Result<T, StoreFailure> {
         let value = self.0.get(column).map(|value| T::column_result(ValueRef::from(value)));
         value.and_then(Result::ok).ok_or_else(|| {
-            let sentence = format!("the host's store has a value of another kind: column {column}");
+            let sentence =
+                format!("the host's store has a value of the wrong type in column {column}");
             StoreFailure::new(sentence)
         })
     }

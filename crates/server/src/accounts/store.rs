@@ -195,7 +195,8 @@ impl HostStore {
                 count_origin(it, origin, now)?;
             }
             let row = it.row(sql, params![key.bytes(), name, now])?;
-            let row = row.ok_or_else(|| StoreFailure::new("the host's store made no account"))?;
+            let row = row
+                .ok_or_else(|| StoreFailure::new("the host's store did not create the account"))?;
             let id = row.get(0)?;
             take_name(it, id, name)?;
             let (key, name) = (*key, name.clone());
@@ -549,8 +550,9 @@ fn score(row: &Row) -> Result<LevelScore, StoreFailure> {
 
 /// The result whose tally is in column `first` and whose rank is in the next column.
 fn best(row: &Row, first: usize) -> Result<Best, StoreFailure> {
-    let tally = serde_json::from_str(&row.get::<String>(first)?)
-        .map_err(|error| StoreFailure::new(format!("the host's store has no tally: {error}")))?;
+    let tally = serde_json::from_str(&row.get::<String>(first)?).map_err(|error| {
+        StoreFailure::new(format!("a result in the host's store can't be read: {error}"))
+    })?;
     let rank: String = row.get(first + 1)?;
     Ok(Best { tally, rank: Rank::named(&rank).unwrap_or(Rank::Burglar) })
 }

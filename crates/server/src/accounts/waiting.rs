@@ -125,7 +125,7 @@ impl WaitingResults {
     pub fn add(&mut self, result: WaitingResult) -> Result<(), StoreFailure> {
         let bytes = self.content().len() + result.line().len();
         if self.results.len() >= MAX_RESULTS || bytes > MAX_BYTES {
-            return Err(StoreFailure::new("too many results wait for the store"));
+            return Err(StoreFailure::new("too many results are waiting for the store"));
         }
         self.results.push(result);
         self.is_saved = false;
@@ -189,7 +189,7 @@ impl WaitingResults {
         self.is_saved = false;
         self.save()?;
         let (file, aside) = (printable_path(&self.file), printable_path(&aside));
-        Ok(format!("a part of {file} can't be read; the whole is in {aside}"))
+        Ok(format!("part of {file} can't be read; the complete file is now {aside}"))
     }
 }
 
@@ -203,7 +203,7 @@ impl WaitingResult {
         // A replay takes long, so the store is asked first.
         let account = match store.account(&self.key) {
             Ok(Some(account)) => account,
-            Ok(None) => return self.refused(StoreFailure::new("there is no such account"), now),
+            Ok(None) => return self.refused(StoreFailure::new("the account does not exist"), now),
             Err(failure) => return self.refused(failure, now),
         };
         let run = match verify(&self.script, world) {

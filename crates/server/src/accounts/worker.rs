@@ -64,7 +64,7 @@ impl StoreWorker {
         let calls = self.calls.as_ref();
         let is_accepted = calls.is_some_and(|calls| calls.try_send(Box::new(act)).is_ok());
         if !is_accepted {
-            tracing::warn!("a call of the store was dropped: too many wait");
+            tracing::warn!("a call to the store was dropped, because too many are waiting");
         }
         is_accepted
     }

@@ -22,7 +22,7 @@ use cellcaster::rng;
 /// Carries out the action, and prints the result.
 pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
-        Error::mistake("there is no folder for data files: name the one of the host by --data")
+        Error::mistake("this system has no default data folder: name the host's with --data")
     })?;
     let database = StoreLocation::named(options.store);
     let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
@@ -42,7 +42,9 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
         }
         AdminAction::Drain => {
             let count = host.counts(&AdminRequest::Drain);
-            count.map(|count| format!("the server ends; it waits for {}\n", visitors(count)))
+            count.map(|count| {
+                format!("the server is shutting down; it waits for {}\n", visitors(count))
+            })
         }
         AdminAction::Kick { player, session, reason } => host.kicks(player.target(session), reason),
         AdminAction::Ban { player, time, reason } => {
@@ -81,7 +83,7 @@ impl RunningHost<'_> {
     /// Requests a list, and returns it as a table.
     fn lists(&mut self, request: &AdminRequest) -> Result<String, Error> {
         Ok(match self.answers(request)? {
-            AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
+            AdminReply::Visitors(rows) if rows.is_empty() => "nobody is online\n".to_owned(),
             AdminReply::Visitors(rows) => {
                 let is_cluster = rows.iter().any(|row| row.host.is_some());
                 let hosts: &[&str] = if is_cluster { &["host"] } else { &[] };
@@ -114,16 +116,18 @@ impl RunningHost<'_> {
 
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
         match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
-            0 => Err(Error::mistake(
-                "nobody there is on; \"cellcaster-server admin who\" lists who is",
-            )),
+            0 => {
+                Err(Error::mistake("no session matches; \"cellcaster-server admin who\" lists all"))
+            }
             count => Ok(format!("ended {}\n", sessions(count))),
         }
     }
 }
 
 fn other_version() -> Error {
-    Error::machine("the server is of another version: it answers something else")
+    Error::machine(
+        "the running server has another version: use the \"cellcaster-server\" of that version",
+    )
 }
 
 fn of_visitor(row: &VisitorRow, has_host: bool) -> Vec<String> {

@@ -17,11 +17,11 @@ use crate::admin::Target;
 use crate::logging::LogFormat;
 use crate::visitors::SessionId;
 
-/// An SSH server in which people play Cellcaster together
+/// An SSH server on which people play Cellcaster together
 ///
-/// Prints the line that people type to play. The host key and the server's data are in the data folder; the key is made
-/// at the first start. SIGTERM and Ctrl-C end the server after its visitors had time for their end; a second one ends it
-/// at once. SIGHUP reads the configuration again. The log goes to standard error.
+/// Prints the command that people type to play. The data folder contains the host key, which is created at the first
+/// start, and the server's data. SIGTERM and Ctrl-C give visitors some time and then end the server; a second one ends
+/// it at once. SIGHUP reloads the configuration. The log goes to standard error.
 #[derive(Debug, Parser)]
 #[command(
     name = "cellcaster-server",
@@ -49,32 +49,32 @@ pub(crate) enum ServerCommand {
 /// The options of the server itself.
 #[derive(Args, Debug)]
 pub(crate) struct Serve {
-    /// Where to listen; port 0 for a free one [default: 127.0.0.1:2222]
+    /// The address and port to listen on; port 0 chooses a free port [default: 127.0.0.1:2222]
     #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
     pub(crate) listen: Option<SocketAddr>,
-    /// The folder for data [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
+    /// The data folder [default: `$CELLCASTER_DATA`, or cellcaster in the user's data folder]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) store: Store,
-    /// Start although host.db is damaged: keep the file aside, and go on with what can be read of it, which may be nothing
+    /// Start even if host.db is damaged: rename the file, and keep the rows that can be read, possibly none
     #[arg(long)]
     pub(crate) accept_empty: bool,
-    /// The NATS servers over which this host shares its rooms with others; the store must be a PostgreSQL database
-    /// [default: $`CELLCASTER_CLUSTER`, or none]
+    /// The NATS servers through which this host shares its rooms with other hosts; the store must be a PostgreSQL
+    /// database [default: `$CELLCASTER_CLUSTER`, or none]
     #[arg(long, value_name = "URL", value_parser = ClusterAddress::parse)]
     cluster: Option<ClusterAddress>,
-    /// The configuration [default: cellcaster/serve.toml in the folder for configuration files]
+    /// The configuration file [default: cellcaster/serve.toml in the user's configuration folder]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
-    /// A folder of the host's own maps, beside the built-in levels [default: the configuration's]
+    /// A folder of the host's own maps, in addition to the built-in levels [default: the setting `maps`]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) maps: Option<PathBuf>,
-    /// How the log is written
+    /// The format of the log
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) log: LogFormat,
-    /// A folder for the log of each room. It keeps 256 MiB and 30 days at most: the oldest recordings are removed first
-    /// [default: nothing is recorded]
+    /// Record each room into this folder, which holds at most 256 MiB and 30 days; the oldest recordings are removed
+    /// first [default: rooms are not recorded]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) record_room: Option<PathBuf>,
 }
@@ -91,26 +91,26 @@ impl Serve {
 /// The option of all commands that need the store of a host.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Store {
-    /// Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share
-    /// [default: $`CELLCASTER_STORE`, or the folder for data]
+    /// The store of accounts, bans and results: a folder, or a PostgreSQL database that several hosts can share
+    /// [default: `$CELLCASTER_STORE`, or the data folder]
     #[arg(long, value_name = "URL|FOLDER", value_parser = StoreLocation::parse)]
     pub(crate) store: Option<StoreLocation>,
 }
 
-/// See who plays on a host, kick, ban, and say something to all
+/// List, kick and ban the visitors of a host, or show them a line
 ///
-/// The actions ban, unban and bans work without a server, too: bans are in its store. A player is a name, --key or
-/// --address; a banned name is banned with the key of its account. In a cluster, who, say, kick and ban are of all hosts;
-/// hosts lists them, and drain ends the one whose data folder is given.
+/// ban, unban and bans also work while no server runs, because the store contains the bans. Name a player by name,
+/// --key or --address; banning a name also bans the key of its account. In a cluster, who, say, kick and ban apply to
+/// all hosts, hosts lists them, and drain ends the host of the data folder.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-server admin who\n  cellcaster-server admin kick ada --reason \"let others play\"\n  cellcaster-server admin ban --address 203.0.113.0/24 --for 7d"
 )]
 pub(crate) struct Admin {
-    /// The data folder of the host [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
+    /// The host's data folder [default: `$CELLCASTER_DATA`, or cellcaster in the user's data folder]
     #[arg(long, global = true, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
-    /// Where the host's store is: a folder, or a PostgreSQL database [default: $`CELLCASTER_STORE`, or the folder for data]
+    /// The host's store: a folder, or a PostgreSQL database [default: `$CELLCASTER_STORE`, or the data folder]
     #[arg(long, global = true, value_name = "URL|FOLDER", value_parser = StoreLocation::parse)]
     pub(crate) store: Option<StoreLocation>,
     #[command(subcommand)]
@@ -119,7 +119,7 @@ pub(crate) struct Admin {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum AdminAction {
-    /// List who is on
+    /// List the visitors
     Who,
     /// List the open rooms
     Rooms,
@@ -129,10 +129,10 @@ pub(crate) enum AdminAction {
     Kick {
         #[command(flatten)]
         player: PlayerSelector,
-        /// One session, as \"cellcaster-server admin who\" lists it
+        /// The id of one session, from "cellcaster-server admin who"
         #[arg(long, value_name = "ID", value_parser = session, group = "target")]
         session: Option<SessionId>,
-        /// Why, for the player to read
+        /// The reason, which the player sees
         #[arg(long, value_name = "TEXT", default_value = "")]
         reason: String,
     },
@@ -140,10 +140,10 @@ pub(crate) enum AdminAction {
     Ban {
         #[command(flatten)]
         player: PlayerSelector,
-        /// How long, such as 30m or 7d [default: for ever]
+        /// The duration, such as 30m or 7d [default: for ever]
         #[arg(long = "for", value_name = "TIME", value_parser = time)]
         time: Option<Duration>,
-        /// Why, for the player to read
+        /// The reason, which the player sees
         #[arg(long, value_name = "TEXT", default_value = "")]
         reason: String,
     },
@@ -154,9 +154,9 @@ pub(crate) enum AdminAction {
     },
     /// List the bans in force
     Bans,
-    /// Show a line to everybody
+    /// Show a line to all visitors
     Say {
-        /// The line
+        /// The text of the line
         text: String,
     },
     /// End the server, as SIGTERM does
@@ -191,14 +191,14 @@ impl PlayerSelector {
 
 /// List the leaderboards of a host
 ///
-/// For each level and difficulty it lists the fastest run of each account, with the highest rank of all its runs. It
-/// reads the store of the server, also while that runs.
+/// For each level and difficulty, lists each account's fastest run and highest rank. Reads the store, even while the
+/// server runs.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --format json"
 )]
 pub(crate) struct Scores {
-    /// The folder of the store [default: the folder for data files, or $`CELLCASTER_DATA`]
+    /// The host's data folder [default: `$CELLCASTER_DATA`, or cellcaster in the user's data folder]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
@@ -209,7 +209,7 @@ pub(crate) struct Scores {
     /// List this difficulty only: easy, normal or hard
     #[arg(long, value_name = "LEVEL", value_parser = difficulty)]
     pub(crate) difficulty: Option<Difficulty>,
-    /// How the boards are written
+    /// The format of the boards
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ScoresFormat,
 }
@@ -222,15 +222,15 @@ pub(crate) enum ScoresFormat {
     Json,
 }
 
-/// Play the recording of a room again, and say how its rounds ended
+/// Replay the recording of a room, and print how its rounds ended
 ///
 /// With --png, also draw what a member saw, in half blocks and 24-bit colours.
 #[derive(Args, Debug)]
 pub(crate) struct Replay {
-    /// The recording, as --record-room wrote it
+    /// The recording, a file of --record-room
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// A map file or a folder of maps, for rounds in maps of the host
+    /// The map file or the folder of maps, if rounds were in the host's own maps
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) maps: Option<PathBuf>,
     #[command(flatten)]
@@ -250,8 +250,7 @@ impl ClusterAddress {
             let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
             rest.is_some_and(|rest| !rest.is_empty())
         };
-        let takes =
-            "an address of NATS such as nats://host:4222, or several with commas between them";
+        let takes = "a NATS address such as nats://host:4222, or several separated by commas";
         text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(Takes(takes))
     }
 }
@@ -279,7 +278,7 @@ fn range(text: &str) -> Result<AddressPrefix, Takes> {
 
 fn session(text: &str) -> Result<SessionId, Takes> {
     SessionId::parse(text)
-        .ok_or(Takes("a session as \"cellcaster-server admin who\" lists it, such as 3f9a-7"))
+        .ok_or(Takes("a session id from \"cellcaster-server admin who\", such as 3f9a-7"))
 }
 
 fn level(text: &str) -> Result<String, Takes> {
@@ -288,7 +287,7 @@ fn level(text: &str) -> Result<String, Takes> {
     let is_name = !text.is_empty() && text.bytes().all(is_plain);
     is_name
         .then(|| text.to_owned())
-        .ok_or(Takes("the name of a built-in level, or of a map of the host without .toml"))
+        .ok_or(Takes("the name of a built-in level, or of one of the host's maps without .toml"))
 }
 
 fn difficulty(text: &str) -> Result<Difficulty, Takes> {

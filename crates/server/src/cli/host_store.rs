@@ -60,11 +60,12 @@ impl StoreLocation {
             Self::Address(address) => HostStore::connect_to_read(address),
         };
         store.map_err(failed)?.ok_or_else(|| match self {
-            Self::Folder(folder) => {
-                Error::mistake(format!("there is no store of a host in {}", printable_path(folder)))
-            }
+            Self::Folder(folder) => Error::mistake(format!(
+                "{} contains no store of a host: name its data folder, or start the host once",
+                printable_path(folder)
+            )),
             Self::Address(_) => {
-                Error::mistake("there is no store of a host in this database: start the host once")
+                Error::mistake("this database contains no store of a host: start the host once")
             }
         })
     }

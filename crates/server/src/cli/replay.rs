@@ -29,11 +29,11 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     };
     let length = fs::metadata(&options.file).map_err(|error| cannot(&error))?;
     if !length.is_file() || length.len() > MAX_RECORDED_BYTES {
-        return Err(cannot(&format!("it is no file of at most {MAX_RECORDED_BYTES} bytes")));
+        return Err(cannot(&format!("it is not a file of at most {MAX_RECORDED_BYTES} bytes")));
     }
     let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
     if !text.starts_with(ROOM_RECORDING) {
-        return Err(cannot(&"it is no recording of a room"));
+        return Err(cannot(&"it is not a recording of a room"));
     }
     let maps = options.maps.as_deref().map(HostMaps::read).transpose();
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
@@ -116,7 +116,7 @@ impl<'o> MemberAnimation<'o> {
     fn write(&self, path: &Path) -> Result<(), Error> {
         match &self.options.member {
             Some(name) if self.screen.is_none() => Err(Error::mistake(format!(
-                "nobody called \"{name}\" is in that part of the recording"
+                "no member called \"{name}\" is in that part of the recording"
             ))),
             _ => self.frames.write(path),
         }

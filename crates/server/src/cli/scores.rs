@@ -25,7 +25,7 @@ pub(crate) fn run(options: &Scores) -> Result<(), Error> {
     let folder = || options.data.clone().or_else(data_folder).map(StoreLocation::Folder);
     let database =
         StoreLocation::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
-            Error::mistake("there is no folder for data files: name the one of the host by --data")
+            Error::mistake("this system has no default data folder: name the host's with --data")
         })?;
     let boards = boards(&mut database.open_to_read()?, options).map_err(failed)?;
     let text = match options.format {

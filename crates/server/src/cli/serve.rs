@@ -35,7 +35,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(&options)?;
     let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
         Error::mistake(
-            "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
+            "this system has no default data folder: name one, as in \"cellcaster-server --data FOLDER\"",
         )
     })?;
     let key = HostKey::open(&folder).map_err(Error::mistake)?;
@@ -46,7 +46,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
     let ended = runtime.block_on(async {
-        let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+        let no_signals = |error| Error::machine(format!("signals can't be caught: {error}"));
         let signals = Signals::catch().map_err(no_signals)?;
         let hangups = Hangups::catch().map_err(no_signals)?;
         let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
@@ -133,7 +133,9 @@ fn cluster(options: &Serve, store: &StoreLocation) -> Result<Option<(String, [Ho
         ));
     };
     if options.record_room.is_some() {
-        return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
+        return Err(Error::mistake(
+            "rooms of a cluster can't be recorded: leave out --record-room",
+        ));
     }
     let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
     Ok(Some((address, [open()?, open()?])))
@@ -164,7 +166,7 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
         Ok(socket) => Ok(Some(socket)),
         Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
             let folder = folder.display().to_string().replace(char::is_control, "?");
-            Err(Error::mistake(format!("another server runs with the data in {folder}")))
+            Err(Error::mistake(format!("another server already uses the data folder {folder}")))
         }
         Err(error) => {
             Error::machine(format!("\"cellcaster-server admin\" can't reach this server: {error}"))
@@ -175,11 +177,11 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
 }
 
 fn no_thread(error: &io::Error) -> Error {
-    Error::machine(format!("no thread can be started: {error}"))
+    Error::machine(format!("a thread can't be started: {error}"))
 }
 
 fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
-    Error::mistake(format!("{address} can't be used: {error}"))
+    Error::mistake(format!("the server can't listen on {address}: {error}"))
 }
 
 /// The lines that tell people how to play.

@@ -295,7 +295,7 @@ impl SharedRooms {
             self.0.replicas.lock().await.retain(|_, handle| !handle.requests.is_closed());
             for id in self.abandoned() {
                 if let Err(refusal) = self.handle(id).await {
-                    tracing::warn!(room = %id, "a room has no host: {refusal}");
+                    tracing::warn!(room = %id, "a room without a host can't be taken over: {refusal}");
                 }
             }
         }
@@ -313,7 +313,10 @@ impl SharedRooms {
                     Err(_) => is_known = false,
                 },
                 None => {
-                    tracing::error!(level = wish.level, "no standing room: there is no such level");
+                    tracing::error!(
+                        level = wish.level,
+                        "a standing room can't be opened: there is no such level"
+                    );
                 }
             }
         }

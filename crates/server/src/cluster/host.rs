@@ -51,7 +51,7 @@ impl HostContext {
             Some(bytes) => match RoomState::restore(&self.catalog, &bytes) {
                 Ok(state) => Some(state),
                 Err(sentence) => {
-                    tracing::error!(room = %id, "a checkpoint of a room: {sentence}");
+                    tracing::error!(room = %id, "a room's checkpoint can't be restored: {sentence}");
                     None
                 }
             },

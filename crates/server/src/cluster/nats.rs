@@ -68,8 +68,8 @@ impl NatsBus {
     /// A sentence, which contains no password.
     pub(crate) async fn connect(address: &str) -> Result<Self, String> {
         let servers: Result<Vec<ServerAddr>, _> = address.split(',').map(str::parse).collect();
-        let servers =
-            servers.map_err(|_| "the address of NATS is none: nats://HOST:PORT".to_owned())?;
+        let servers = servers
+            .map_err(|_| "the NATS address is invalid: write nats://HOST:PORT".to_owned())?;
         let names: Vec<String> =
             servers.iter().map(|it| format!("{}:{}", it.host(), it.port())).collect();
         let names = names.join(", ");

@@ -121,7 +121,7 @@ impl SharedRooms {
         );
         let mut others = OtherHosts::default();
         let Some(rows) = hosts.ok().flatten() else {
-            let remark = "the database does not say which hosts there are";
+            let remark = "the database did not list the hosts";
             others.remarks.push(remark.to_owned());
             others.hear(answers.ok(), end, None).await;
             return (Vec::new(), others);
@@ -142,7 +142,7 @@ impl SharedRooms {
         let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
         let difference = difference(&own, &theirs)?;
         let (own, other) = (shown_name(self.own_name()), &host.host);
-        Some(format!("host {other} has other maps than host {own}: it {difference}"))
+        Some(format!("host {other} has different maps from host {own}: it {difference}"))
     }
 
     /// Warns about hosts with other maps, once this host has started.
@@ -154,7 +154,7 @@ impl SharedRooms {
             _ => None,
         });
         for difference in hosts.flatten().filter_map(|host| self.map_difference(&host)) {
-            tracing::warn!("{difference}; its rooms in them are not listed here");
+            tracing::warn!("{difference}; this host does not list its rooms in those maps");
         }
     }
 
@@ -199,7 +199,7 @@ impl OtherHosts {
         there: Option<&BTreeSet<&str>>,
     ) {
         let Some(mut answers) = answers else {
-            return self.remarks.push("the bus of the cluster does not answer".to_owned());
+            return self.remarks.push("the cluster's bus does not answer".to_owned());
         };
         let has_all = |replies: &BTreeMap<String, AdminReply>| {
             there.is_some_and(|there| there.iter().all(|name| replies.contains_key(*name)))
@@ -248,7 +248,7 @@ fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
         (!names.is_empty()).then(|| format!("{what} {}{end}", names.join(", ")))
     };
     let parts = [
-        list("has another text of", lacking.intersection(&more).collect(), ""),
+        list("has a different text of", lacking.intersection(&more).collect(), ""),
         list("lacks", lacking.difference(&more).collect(), ""),
         list("has", more.difference(&lacking).collect(), " in addition"),
     ];
@@ -292,7 +292,7 @@ mod tests {
             &[moss, ("fern", "a"), ("hall", "a")],
             &[("moss-2", "b"), ("hall", "a"), ("cave", "a")],
         );
-        let expected = "has another text of moss-2; it lacks fern; it has cave in addition";
+        let expected = "has a different text of moss-2; it lacks fern; it has cave in addition";
         assert_eq!(difference.as_deref(), Some(expected));
     }
 }

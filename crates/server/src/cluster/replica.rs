@@ -113,9 +113,9 @@ impl Progress {
     /// The sentence that members see when it begins.
     const fn sentence(self) -> &'static str {
         match self {
-            Self::Usual => "The hosts of this room reach each other again.",
-            Self::Waiting => "The hosts of this room do not reach each other; the game waits.",
-            Self::Alone => "Other hosts are out of reach; the game goes on alone.",
+            Self::Usual => "The hosts of this room are connected again.",
+            Self::Waiting => "The hosts of this room are disconnected; the game waits.",
+            Self::Alone => "Other hosts are out of reach; the game goes on here.",
         }
     }
 }
@@ -303,7 +303,7 @@ impl Replica {
         let message = match PeerMessage::parse(bytes) {
             Ok(message) => message,
             Err(fault) => {
-                return tracing::warn!(room = %self.id, "a broadcast that cannot be read: {fault}");
+                return tracing::warn!(room = %self.id, "a broadcast cannot be read: {fault}");
             }
         };
         match (message, &mut self.sequencer) {
@@ -378,7 +378,7 @@ impl Replica {
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
-                tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
+                tracing::error!(%room, tick, "the state of a room differs from the sequencer's, which is a bug");
                 self.context.load.metrics.checks(false).inc();
                 self.figures.checks(false).inc();
                 _ = self.restore().await;
@@ -434,8 +434,8 @@ impl Replica {
             let next = self.context.bus.read(self.id, self.state.number).await?;
             let Some((number, bytes)) = next else { return Ok(()) };
             let Ok(message) = LogMessage::parse(&bytes) else {
-                tracing::error!(room = %self.id, number, "a message of a room cannot be read");
-                self.interface.close("A host of another version has this room now.");
+                tracing::error!(room = %self.id, number, "a message in a room's log cannot be read");
+                self.interface.close("A host with another version has taken over this room.");
                 return Err(BusFault::Unknown);
             };
             if !self.take(number, &message).await {
@@ -736,7 +736,7 @@ impl Replica {
             return;
         }
         let now = Instant::now();
-        tracing::info!(room = %self.id, epoch = lease.epoch, "this host has a room now");
+        tracing::info!(room = %self.id, epoch = lease.epoch, "this host has taken over a room");
         self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
         self.times.stepped = now;
         self.is_append_unknown = !is_read;
@@ -750,7 +750,7 @@ impl Replica {
 
     fn step_down(&mut self) {
         if let Some(sequencer) = self.sequencer.take() {
-            tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has lost a room");
+            tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has given up a room");
         }
         self.leasing.renewing = None;
         self.times.lease_ends = None;

@@ -115,7 +115,8 @@ impl Visits {
                 let begun = registry.begin(store, &new_visit)?;
                 Ok::<_, StoreFailure>(begun.map(|ids| CountedVisit { ids, visits }))
             });
-            let begun = begun.await.map_err(|_| "too many calls wait".to_owned());
+            let begun =
+                begun.await.map_err(|_| "too many calls to the store are waiting".to_owned());
             let begun = begun.and_then(|begun| begun.map_err(|failure| failure.to_string()));
             match begun.map_err(VisitRefusal::NotNow)? {
                 Ok(visit) => return Ok(visit),

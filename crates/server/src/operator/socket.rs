@@ -27,14 +27,14 @@ pub struct AdminSocket {
 #[derive(Debug, Error)]
 pub enum AdminFailure {
     /// No server runs with this data folder.
-    #[error("no server runs with the data in {}", printable_path(.0))]
+    #[error("no server runs with the data folder {}", printable_path(.0))]
     NoServer(PathBuf),
     /// The socket belongs to another user.
-    #[error("{} belongs to another user: ask as that user, or as root", printable_path(.0))]
+    #[error("{} belongs to another user: run this command as that user or as root", printable_path(.0))]
     NotAllowed(PathBuf),
     /// The server was too slow.
     #[error(
-        "the server at {} has not answered for {} s", printable_path(.0), CLIENT_TIMEOUT.as_secs()
+        "the server at {} did not answer within {} s", printable_path(.0), CLIENT_TIMEOUT.as_secs()
     )]
     TimedOut(PathBuf),
     /// The connection failed.
@@ -101,9 +101,9 @@ where
 {
     let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
         Some(Ok(request)) => operator.answer(&request).await,
-        Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
+        Some(Err(error)) => AdminReply::Fault(format!("the request can't be parsed: {error}")),
         None => {
-            AdminReply::Fault(format!("a request is a line of at most {MAX_REQUEST_BYTES} bytes"))
+            AdminReply::Fault(format!("a request must be one line of at most {MAX_REQUEST_BYTES} bytes"))
         }
     };
     let mut line = serde_json::to_vec(&reply)?;

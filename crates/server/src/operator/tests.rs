@@ -55,7 +55,7 @@ async fn requests_reach_the_visitors_they_name() {
     let AdminReply::Fault(sentence) = operator.answer_alone(&AdminRequest::Hosts) else {
         panic!("hosts without a cluster")
     };
-    assert_eq!(sentence, "this host is in no cluster");
+    assert_eq!(sentence, "this host is not in a cluster");
 }
 
 #[test]

@@ -214,7 +214,10 @@ impl Rooms {
         for wish in missing {
             match self.add(&wish, true) {
                 Ok(room) => self.spawn(room),
-                Err(refusal) => tracing::error!(level = wish.level, "no standing room: {refusal}"),
+                Err(refusal) => tracing::error!(
+                    level = wish.level,
+                    "a standing room can't be opened: {refusal}"
+                ),
             }
         }
     }

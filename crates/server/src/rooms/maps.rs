@@ -75,7 +75,7 @@ impl HostMaps {
             if bytes > MAX_BYTES {
                 let most = MAX_BYTES >> 20;
                 return Err(MapsError::Sentence(format!(
-                    "the maps in {} have more than {most} MiB together",
+                    "the maps in {} are larger than {most} MiB together: remove some",
                     printable_path(path)
                 )));
             }
@@ -130,7 +130,7 @@ fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
         }
         if files.len() > MAX_MAPS {
             return Err(MapsError::Sentence(format!(
-                "there are more than {MAX_MAPS} maps in {}",
+                "there are more than {MAX_MAPS} maps in {}: remove some",
                 printable_path(path)
             )));
         }
@@ -146,7 +146,7 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     let unreadable = |error| MapsError::Sentence(format!("{shown} can't be read: {error}"));
     // Opening a pipe would block until its other end is opened.
     if !fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(MapsError::Sentence(format!("{shown} is no file")));
+        return Err(MapsError::Sentence(format!("{shown} is not a file")));
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
@@ -155,7 +155,7 @@ fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
     if length > MAX_MAP_BYTES {
         let most = MAX_MAP_BYTES >> 10;
         return Err(MapsError::Sentence(format!(
-            "{shown} is larger than a map of a host may be, {most} KiB"
+            "{shown} is larger than {most} KiB, the limit for a host's map"
         )));
     }
     let text = Faults::text_of(bytes, &shown, "map")?;

@@ -40,10 +40,11 @@ pub(crate) fn replayed(
 ) -> Result<Vec<RoundReport>, String> {
     if is_of_other_version(text) {
         return Err(
-            "it was recorded by another version of Cellcaster, which has to replay it".to_owned()
+            "it was recorded by another version of Cellcaster: replay it with that version"
+                .to_owned(),
         );
     }
-    let rounds = parse_log(text).ok_or("a line is neither of a header nor an entry")?;
+    let rounds = parse_log(text).ok_or("a line is neither part of a header nor an entry")?;
     let last = rounds.len().saturating_sub(1);
     let rounds = rounds.iter().enumerate();
     rounds

@@ -258,7 +258,7 @@ impl Room {
             }
             Command::Again => {
                 if self.member_mut(id).is_some() && self.again.insert(id) {
-                    self.say(id, "wishes to begin again".to_owned());
+                    self.say(id, "wants to restart the round".to_owned());
                 }
             }
             Command::Say(line) => self.say(id, line.as_str().to_owned()),

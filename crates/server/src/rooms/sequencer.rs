@@ -38,7 +38,7 @@ use cellcaster::game::{
 /// The maximum number of steps to catch up on after a delay.
 pub(crate) const MAX_CAUGHT_UP: u32 = 6;
 /// Shown to members after a fault.
-pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
+pub(crate) const FAULT: &str = "The room has ended because of an error in this server.";
 
 /// The interface between a room and its members: commands in, snapshots out.
 #[derive(Debug)]

@@ -82,18 +82,18 @@ pub(crate) enum RoomRefusal {
     #[error("This room is full.")]
     Full,
     /// The room is for a single player.
-    #[error("Somebody plays alone in this room; you can watch.")]
+    #[error("This room has a single player; you can watch.")]
     Alone,
     /// The host has reached its limit of rooms.
-    #[error("There are as many rooms as this server allows; enter one of them.")]
+    #[error("This server allows no more rooms; enter an open one.")]
     TooMany,
     /// The host does not have the level's map.
     #[error("This host does not have the map of this room.")]
     NoLevel,
     /// The member is already in a room through another connection.
-    #[error("You are in a room by another connection, and stay there.")]
+    #[error("You are already in a room through another connection.")]
     Taken,
     /// The hosts cannot agree at the moment.
-    #[error("The room does not answer now; try again.")]
+    #[error("The room does not answer; try again.")]
     NotNow,
 }

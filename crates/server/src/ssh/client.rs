@@ -61,7 +61,7 @@ pub(crate) struct Client {
 const GUEST: &str = "guest";
 const NO_TERMINAL: &str = "This is a game for a terminal: connect with ssh -t.";
 const NO_RSA: &str =
-    "An RSA key is not an account here: make an ed25519 key with ssh-keygen -t ed25519.";
+    "RSA keys have no account here: create an ed25519 key with ssh-keygen -t ed25519.";
 const STANDARD_ERROR: u32 = 1;
 
 impl Client {

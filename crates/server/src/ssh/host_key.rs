@@ -54,8 +54,7 @@ fn read(file: File, path: &Path) -> Result<HostKey, String> {
     let no_key = || {
         let path = printable_path(path);
         format!(
-            "{path} is no ed25519 key without a passphrase in OpenSSH's format; move it away to get a \
-             new one"
+            "{path} is not an ed25519 key in OpenSSH's format without a passphrase; move it away to get a new one"
         )
     };
     key.map(|key| HostKey { key }).ok_or_else(no_key)
@@ -111,8 +110,8 @@ fn refuse_readable(file: &File, path: &Path) -> Result<(), String> {
     }
     let path = printable_path(path);
     Err(format!(
-        "{path} can be read or written by others, so it is no secret; type \"chmod 600 {path}\" if \
-         nobody has copied it, or move it away to get a new one"
+        "{path} can be read or written by others, so it may not be secret; type \"chmod 600 {path}\" if nobody \
+         has copied it, or move it away to get a new one"
     ))
 }
 

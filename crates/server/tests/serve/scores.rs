@@ -83,8 +83,8 @@ fn json_contains_every_figure() {
 fn mistakes_are_explained_in_a_sentence() {
     let folder = scratch("absent");
     for (arguments, said) in [
-        (&[][..], "there is no store of a host in"),
-        (&["--level", "No where"], "the name of a built-in level, or of a map"),
+        (&[][..], "contains no store of a host"),
+        (&["--level", "No where"], "the name of a built-in level, or of one"),
     ] {
         let output = scores(&folder, arguments);
         let sentence = String::from_utf8(output.stderr).unwrap();

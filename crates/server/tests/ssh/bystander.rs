@@ -94,21 +94,21 @@ impl Traffic {
     }
 }
 
-const TO_THE_NAME: &[(&str, &str)] = &[("Enter takes it", "")];
-const TO_THE_LOBBY: &[(&str, &str)] = &[("Enter takes it", "\r"), ("Open a room", "")];
+const TO_THE_NAME: &[(&str, &str)] = &[("Enter saves it", "")];
+const TO_THE_LOBBY: &[(&str, &str)] = &[("Enter saves it", "\r"), ("Open a room", "")];
 const TO_SETTINGS: &[(&str, &str)] =
-    &[("Enter takes it", "\r"), ("Open a room", "6"), ("Mouse turns", "")];
+    &[("Enter saves it", "\r"), ("Open a room", "6"), ("Mouse turns", "")];
 const TO_A_ROOM: &[(&str, &str)] =
-    &[("Enter takes it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("comes in.", "")];
+    &[("Enter saves it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("comes in.", "")];
 const TO_THE_CHAT: &[(&str, &str)] = &[
-    ("Enter takes it", "\r"),
+    ("Enter saves it", "\r"),
     ("Open a room", "\r"),
     ("Go in", "\r"),
     ("comes in.", "\r"),
     ("say", ""),
 ];
 const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
-    ("Enter takes it", "\r"),
+    ("Enter saves it", "\r"),
     ("Open a room", "6"),
     ("Mouse turns", "\x1b[B"),
     ("Mouse turns", "\x1b[B"),
@@ -339,7 +339,7 @@ async fn send_all(
 /// Types keys; returns the time from each key to the bytes that show it.
 async fn type_beside(port: u16, begins: Instant) -> Vec<Duration> {
     let mut client = Client::connect(port, false, WINDOW).await;
-    client.wait_until("the page", |screen| screen.contains("Enter takes it")).await;
+    client.wait_until("the page", |screen| screen.contains("Enter saves it")).await;
     client.rest(begins - Instant::now()).await;
     let end = Instant::now() + TIME;
     let mut times = Vec::new();

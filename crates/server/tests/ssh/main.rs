@@ -99,7 +99,7 @@ impl Guest<Host> {
         let server = Host::start();
         let proxy = Proxy::start(server.port(), link);
         let player = ssh(window, options, host::client_arguments(proxy.port()));
-        for page in ["Enter takes it", "Open a room", "Go in"] {
+        for page in ["Enter saves it", "Open a room", "Go in"] {
             player.wait_for(page);
             player.send("\r");
         }

@@ -33,8 +33,8 @@ impl Tls {
         roots.add_parsable_certificates(load_native_certs().certs);
         if roots.is_empty() {
             return Err(StoreFailure::new(
-                "sslmode=require needs the certificates that the system trusts, and there are none: name a \
-                 file of them by SSL_CERT_FILE",
+                "sslmode=require needs trusted certificates, and the system has none: name a file of \
+                 certificates in SSL_CERT_FILE",
             ));
         }
         let config = ClientConfig::builder_with_provider(Arc::new(default_provider()));
@@ -72,7 +72,9 @@ impl TlsConnect<Socket> for Handshake {
 
     fn connect(self, socket: Socket) -> Self::Future {
         Box::pin(async move {
-            let name = self.name.ok_or_else(|| io::Error::other("the server has no name"))?;
+            let name = self
+                .name
+                .ok_or_else(|| io::Error::other("the server has no host name to check"))?;
             TlsConnector::from(self.config).connect(name, socket).await.map(Encrypted)
         })
     }

@@ -211,7 +211,7 @@ fn other_files_are_left_alone() {
     assert!(refused().contains("has version 99, which a newer Cellcaster wrote"));
     for version in [-5, 3] {
         alter(&format!("PRAGMA user_version = {version}"));
-        let said = format!("has version {version}, which no Cellcaster of today reads");
+        let said = format!("has version {version}, which this Cellcaster can't read");
         assert!(refused().contains(&said));
     }
     alter("PRAGMA user_version = 1; PRAGMA application_id = 7");

@@ -175,9 +175,6 @@ fn an_older_database_is_left_alone() {
     ));
     for opened in [HostStore::connect(&address).map(Some), HostStore::connect_to_read(&address)] {
         let sentence = opened.unwrap_err().to_string();
-        assert!(
-            sentence.contains("has version 4, which no Cellcaster of today reads"),
-            "{sentence}"
-        );
+        assert!(sentence.contains("has version 4, which this Cellcaster can't read"), "{sentence}");
     }
 }

@@ -26,7 +26,7 @@ fn accounts_per_network_are_limited() {
         }
         let refused = create(store, "192.0.2.9", 9, 1).unwrap_err();
         assert_eq!(refused, AccountRefusal::TooManyAccounts { seconds: 179 });
-        let sentence = "Your network makes too many accounts; try again in 3 minutes.";
+        let sentence = "Your network has created too many accounts; try again in 3 minutes.";
         assert_eq!(refused.to_string(), sentence);
         assert_eq!(store.account(&key(9)).unwrap(), None);
         // Other networks do not matter, and neither does a refused name.

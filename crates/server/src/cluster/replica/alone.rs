@@ -37,7 +37,7 @@ impl Replica {
         let Some(first) = self.sequencer.as_mut().and_then(ClusterSequencer::begin_alone) else {
             return;
         };
-        tracing::warn!(room = %self.id, "a room goes on alone: NATS does not answer");
+        tracing::warn!(room = %self.id, "a room goes on without NATS, which does not answer");
         let messages = VecDeque::new();
         self.alone = Some(Alone { since: now, messages, probe: None, probed: now });
         self.times.stepped = now;
@@ -95,7 +95,7 @@ impl Replica {
             }
         }
         if self.alone.take().is_some() {
-            tracing::info!(room = %self.id, "a room is not alone any more");
+            tracing::info!(room = %self.id, "a room has reached NATS again");
             self.is_append_unknown = false;
             self.is_changed = true;
             let answers = self.sequencer.as_mut().map(ClusterSequencer::end_alone);
@@ -143,7 +143,7 @@ impl Replica {
     /// Gives up the messages that the log does not have, because another host had the lease and has written.
     pub(crate) fn diverge(&mut self) {
         if self.alone.take().is_some() {
-            tracing::warn!(room = %self.id, "a room was alone while another host had its lease");
+            tracing::warn!(room = %self.id, "a room went on without NATS while another host had its lease");
             self.is_diverged = true;
         }
         self.step_down();

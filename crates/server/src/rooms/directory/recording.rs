@@ -146,7 +146,7 @@ impl RecordedRoom {
             file.output.write_all(text.as_bytes())
         } else {
             self.file = None;
-            let reason = "it ends here, since recordings have all bytes that they may have";
+            let reason = "it ends here, because the recordings have reached their limit of bytes";
             Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason))
         }
     }

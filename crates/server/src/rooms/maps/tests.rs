@@ -72,7 +72,10 @@ fn all_faults_of_all_maps_are_reported() {
 fn the_number_and_the_size_of_maps_have_limits() {
     let long = format!("{HALL}#{}", " ".repeat(MAX_MAP_BYTES as usize));
     let folder = Scratch::with("large", &[("large.toml", &long)]);
-    assert_eq!(folder.fault(), "maps/large.toml is larger than a map of a host may be, 256 KiB");
+    assert_eq!(
+        folder.fault(),
+        "maps/large.toml is larger than 256 KiB, the limit for a host's map"
+    );
     let full = &long[..MAX_MAP_BYTES as usize];
     let names: Vec<String> = (0..=MAX_MAPS).map(|number| format!("m{number}.toml")).collect();
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), full)).collect();
@@ -80,10 +83,10 @@ fn the_number_and_the_size_of_maps_have_limits() {
     let folder = Scratch::with("bytes", &files[..most]);
     assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), most);
     let folder = Scratch::with("more-bytes", &files[..=most]);
-    assert_eq!(folder.fault(), "the maps in maps have more than 4 MiB together");
+    assert_eq!(folder.fault(), "the maps in maps are larger than 4 MiB together: remove some");
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), HALL)).collect();
     let folder = Scratch::with("many", &files);
-    assert_eq!(folder.fault(), "there are more than 100 maps in maps");
+    assert_eq!(folder.fault(), "there are more than 100 maps in maps: remove some");
 }
 
 #[test]
@@ -91,7 +94,7 @@ fn entries_other_than_files_are_refused() {
     let folder = Scratch::with("absent", &[]);
     assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), 0);
     fs::create_dir(folder.0.join("deep.toml")).unwrap();
-    assert_eq!(folder.fault(), "maps/deep.toml is no file");
+    assert_eq!(folder.fault(), "maps/deep.toml is not a file");
     let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err().to_string();
     assert!(absent.contains("can't be read"), "{absent}");
 }

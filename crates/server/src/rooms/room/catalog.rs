@@ -111,8 +111,8 @@ impl Catalog {
 pub(crate) fn no_level(name: &str) -> String {
     match name_in_map_key(name) {
         Some(map) => format!(
-            "it was recorded in the map {map}.toml, which is not given or has changed since (it was {name}); \
-             name the map or its folder"
+            "it was recorded in the map {map}.toml ({name}), which was not given or has changed: name the \
+             original map or its folder"
         ),
         None => format!("there is no level called {name}"),
     }

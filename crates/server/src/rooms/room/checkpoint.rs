@@ -103,7 +103,7 @@ impl Room {
                 && printable(&said.text, SAID_COLUMNS) == said.text
         };
         let is_said = self.said.len() <= SAID && self.said.iter().all(is_possible);
-        check(is_said, "what was said")
+        check(is_said, "a line of chat")
     }
 
     /// Returns true if each member has a number and a player of their own.

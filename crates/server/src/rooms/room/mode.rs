@@ -63,11 +63,11 @@ impl Mode {
     pub(crate) const fn about(self) -> &'static str {
         match self {
             Self::Roam => "Walk about and talk. Nobody is in danger.",
-            Self::Together => "Steal past the guards together; the level is done when all are out.",
-            Self::Alone => "A level as at home. Your best result stands on the board.",
-            Self::Race => "The first at the exit wins. The best run so far walks along.",
-            Self::Tag => "Touch another one to be rid of it. Who was it least wins.",
-            Self::Hide => "Hide for 20 seconds. Who is found seeks, too; the last one wins.",
+            Self::Together => "Sneak past the guards together. The level ends when all are out.",
+            Self::Alone => "Play a level alone. Your best result is listed on the board.",
+            Self::Race => "The first at the exit wins. A ghost shows the best run.",
+            Self::Tag => "Touch anybody to pass it on. The least time as \"it\" wins.",
+            Self::Hide => "You have 20 seconds to hide. If found, you seek too. The last one wins.",
         }
     }
 

@@ -138,7 +138,7 @@ impl Round {
             (Play::Hide(hide), Mode::Hide) => hide.since.is_none_or(|since| since <= step),
             _ => false,
         };
-        check(is_possible, "what is played")
+        check(is_possible, "the progress of a round")
     }
 
     /// Returns true when the next round must begin.

@@ -29,7 +29,7 @@ pub(crate) struct AccountData {
 /// Shown to a visitor while the store or the cluster cannot be reached.
 const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
 /// Shown to a visitor whose name cannot be stored.
-const NOT_NOW: &str = "The host can't keep this now; try again later.";
+const NOT_NOW: &str = "The host can't save this now; try again later.";
 
 impl Shared {
     /// Looks up a visitor. On failure, returns the sentence that tells them why they may not play, and their
@@ -174,8 +174,8 @@ pub(crate) fn ascii_locale(visitor: &Visitor) -> Option<String> {
 pub(crate) fn terminal_refusal(visitor: &Visitor) -> Option<String> {
     let term = terminal_options(visitor).teletype?;
     Some(format!(
-        "TERM is {term}, a terminal that cannot move its cursor, which playing needs. Set it to what \
-         you have, such as TERM=xterm-256color."
+        "TERM is {term}, and the game needs a terminal that can move its cursor. Set TERM to your terminal's \
+         name, such as xterm-256color."
     ))
 }
 

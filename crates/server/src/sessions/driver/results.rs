@@ -64,7 +64,7 @@ impl Recorder {
             Err(failure) => {
                 self.failed(&failure);
                 let is_kept = self.keep(account, &run, now);
-                if is_kept { kept(&failure) } else { "The host can't keep your result now." }
+                if is_kept { kept(&failure) } else { "The host can't save your result now." }
                     .to_owned()
             }
         }
@@ -127,7 +127,7 @@ fn kept(failure: &StoreFailure) -> &'static str {
         StoreFailure::Away(_) => {
             "The host can't reach its database; your result is kept and will be recorded."
         }
-        StoreFailure::Full(_) => "The host's disk is full; your result waits until there is room.",
+        StoreFailure::Full(_) => "The host's disk is full; your result waits until there is space.",
         StoreFailure::Refused(_) => {
             "The host can't record your result now; it is kept and will be recorded."
         }
@@ -217,7 +217,8 @@ impl Recorder {
                 let (level, steps) = (run.board().level(), run.tally().steps);
                 logging::result_verified(account.name.as_str(), level, steps, run.rank().name());
                 let level = self.catalog.title(level);
-                let line = format!("your result in {level}, {}, is recorded now.", of_steps(steps));
+                let line =
+                    format!("your result in {level}, {}, has been recorded.", of_steps(steps));
                 self.visitors.say_to(&account.key, &line);
             }
             Some(Late::Refuted(result, reason)) => {
@@ -237,7 +238,7 @@ impl Recorder {
             // The store may be on another disk, which still has space.
             while matches!(self.record_late(store, 0), Next::Recorded) {}
             if let Err(failure) = locked(waiting, WaitingResults::save) {
-                logging::store_failed(format!("results that wait are lost: {failure}"));
+                logging::store_failed(format!("waiting results are lost: {failure}"));
             }
         }
         if let Err(failure) = store.checkpoint() {

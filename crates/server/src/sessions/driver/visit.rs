@@ -104,7 +104,7 @@ enum Reply {
 const MAX_REPLIES: usize = 16;
 
 /// Shown while the host is looking for the visitor's place.
-const LOOKS: &str = "You were in a room; the host looks for your place.";
+const LOOKS: &str = "You were in a room; the host is looking for your place.";
 /// Shown when the place has been found.
 const WELCOME: &str = "Welcome back: you are where you were.";
 const GONE: &str = "Your place in the room is gone.";
@@ -368,7 +368,7 @@ impl Driver {
     /// Submits a run to be verified and recorded.
     fn submit(&mut self, run: FinishedRun) {
         let Some(account) = self.account.clone() else {
-            let sentence = "A guest's result does not rank: come with a public key.";
+            let sentence = "A guest's result does not count: connect with a public key.";
             return self.notify(SessionEvent::Result(sentence.to_owned()));
         };
         let recorder = self.shared.recorder.clone();
@@ -409,7 +409,7 @@ impl Driver {
 
     fn take_name(&mut self, name: Name, account: Option<Account>) -> SessionEvent {
         if account.is_none() && !self.presence.take_guest_name(&name) {
-            let sentence = "Somebody here has this name; take another.";
+            let sentence = "Somebody here already has this name; choose another.";
             return SessionEvent::Named(Err(sentence.to_owned()));
         }
         let line = login::line(&name);
@@ -558,7 +558,7 @@ impl Driver {
     /// The visitor's last sentence when the server shuts down.
     fn last_sentence(&self) -> &'static str {
         if self.can_return() {
-            "This server has ended. Connect again, and you are where you were."
+            "This server has ended. Connect again to continue where you were."
         } else {
             "The server has ended. Come again!"
         }

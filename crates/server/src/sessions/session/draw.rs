@@ -30,8 +30,8 @@ use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings cannot change.
 const ROOM_KEYS: [&str; 2] = [
-    "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
-    "Tab lists the members, or watches another one.",
+    "In a room: Enter or / talks, ; hides chat, 1 shows an emote,",
+    "Tab lists the members, or watches the next one.",
 ];
 /// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
@@ -62,8 +62,8 @@ impl Ui {
             _ => self.draw_lobby(canvas, picture, status),
         }
         if self.idle.is_warned() {
-            let effect = if self.stay.is_some() { "leave the room" } else { "end this session" };
-            notice(canvas, picture, &format!("Still there? Press a key, or soon you {effect}."));
+            let end = if self.stay.is_some() { "you leave the room" } else { "this session ends" };
+            notice(canvas, picture, &format!("Still there? Press a key, or {end} soon."));
         }
     }
 
@@ -74,7 +74,7 @@ impl Ui {
             picture
         };
         let text = match self.page() {
-            Page::Name => "type a name, Enter takes it",
+            Page::Name => "type a name, Enter saves it",
             _ => "up and down, Enter, Esc",
         };
         canvas.draw_widget(hint(text), status);
@@ -101,7 +101,7 @@ impl Ui {
         let identity = &self.identity;
         let about = match (identity.has_account, identity.is_named) {
             (true, true) => "Welcome back. Your key is your account.",
-            (true, false) => "Your key is your account. Choose its name.",
+            (true, false) => "Your key is your account. Choose a name for it.",
             (false, _) => "You are a guest. With a key, your results rank.",
         };
         let about = self.host.notice.as_ref().map_or(about, line::Line::as_str);
@@ -221,7 +221,7 @@ fn draw_darkness(canvas: &mut impl Canvas, area: Rect, room: &RoomView, depth: C
     };
     canvas.draw_widget(Block::new().style(style), area);
     let left = whole_seconds(seconds_left(room).unwrap_or(0) as f64);
-    let text = format!("The others hide.\nYou see again in {left}.");
+    let text = format!("The others are hiding.\nYou can see again in {left}.");
     message(canvas, area, "you seek", Text::from(text).centered());
 }
 

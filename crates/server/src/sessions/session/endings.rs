@@ -79,7 +79,7 @@ impl Draining {
     }
 
     pub(crate) fn sentence(self, now: Duration) -> String {
-        let then = if self.can_return { " Connect again, and you are where you were." } else { "" };
+        let then = if self.can_return { " Connect again to continue where you were." } else { "" };
         match self.seconds(now) {
             0 => format!("The server ends now.{then}"),
             1 => format!("The server ends in 1 second.{then}"),

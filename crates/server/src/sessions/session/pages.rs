@@ -322,7 +322,7 @@ impl Ui {
             menu.entry_with(label, value, Choice::Open(Page::Card(target)))
         });
         let is_empty = menu.choice().is_none();
-        let menu = if is_empty { menu.line("There is nobody in any room.") } else { menu };
+        let menu = if is_empty { menu.line("All rooms are empty.") } else { menu };
         menu.entry("Back", Choice::Back)
     }
 
@@ -330,7 +330,7 @@ impl Ui {
         let difficulty = self.identity.preferences.difficulty;
         let menu = Menu::new(mode.title());
         let menu = if mode.has_guards() {
-            menu.line(format!("On {}; left and right change it.", difficulty.name()))
+            menu.line(format!("On {}; left and right change the difficulty.", difficulty.name()))
         } else {
             menu
         };
@@ -361,7 +361,8 @@ impl Ui {
         let catalog = &self.host.catalog;
         let level = catalog.names.get(self.board.level).map_or("", |name| catalog.title(name));
         let difficulty = self.identity.preferences.difficulty.name();
-        let menu = Menu::new(level).line(format!("On {difficulty}; left and right change it."));
+        let menu = Menu::new(level)
+            .line(format!("On {difficulty}; left and right change the difficulty."));
         match &self.board.rows {
             None => menu.line("…"),
             Some(rows) if rows.is_empty() => menu.line("Nobody has won it yet."),
@@ -391,7 +392,7 @@ impl Ui {
         let keys = "Arrows walk, Enter talks, ? helps.";
         let alone = "Arrows walk, ? helps.";
         let is_alone = mode == Mode::Alone;
-        let guest = "You are a guest: with a key, results stand on the board.";
+        let guest = "You are a guest: with a key, your results go on the board.";
         let lines = [
             Some(self.level_title(target)),
             Some(mode.about().to_owned()),
@@ -403,7 +404,7 @@ impl Ui {
         let [enters, watches] = [false, true].map(|watches| Choice::Enter { watches });
         back(match target {
             RoomTarget::New { .. } => menu.entry("Go in", enters),
-            RoomTarget::Existing(_) if is_full => menu.entry("Watch, since it is full", watches),
+            RoomTarget::Existing(_) if is_full => menu.entry("Watch (full)", watches),
             RoomTarget::Existing(_) => menu.entry("Go in", enters).entry("Watch", watches),
         })
     }
@@ -412,8 +413,7 @@ impl Ui {
         let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
         let menu = Menu::new("room").line("The room goes on meanwhile.");
         let menu = menu.entry("Go on", Choice::Back);
-        let menu =
-            if is_member { menu.entry("Begin the round again", Choice::Again) } else { menu };
+        let menu = if is_member { menu.entry("Restart the round", Choice::Again) } else { menu };
         menu.entry("Settings", Choice::Open(Page::Settings))
             .entry("Help", Choice::Open(Page::Help))
             .entry_with("Leave the room", "q", Choice::LeaveRoom)
@@ -424,8 +424,8 @@ impl Ui {
 fn who_is_here(room: &RoomSummary) -> String {
     let watchers = match room.watchers {
         0 => String::new(),
-        1 => " One watches.".to_owned(),
-        count => format!(" {count} watch."),
+        1 => " 1 watcher.".to_owned(),
+        count => format!(" {count} watchers."),
     };
     let names: Vec<&str> = room.members.iter().map(Line::as_str).collect();
     if names.is_empty() {

@@ -55,8 +55,8 @@ const ROWS_OUTSIDE_OF_ROOMS: usize = 10;
 
 impl Ui {
     pub(crate) fn settings_menu(&self) -> Menu<Choice> {
-        let note =
-            (!self.identity.has_account).then_some("You are a guest: they hold for this session.");
+        let note = (!self.identity.has_account)
+            .then_some("You are a guest: settings last for this session.");
         let choices = self.choices();
         let count = if self.stay.is_some() { ROWS.len() } else { ROWS_OUTSIDE_OF_ROOMS };
         let rows = ROWS[..count].iter().enumerate();

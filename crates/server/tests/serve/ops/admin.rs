@@ -37,7 +37,7 @@ fn complaint(folder: &Path, arguments: &[&str]) -> String {
 #[test]
 fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
     let running = Running::start("", "text");
-    assert_eq!(running.admin_says(&["who"]), "nobody is on\n");
+    assert_eq!(running.admin_says(&["who"]), "nobody is online\n");
     running.admin_says(&["rooms"]);
     let mut visitor = running.visitor();
     running.wait_for_visitors(1);
@@ -54,7 +54,7 @@ fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
         assert!(running.log().contains(said), "{}", running.log());
     }
     assert!(!running.log().contains("closing"), "{}", running.log());
-    assert!(complaint(&running.folder, &["hosts"]).contains("this host is in no cluster"));
+    assert!(complaint(&running.folder, &["hosts"]).contains("this host is not in a cluster"));
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn one_of_several_sessions_can_be_kicked() {
     running.wait_for_visitors(1);
     assert!(running.admin_says(&["who"]).contains(sessions[0]), "{sessions:?}");
     let said = complaint(&running.folder, &["kick", "--session", sessions[1]]);
-    assert!(said.contains("nobody there is on"), "{said}");
+    assert!(said.contains("no session matches"), "{said}");
     first.send("x");
 }
 
@@ -119,20 +119,20 @@ fn bans_work_while_no_server_runs() {
 fn mistakes_are_explained_in_a_sentence() {
     let folder = folder();
     for (arguments, said) in [
-        (&["who"][..], "no server runs with the data in"),
+        (&["who"][..], "no server runs with the data folder"),
         (&["rooms"], "no server runs"),
         (&["hosts"], "no server runs"),
         (&["kick", "ada"], "no server runs"),
         (&["drain"], "no server runs"),
         (&["say", "hello"], "no server runs"),
-        (&["bans"], "there is no store of a host in"),
-        (&["ban", "ada"], "there is no store of a host in"),
+        (&["bans"], "contains no store of a host"),
+        (&["ban", "ada"], "contains no store of a host"),
         (&[], "admin takes one of who, rooms"),
         (&["whom"], "\"whom\" is not a command"),
         (&["say"], "say needs <TEXT>"),
         (&["kick"], "--session <ID>>; "),
         (&["kick", "ada", "--address", "::1"], " cannot be combined with "),
-        (&["kick", "--session", "7"], "--session takes a session as"),
+        (&["kick", "--session", "7"], "--session takes a session id from"),
         (&["kick", "--session", "3f9a-7"], "no server runs"),
         (&["ban"], "--address <RANGE>>; "),
         (&["ban", "--session", "3f9a-7"], "unknown option --session"),
@@ -180,13 +180,13 @@ fn a_folder_is_locked_until_its_server_ends_or_is_killed() {
         server(&["--listen", "127.0.0.1:0", "--data"]).arg(&running.folder).output().unwrap();
     let error = String::from_utf8(second.stderr).unwrap();
     assert_eq!(second.status.code(), Some(2));
-    assert!(error.contains("another server runs with the data in"), "{error}");
+    assert!(error.contains("another server already uses the data folder"), "{error}");
     running.signal(rustix::process::Signal::KILL);
     running.wait_for_end();
     assert!(running.folder.join("admin.sock").exists());
     assert!(complaint(&running.folder, &["who"]).contains("no server runs"));
     running.restart();
-    assert_eq!(running.admin_says(&["who"]), "nobody is on\n");
+    assert_eq!(running.admin_says(&["who"]), "nobody is online\n");
     running.signal(rustix::process::Signal::TERM);
     assert_eq!(running.wait_for_end(), Some(0));
     assert!(!running.folder.join("admin.sock").exists());

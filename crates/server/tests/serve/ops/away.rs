@@ -129,7 +129,7 @@ fn a_player_who_is_still_connected_sees_the_result_recorded() {
     host.postgres.pause();
     win(&mara, KEPT);
     host.postgres.resume();
-    mara.wait_for("is recorded now.");
+    mara.wait_for("has been recorded.");
     let results = host.results();
     let (_, steps, _) = results.first().unwrap();
     let time = format!("The moss hall, 0:{:02}.{}", steps / 60, steps * 10 / 60 % 10);

@@ -162,7 +162,7 @@ fn a_room_survives_its_killed_host() {
     let _mara = hosts.player(0, "Mara");
     let (jon, kim) = (hosts.player(1, "Jon"), hosts.player(2, "Kim"));
     jon.wait_for("Kim comes in.");
-    assert!(hosts.running[0].0.log().contains("this host has a room now"));
+    assert!(hosts.running[0].0.log().contains("this host has taken over a room"));
     hosts.running[0].0.signal(Signal::KILL);
     let time = goes_on(&jon, "anybody there");
     kim.wait_for("anybody there");
@@ -184,7 +184,7 @@ fn rooms_wait_without_nats_and_go_on_without_the_database() {
     }
     hosts.nats.restart();
     for player in [&mara, &jon] {
-        player.wait_for("reach each other again");
+        player.wait_for("are connected again");
     }
     says(&jon, &mara, "that was long");
 
@@ -205,13 +205,13 @@ fn a_room_with_one_host_goes_on_without_nats() {
     mara.wait_for("Jon comes in.");
     hosts.nats.kill();
     for player in [&mara, &jon] {
-        player.wait_for("the game goes on alone");
+        player.wait_for("the game goes on here");
     }
     let time = says(&mara, &jon, "just the two of us");
     assert!(time < Duration::from_secs(1), "{time:?}");
     hosts.nats.restart();
     for player in [&mara, &jon] {
-        player.wait_for("reach each other again");
+        player.wait_for("are connected again");
     }
     assert!(hosts.figure(0, "room_steps_alone_total") > 0.0);
     let kim = hosts.player(1, "Kim");
@@ -242,10 +242,10 @@ fn cluster_requirements_are_explained() {
     for (options, sentence) in [
         (vec!["--cluster", nobody], "a cluster needs a database that all hosts share"),
         (vec!["--cluster", nobody, "--store", &postgres], "NATS at 127.0.0.1:1"),
-        (vec!["--cluster", "localhost"], "an address of NATS"),
+        (vec!["--cluster", "localhost"], "a NATS address"),
         (
             vec!["--cluster", nobody, "--store", &postgres, "--record-room", "x"],
-            "rooms of a cluster are not recorded",
+            "rooms of a cluster can't be recorded",
         ),
     ] {
         let output = serve(&options);

@@ -168,7 +168,7 @@ fn wait_for_one(player: &Player, texts: &[&str]) {
 /// Takes the name Jon and wins in the host's own map.
 fn win(player: &Player) -> Told {
     let mut told = Told::default();
-    wait_for_one(player, &["Enter takes it", "can't look you up"]);
+    wait_for_one(player, &["Enter saves it", "can't look you up"]);
     if player.text().contains("can't look you up") {
         return told;
     }
@@ -189,7 +189,7 @@ fn win(player: &Player) -> Told {
     player.send("\r");
     player.wait_for("comes in.");
     let sentences =
-        ["You are number 1.", "will be recorded", "waits until", "can't keep your", "your best."];
+        ["You are number 1.", "will be recorded", "waits until", "can't save your", "your best."];
     wait_until("the result", || {
         player.send("w");
         sentences.iter().any(|sentence| player.text().contains(sentence))
@@ -254,7 +254,7 @@ fn a_visitor_gets_in_after_a_failed_accept() {
         let log = running.folder.join(error);
         let traced = Traced::new(&log, &[], Some(&failure));
         let attached = traced.attach(running.process());
-        running.visitor().wait_for("Enter takes it");
+        running.visitor().wait_for("Enter saves it");
         drop(attached);
         let calls = fs::read_to_string(log.with_extension("calls")).unwrap();
         assert!(calls.contains(error), "{error} did not happen");

@@ -66,9 +66,9 @@ fn a_killed_server_loses_at_most_one_second() {
     let player = running.player(Some(&key));
     player.wait_for("> Mara");
     let guest = running.visitor();
-    guest.wait_for("Enter takes it");
+    guest.wait_for("Enter saves it");
     guest.send("\x15MARA\r");
-    guest.wait_for("Somebody has this name");
+    guest.wait_for("This name, or one");
 }
 
 #[test]

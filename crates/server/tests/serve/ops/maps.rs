@@ -62,7 +62,7 @@ fn replay(arguments: &[&Path]) -> Output {
 
 /// Takes a new name, and presses `entry` in the lobby.
 pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
-    player.wait_for("Enter takes it");
+    player.wait_for("Enter saves it");
     player.send(format!("\x15{name}"));
     player.wait_for(name);
     player.send("\r");
@@ -201,7 +201,7 @@ fn a_finish_is_announced_and_the_finisher_watches_the_others() {
         enter_room(&player, name);
         player
     });
-    jon.wait_for("be the first at the exit");
+    jon.wait_for("be first at the exit");
     wait_until("the finish", || {
         mara.send("w");
         mara.text().contains("watching Jon")

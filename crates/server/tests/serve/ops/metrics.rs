@@ -110,7 +110,10 @@ fn metrics_are_off_by_default_and_a_taken_port_is_reported() {
         .unwrap();
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(error.starts_with(&format!("cellcaster: 127.0.0.1:{port} can't be used: ")), "{error}");
+    assert!(
+        error.starts_with(&format!("cellcaster: the server can't listen on 127.0.0.1:{port}: ")),
+        "{error}"
+    );
     let running = Running::start("", "text");
     running.wait_for_log("listening");
     assert!(!running.log().contains("metrics"), "{}", running.log());

@@ -34,7 +34,7 @@ fn a_recording_is_drawn_as_a_member_saw_it() {
     let output = draw("Kim");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        String::from_utf8_lossy(&output.stderr).contains("nobody called \"Kim\""),
+        String::from_utf8_lossy(&output.stderr).contains("no member called \"Kim\""),
         "{output:?}"
     );
 }

@@ -38,7 +38,7 @@ fn account_results_rank_and_survive_a_kill_but_guests_do_not_rank() {
     let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
     let mut running = Running::start(&config, "text");
     let key = user_key(&running.folder);
-    win(&running.visitor(), "Jon", "A guest's result does not rank");
+    win(&running.visitor(), "Jon", "A guest's result does not count");
     assert!(!scores(&running.folder, &[]).contains("Jon"));
     win(&running.player(Some(&key)), "Mara", "You are number 1.");
     running.signal(Signal::KILL);
@@ -108,12 +108,12 @@ fn a_result_waits_until_a_full_disk_has_room() {
     disk.fill();
     wait_until("the result", || {
         player.send("w");
-        player.text().contains("The host's disk is full; your result waits until there is room.")
+        player.text().contains("The host's disk is full; your result waits until there is space.")
     });
     assert!(!scores(&disk.0, &[]).contains("Mara"));
     assert!(!disk.0.join("waiting_results.new").exists());
     disk.make_room();
-    player.wait_for("is recorded now.");
+    player.wait_for("has been recorded.");
     assert!(scores(&disk.0, &["--level", "moss"]).contains("Mara"));
     running.signal(Signal::KILL);
     running.wait_for_end();

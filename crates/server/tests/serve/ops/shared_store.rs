@@ -67,9 +67,9 @@ fn hosts_count_new_accounts_per_network_together() {
     let keys = [0; 2].map(|_| user_key(&folder()));
     choose(&one.player(Some(&keys[0])), "Mara", "\x1b");
     let jon = other.player(Some(&keys[1]));
-    jon.wait_for("Enter takes it");
+    jon.wait_for("Enter saves it");
     jon.send("\x15Jon\r");
-    jon.wait_for("Your network makes too many accounts; try again in 3 minutes.");
+    jon.wait_for("Your network has created too many accounts; try again in 3 minutes.");
     // Existing accounts can still log in, and guests can play.
     other.player(Some(&keys[0])).wait_for("> Mara");
     choose(&other.visitor(), "Jon", "\x1b");
@@ -86,7 +86,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
     };
     let encrypted = format!("{store}&sslmode=require");
     let said = asked(&encrypted, &server);
-    assert!(said.contains("there is no store of a host in this database"), "{said}");
+    assert!(said.contains("this database contains no store of a host"), "{said}");
     let said = asked(&encrypted, &stranger);
     assert!(said.contains("certificate") && said.lines().count() == 1, "{said}");
     // The server accepts only encrypted connections.
@@ -107,5 +107,5 @@ fn a_missing_store_is_reported_without_its_password() {
     let empty = PostgresServer::shared().address();
     let output = with_store(&empty, &["scores"]);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert!(error.contains("there is no store of a host in this database"), "{error}");
+    assert!(error.contains("this database contains no store of a host"), "{error}");
 }

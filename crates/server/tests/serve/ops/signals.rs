@@ -53,7 +53,7 @@ fn new_limits_apply_to_new_connections() {
     let first = running.visitor();
     running.wait_for_visitors(1);
     let mut second = running.visitor();
-    second.wait_for("This host takes at most 1 connection at a time: try again later.");
+    second.wait_for("This host accepts at most 1 connection at a time: try again later.");
     second.wait_for_end();
     running.wait_for_log("reason=\"full\"");
     fs::write(running.folder.join("serve.toml"), "connections = 2\n").unwrap();
@@ -113,7 +113,10 @@ fn an_operator_can_end_the_server_like_a_signal() {
     let mut running = Running::start("drain-seconds = 1\n", "text");
     let mut visitor = running.visitor();
     running.wait_for_visitors(1);
-    assert_eq!(running.admin_says(&["drain"]), "the server ends; it waits for 1 visitor\n");
+    assert_eq!(
+        running.admin_says(&["drain"]),
+        "the server is shutting down; it waits for 1 visitor\n"
+    );
     assert_eq!(running.wait_for_end(), Some(0));
     visitor.wait_for_end();
     assert!(running.log().contains("host: draining seconds=1"), "{}", running.log());

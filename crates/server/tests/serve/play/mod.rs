@@ -17,7 +17,7 @@ use crate::player::Player;
 
 /// Takes a name and enters the first room. Enter accepts the offer on each page.
 pub(crate) fn enter_room(player: &Player, name: &str) {
-    player.wait_for("Enter takes it");
+    player.wait_for("Enter saves it");
     // Ctrl-U clears the line.
     player.send(format!("\x15{name}"));
     player.wait_for(name);
@@ -121,13 +121,13 @@ fn the_account_of_a_key_survives_a_restart() {
     server.restart();
     let player = server.player(&["-o", &key]);
     player.wait_for("Mara");
-    player.wait_for("Enter takes it");
+    player.wait_for("Enter saves it");
     player.send("\r");
     player.wait_for("Open a room");
     let guest = server.player(&[]);
-    guest.wait_for("Enter takes it");
+    guest.wait_for("Enter saves it");
     guest.send("\x15MARA\r");
-    guest.wait_for("Somebody has this name");
+    guest.wait_for("This name, or one");
 }
 
 #[test]

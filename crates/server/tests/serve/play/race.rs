@@ -20,7 +20,7 @@ fn record_run_of_mara(store: &mut HostStore) {
 fn the_best_run_of_the_board_walks_along_in_a_race() {
     let server = GameServer::open_with(record_run_of_mara);
     let jon = server.player(&[]);
-    jon.wait_for("Enter takes it");
+    jon.wait_for("Enter saves it");
     jon.send("\x15Jon\r");
     for (shown, key) in
         [("Open a room", "3"), ("Campaign together", "4"), ("The Archive", "5"), ("Go in", "\r")]

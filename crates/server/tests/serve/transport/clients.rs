@@ -44,7 +44,7 @@ fn one_key_is_limited_to_three_sessions() {
         let identity = format!("IdentityFile={}", house.user_key("key", ""));
         let _players = [(); 3].map(|()| house.visitor(&["-o", &identity]));
         let mut fourth = house.player(&["-o", &identity]);
-        fourth.wait_for("This host takes at most 3 connections with one key");
+        fourth.wait_for("This host accepts at most 3 connections with one key");
         assert_eq!(fourth.wait_for_end().status.code(), Some(2));
     });
     house.assert_answers();
@@ -52,7 +52,7 @@ fn one_key_is_limited_to_three_sessions() {
 
 #[test]
 fn a_visitor_with_an_rsa_key_is_a_guest_and_is_told_why() {
-    const NOTICE: &str = "An RSA key is not an account here";
+    const NOTICE: &str = "RSA keys have no account here";
     let house = House::open();
     let rsa = format!("IdentityFile={}", house.user_key_of("rsa", "rsa", ""));
     let guest = house.visitor(&["-o", &rsa]);
@@ -113,7 +113,7 @@ fn a_visitor_over_the_address_limit_sees_the_limit() {
     let players = [(); 2].map(|()| house.visitor(&[]));
     for _ in 0..5 {
         let (_, error, status) = house.run(&[], &["-tt", "ann@127.0.0.1"]);
-        let sentence = "This host takes at most 2 connections from one address (/64 of IPv6): end another \
+        let sentence = "This host accepts at most 2 connections from one address (/64 of IPv6): end another \
                         game first.";
         assert!(error.contains(sentence), "{error}");
         assert_eq!(status, Some(255));

@@ -61,7 +61,10 @@ fn a_taken_port_prints_one_sentence() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();
     let error = complaint(&folder(), &["--listen", &address]);
-    assert!(error.starts_with(&format!("cellcaster: {address} can't be used: ")), "{error}");
+    assert!(
+        error.starts_with(&format!("cellcaster: the server can't listen on {address}: ")),
+        "{error}"
+    );
     assert_eq!(error.lines().count(), 1);
 }
 

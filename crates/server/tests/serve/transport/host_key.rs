@@ -38,7 +38,7 @@ fn an_invalid_key_is_refused() {
         fs::write(&path, content).unwrap();
         fs::set_permissions(&path, Permissions::from_mode(0o600)).unwrap();
         let error = HostKey::open(&folder).unwrap_err();
-        assert!(error.contains("is no ed25519 key"), "{error}");
+        assert!(error.contains("is not an ed25519 key"), "{error}");
         assert_eq!(fs::read_to_string(&path).unwrap(), content);
     }
 }

@@ -83,7 +83,7 @@ fn write_notice(
         let own = own_finish.map_or_else(String::new, |finish| format!("{finish} · "));
         let [short, long] = line.forms(Part::Notice);
         *short = format!("{own}watching {}", member.name);
-        *long = format!("{own}watching {} · Tab: the next one", member.name);
+        *long = format!("{own}watching {} · Tab: the next member", member.name);
         return Ok(());
     }
     match player.outcome() {
@@ -116,7 +116,7 @@ fn task(room: &RoomView, member: &MemberView) -> String {
     let it = || room.members.iter().find(|member| member.role == Role::Seeker);
     match (room.header.mode, room.phase, member.role) {
         (_, Phase::Over { .. }, _) => "the round is over".to_owned(),
-        (_, Phase::Waiting, _) => "waiting for another one".to_owned(),
+        (_, Phase::Waiting, _) => "waiting for a second player".to_owned(),
         (Mode::Tag | Mode::Race, Phase::Countdown { .. }, _) => "get ready".to_owned(),
         (Mode::Tag, _, Role::Seeker) => "you are it".to_owned(),
         (Mode::Tag, _, _) => it().map_or_else(String::new, |it| format!("{} is it", it.name)),
@@ -128,7 +128,7 @@ fn task(room: &RoomView, member: &MemberView) -> String {
             let what = if room.header.mode == Mode::Race { "race" } else { "level" };
             format!("the {what} ends in {left}")
         }
-        (Mode::Race, ..) => "be the first at the exit".to_owned(),
+        (Mode::Race, ..) => "be first at the exit".to_owned(),
         (Mode::Together | Mode::Alone | Mode::Roam, ..) => String::new(),
     }
 }

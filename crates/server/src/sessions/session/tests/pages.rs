@@ -39,7 +39,7 @@ fn a_refused_name_can_be_typed_again() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("g", (80, 24), Speaks::Plain);
     rig.press(one, "\x7f\r");
-    assert!(rig.text(one).contains("A name ends with a letter"), "{}", rig.text(one));
+    assert!(rig.text(one).contains("A name must end with a letter"), "{}", rig.text(one));
     rig.press(one, "\x7f\x7f\x7f\x7f\x7f\x7fJo\r");
     assert_eq!(rig.page(one), Page::Lobby, "{}", rig.text(one));
 }
@@ -101,7 +101,7 @@ fn an_idle_visitor_is_warned_and_disconnected() {
     assert!(rig.text(one).contains("You pressed no key for 5 minutes."), "{}", rig.text(one));
     assert_eq!(rig.view().members.len(), 0);
     rig.pump(14 * 60_000);
-    assert!(rig.text(one).contains("end this session"), "{}", rig.text(one));
+    assert!(rig.text(one).contains("this session ends"), "{}", rig.text(one));
     rig.pump(60_000);
     assert!(rig.is_over(one));
 }
@@ -116,9 +116,9 @@ fn a_room_can_be_opened_and_watched() {
     rig.press(one, "2");
     assert_eq!(rig.page(one), Page::Levels(Mode::Tag));
     rig.press(one, ENTER);
-    assert!(rig.text(one).contains("Touch another one"), "{}", rig.text(one));
+    assert!(rig.text(one).contains("Touch anybody"), "{}", rig.text(one));
     rig.press(one, ENTER);
-    assert!(rig.text(one).contains("waiting for another one"), "{}", rig.text(one));
+    assert!(rig.text(one).contains("waiting for a second player"), "{}", rig.text(one));
     let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
     rig.press(other, ENTER);
     // The menu entry after the two rooms and "Open a room".

@@ -88,12 +88,15 @@ fn seekers_see_nothing_while_the_others_hide() {
     let (mut rig, one, other) = two(Mode::Hide);
     rig.pump(4_000);
     let texts = [rig.text(one), rig.text(other)];
-    let sees_nothing = |text: &&String| text.contains("You see again in 0:1");
+    let sees_nothing = |text: &&String| text.contains("You can see again in 0:1");
     assert_eq!(texts.iter().filter(sees_nothing).count(), 1, "{texts:?}");
     let dark = texts.iter().find(sees_nothing).unwrap();
     assert!(!dark.contains("map") && !dark.contains('%'), "{dark}");
     rig.pump(18_000);
-    assert!(!rig.text(one).contains("You see again") && !rig.text(other).contains("You see again"));
+    assert!(
+        !rig.text(one).contains("You can see again")
+            && !rig.text(other).contains("You can see again")
+    );
 }
 
 #[test]
@@ -256,7 +259,7 @@ fn a_finisher_sees_place_and_time_and_watches_the_others() {
         rig.press(watcher, key);
     }
     rig.pump(3_000);
-    assert!(rig.text(other).contains("be the first at the exit"), "{}", rig.text(other));
+    assert!(rig.text(other).contains("be first at the exit"), "{}", rig.text(other));
     rig.send(one, "\x1b[119;1:1u");
     rig.pump(4_000);
     rig.send(one, "\x1b[119;1:3u");

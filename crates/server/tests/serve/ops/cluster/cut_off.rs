@@ -27,7 +27,7 @@ fn a_cut_off_host_is_replaced_and_catches_up_later() {
     jon.wait_for("Mara is away.");
 
     network.mend();
-    mara.wait_for("reach each other again");
+    mara.wait_for("are connected again");
     jon.wait_for("Mara is back.");
     says(&jon, &mara, "after the cut");
     says(&mara, &jon, "I was waiting");

@@ -9,7 +9,7 @@ use crate::ops::killed::user_key;
 use crate::play::enter_room;
 use crate::transport::{folder, wait_until};
 
-const TOO_OFTEN: &str = "This host takes at most 1 connection with one key";
+const TOO_OFTEN: &str = "This host accepts at most 1 connection with one key";
 const ONE: &str = "connections-per-key = 1\n";
 
 #[test]
@@ -36,12 +36,15 @@ fn an_address_is_limited_across_all_hosts() {
     let hosts = Hosts::start_with(2, "connections-per-address = 2\n");
     let guests = [0, 1].map(|host| hosts.running[host].0.visitor());
     for guest in &guests {
-        guest.wait_for("Enter takes it");
+        guest.wait_for("Enter saves it");
     }
-    hosts.running[1].0.visitor().wait_for("This host takes at most 2 connections from one address");
+    hosts.running[1]
+        .0
+        .visitor()
+        .wait_for("This host accepts at most 2 connections from one address");
     let [one, _other] = guests;
     drop(one);
-    hosts.running[1].0.visitor().wait_for("Enter takes it");
+    hosts.running[1].0.visitor().wait_for("Enter saves it");
 }
 
 #[test]

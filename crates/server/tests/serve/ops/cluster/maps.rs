@@ -22,7 +22,9 @@ fn hosts_list_rooms_of_their_maps_and_report_differences() {
     running.push(start(&other_hall));
     let hosts = Hosts { running, nats, postgres, store };
     let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
-    other.wait_for_log("it has another text of moss; its rooms in them are not listed here");
+    other.wait_for_log(
+        "it has a different text of moss; this host does not list its rooms in those maps",
+    );
 
     // Only visitors of this host see a room in its map.
     let mara = one.visitor();
@@ -37,7 +39,7 @@ fn hosts_list_rooms_of_their_maps_and_report_differences() {
     mara.wait_for("Mara comes in.");
     let [jon, kim] = [(one, "Jon"), (other, "Kim")].map(|(host, name)| {
         let player = host.visitor();
-        player.wait_for("Enter takes it");
+        player.wait_for("Enter saves it");
         player.send(format!("\x15{name}\r"));
         player.wait_for("Open a room");
         player
@@ -49,7 +51,7 @@ fn hosts_list_rooms_of_their_maps_and_report_differences() {
     let output = other.admin(&["hosts"]);
     let (said, error) = (String::from_utf8(output.stdout), String::from_utf8(output.stderr));
     let (said, error) = (said.unwrap(), error.unwrap());
-    assert!(error.ends_with("it has another text of moss\n"), "{error}");
+    assert!(error.ends_with("it has a different text of moss\n"), "{error}");
     let hashes: Vec<&str> = said
         .lines()
         .filter_map(|row| row.split_once("2 (")?.1.split_once(')'))

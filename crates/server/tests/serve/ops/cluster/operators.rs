@@ -79,6 +79,6 @@ fn a_stopped_host_is_no_longer_listed() {
     assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
     let other = &hosts.running[1].0;
     assert_eq!(other.admin_says(&["hosts"]).lines().count(), 2);
-    assert_eq!(other.admin_says(&["who"]), "nobody is on\n");
+    assert_eq!(other.admin_says(&["who"]), "nobody is online\n");
     assert!(other.admin_says(&["drain"]).starts_with("the server ends"));
 }

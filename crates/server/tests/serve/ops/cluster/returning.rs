@@ -62,7 +62,7 @@ fn a_player_returns_to_their_place_after_a_drain() {
     let before = picture(&mara);
 
     hosts.running[0].0.signal(Signal::TERM);
-    mara.wait_for("Connect again, and you are where you were.");
+    mara.wait_for("Connect again to continue where you were.");
     // She leaves at once, before the host exits.
     mara.send("\x03\x03");
     jon.wait_for("Mara is away.");
@@ -79,7 +79,7 @@ fn a_player_returns_to_their_place_after_a_drain() {
     mara.wait_for("2/16");
     // A second connection cannot take the place of a player who is connected.
     let other = hosts.running[1].0.player(Some(&key));
-    other.wait_for("You are in a room by another connection, and stay there.");
+    other.wait_for("You are already in a room through another connection.");
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn players_of_a_stopped_host_return_and_guests_are_gone() {
     hosts.running[0].0.signal(Signal::TERM);
     assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
     mara.wait_for_end();
-    assert!(mara.text().contains("Connect again, and you are where you were."), "{}", mara.text());
+    assert!(mara.text().contains("Connect again to continue where you were."), "{}", mara.text());
     let time = goes_on(&jon, "anybody there");
     println!("the room goes on after {time:?}");
     jon.wait_for("Mara is away.");
