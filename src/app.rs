@@ -26,7 +26,7 @@ pub mod parts {
     pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
     pub use crate::app::page::{
-        Effect, PageKind, Menu, Page, Pages, is_answerable, is_too_small, leaving, message,
+        Effect, Menu, Page, PageKind, Pages, is_answerable, is_too_small, leaving, message,
         picture_and_status, too_small,
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
@@ -51,9 +51,9 @@ use played::{Goal, Played, Viewpoint, Views, Watch};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder, Steps};
 pub use run::{ClosingLines, InitialState, Replay, play};
-use screen::{MenuChoice, AppScreen};
+use screen::{AppScreen, MenuChoice};
 pub use setting::MapDisplay;
-pub use settings::{Configuration, SettingOrigins, Origin, Settings};
+pub use settings::{Configuration, Origin, SettingOrigins, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
 use title::TmuxOrder;

@@ -68,7 +68,7 @@ pub use rules::{
     Input, MAX_LAG, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
     Strikes,
 };
-pub use script::{Header, LevelName, ScriptWriter, Script, Section, Stretch};
+pub use script::{Header, LevelName, Script, ScriptWriter, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
 pub use stored::{RULES_VERSION, Unrestorable};
 pub use tally::{Rank, Share, Tally};

@@ -27,6 +27,6 @@ mod window;
 
 pub use chunk::{CHUNK_SIDE, Chunk, ChunkArea, ChunkIndex, Extent, Site, Terrain};
 pub use descent::{daily_seed, descent, floors_below};
-pub use level::{Generator, GeneratedLevel};
-pub(crate) use window::WindowShift;
+pub use level::{GeneratedLevel, Generator};
 pub use window::Window;
+pub(crate) use window::WindowShift;

@@ -30,8 +30,8 @@ mod shadows;
 mod tree;
 
 pub use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, MIN_LENGTH, Plane, Scene, BodyShape,
-    SolidTexture, Sphere, SceneStart, Sun,
+    Block, Body, BodyShape, EYE_CLEARANCE, Elevation, Fraction, MAX_COORDINATE, MIN_LENGTH, Plane,
+    Scene, SceneStart, SolidTexture, Sphere, Sun,
 };
 pub use camera::{Axes, Camera};
 pub use ray::{Hit, Ray};

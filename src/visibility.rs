@@ -33,7 +33,7 @@ pub(crate) use billboard::Billboard;
 #[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
-pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, VisiblePlane, PlaneKind};
+pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, PlaneKind, VisiblePlane};
 pub(crate) use edges::{FaceEdges, SlopedEdge};
 pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};

@@ -21,7 +21,7 @@ use crate::app::App;
 use crate::app::page::{Menu, panel, wrapped};
 use crate::app::played::{Goal, Played, Watch};
 use crate::app::recording::{Ghost, RunLog};
-use crate::app::screen::{MenuChoice, AppScreen};
+use crate::app::screen::{AppScreen, MenuChoice};
 use crate::app::status::whole_seconds;
 use crate::app::store::{Descent, Reached, Save};
 use crate::app::title::OwnLevel;

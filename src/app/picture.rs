@@ -453,7 +453,8 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
         let rows = share(top, reach(RingSide::Ahead)).max(share(bottom, reach(RingSide::Behind)));
         for (x, pixel) in row.iter_mut().enumerate() {
             let (left, right) = (x as f64 + 0.5, width - x as f64 - 0.5);
-            let columns = share(left, reach(RingSide::Left)).max(share(right, reach(RingSide::Right)));
+            let columns =
+                share(left, reach(RingSide::Left)).max(share(right, reach(RingSide::Right)));
             let alpha = opacity * rows.max(columns);
             if alpha >= 1.0 {
                 *pixel = color.over(*pixel, alpha as u8);

@@ -42,7 +42,7 @@ use crate::app::title::Offers;
 use crate::game::{Game, Intents, PlayerId, STEPS_PER_SECOND, Script};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
-use crate::terminal::{Detected, Error, Event, SessionOptions, Session, locale_without_utf8};
+use crate::terminal::{Detected, Error, Event, Session, SessionOptions, locale_without_utf8};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 

@@ -17,7 +17,7 @@ use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
 use super::screen::{MenuChoice, capitalized};
 use super::status::whole_seconds;
-use super::{App, Levels, AppScreen};
+use super::{App, AppScreen, Levels};
 use crate::app::store::{Descent, MAX_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
@@ -146,7 +146,11 @@ impl App {
             (Some((name, _, choice)), None) => menu.entry_with("Continue", name, choice),
             (Some(_), Some(_)) => {
                 let count = 2 + ways.count();
-                menu.entry_with("Continue", format!("{count} games"), MenuChoice::Open(AppScreen::Saves))
+                menu.entry_with(
+                    "Continue",
+                    format!("{count} games"),
+                    MenuChoice::Open(AppScreen::Saves),
+                )
             }
         }
     }
@@ -159,7 +163,8 @@ impl App {
     /// The games that can be continued: name, time played, and choice.
     fn ways_on(&self) -> impl Iterator<Item = (String, String, MenuChoice)> {
         let saves = self.store.saves();
-        let saves = saves.map(|save| (name_of(save), time_of(save), MenuChoice::Continue(save.id())));
+        let saves =
+            saves.map(|save| (name_of(save), time_of(save), MenuChoice::Continue(save.id())));
         saves.chain(self.next_of_campaign())
     }
 
@@ -173,7 +178,11 @@ impl App {
                 && save.file.is_none()
         };
         let name = on_difficulty(&capitalized(name), difficulty);
-        (!self.store.saves().any(is_it)).then_some((name, "new".to_owned(), MenuChoice::Level(index)))
+        (!self.store.saves().any(is_it)).then_some((
+            name,
+            "new".to_owned(),
+            MenuChoice::Level(index),
+        ))
     }
 
     /// The menu that asks whether to remove a saved game.

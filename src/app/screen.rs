@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::app::App;
 use crate::app::controls::{Action, KeyContext};
-use crate::app::page::{Effect, PageKind, Menu, Page};
+use crate::app::page::{Effect, Menu, Page, PageKind};
 use crate::app::picture::widened;
 use crate::app::status::{of_steps, whole_seconds};
 use crate::app::store::{Preferences, SaveId};
@@ -366,7 +366,9 @@ impl App {
         let (bindings, held) = (&self.settings.bindings, &self.controls.held);
         match self.pages.press((key, press), bindings, held, self.now) {
             Effect::Other => match self.pages.menu.choice() {
-                Some(MenuChoice::Continue(id)) if self.removes(key) => self.open(AppScreen::Remove(id)),
+                Some(MenuChoice::Continue(id)) if self.removes(key) => {
+                    self.open(AppScreen::Remove(id))
+                }
                 _ => self.press_command(key, press),
             },
             effect => self.carry_out(effect),

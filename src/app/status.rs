@@ -142,7 +142,9 @@ impl StatusLine {
             let text = self.texts[part as usize][form as usize].as_str();
             let (_, taken) = fitted[part as usize];
             let columns = Span::raw(text).width() as u16;
-            if columns == 0 || (taken == 0 && matches!(form, PartLength::Long) && part == Part::Notice) {
+            if columns == 0
+                || (taken == 0 && matches!(form, PartLength::Long) && part == Part::Notice)
+            {
                 continue;
             }
             let before = if taken == 0 { 0 } else { taken + GAP };

@@ -22,7 +22,7 @@ use crate::app::App;
 use crate::app::page::Menu;
 use crate::app::played::Played;
 use crate::app::recording::{self, Steps};
-use crate::app::screen::{MenuChoice, AppScreen};
+use crate::app::screen::{AppScreen, MenuChoice};
 use crate::color::palette::ColorDepth;
 use crate::game::Script;
 use crate::map::{Level, builtin};
@@ -134,7 +134,8 @@ impl App {
 
     /// The title's entry for the offer to tell tmux.
     pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, MenuChoice)> {
-        self.tmux_remedy().map(|_| ("24-bit colours in tmux", "", MenuChoice::Open(AppScreen::Tmux)))
+        self.tmux_remedy()
+            .map(|_| ("24-bit colours in tmux", "", MenuChoice::Open(AppScreen::Tmux)))
     }
 
     pub(crate) fn tmux_menu(&self) -> Menu<MenuChoice> {

@@ -192,7 +192,11 @@ impl IntegerRay {
     /// Advances by one line or more, one at a time, until the cell behind a line, or the cell
     /// before the line in the new band, is not clear. Also returns the band at the line before.
     #[inline]
-    fn step(self, distance_field: &DistanceField, from: TraversalProgress) -> (i64, TraversalProgress) {
+    fn step(
+        self,
+        distance_field: &DistanceField,
+        from: TraversalProgress,
+    ) -> (i64, TraversalProgress) {
         let TraversalProgress { mut line, mut band, mut lookups } = from;
         let mut position = self.position + self.slope * line;
         let mut before_line = self.corner + self.line_stride * line;
@@ -215,7 +219,11 @@ impl IntegerRay {
 
     /// The same as [`Path::step`], but crosses as many lines at once as are clear.
     #[inline]
-    fn leap(self, distance_field: &DistanceField, from: TraversalProgress) -> (i64, TraversalProgress) {
+    fn leap(
+        self,
+        distance_field: &DistanceField,
+        from: TraversalProgress,
+    ) -> (i64, TraversalProgress) {
         let TraversalProgress { mut line, mut band, mut lookups } = from;
         let mut clear = 1;
         loop {

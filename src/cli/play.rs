@@ -10,12 +10,16 @@ use clap::{Args, ValueHint};
 
 use super::config::CurrentConfiguration;
 use super::machine::{data_folder, open_store, today};
-use super::options::{PictureOptions, LevelOptions, STANDARD_INPUT, choice, fidelity, frames, replace_art};
+use super::options::{
+    LevelOptions, PictureOptions, STANDARD_INPUT, choice, fidelity, frames, replace_art,
+};
 use super::parse::Takes;
 use super::recording::RecordingFile;
 use super::{Error, config, level};
 use crate::app;
-use crate::app::{Configuration, ClosingLines, SettingOrigins, Levels, Offers, InitialState, Origin, Settings};
+use crate::app::{
+    ClosingLines, Configuration, InitialState, Levels, Offers, Origin, SettingOrigins, Settings,
+};
 use crate::game::{Header, LevelName, Rules};
 use crate::render::DynCaster;
 use crate::terminal::{self, Fidelity, locale_without_utf8, take_keys_from_terminal};
@@ -163,7 +167,9 @@ fn header(opening: &InitialState, level: Option<LevelName>, difficulty: Difficul
         InitialState::Endless(offers) => {
             Header::of(first_floor(), Rules { difficulty, seed: offers.seed })
         }
-        InitialState::Title(_) | InitialState::Levels(_) => Header::of(level, Rules { difficulty, seed: 0 }),
+        InitialState::Title(_) | InitialState::Levels(_) => {
+            Header::of(level, Rules { difficulty, seed: 0 })
+        }
     }
 }
 

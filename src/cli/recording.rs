@@ -74,7 +74,8 @@ impl RecordingFile {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
             app::Recording { terminal: Some(Box::new(terminal)), script: None }
         } else {
-            let script = game::ScriptWriter::with_header(Box::new(output) as Box<dyn Write>, header);
+            let script =
+                game::ScriptWriter::with_header(Box::new(output) as Box<dyn Write>, header);
             app::Recording { terminal: None, script: Some(script) }
         }
     }

@@ -20,7 +20,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use self::format::Format;
-use super::options::{PictureOptions, LevelOptions, replace_art, size, within};
+use super::options::{LevelOptions, PictureOptions, replace_art, size, within};
 use super::parse::Takes;
 use super::{Error, level};
 use crate::fault::{Faults, printable, printable_lines};

@@ -447,7 +447,11 @@ struct Contact {
 }
 
 /// The first contact of a circle on `path`, if any.
-fn first_contact<O: Obstacles>(obstacles: &O, path: StraightPath, radius: Radius) -> Option<Contact> {
+fn first_contact<O: Obstacles>(
+    obstacles: &O,
+    path: StraightPath,
+    radius: Radius,
+) -> Option<Contact> {
     let (mut column, mut row) = cell_of(path.from);
     loop {
         let around = OpenCell { obstacles, column, row, radius };
@@ -688,7 +692,12 @@ fn is_clear_of_outline(
 }
 
 /// The first contact of a circle on `path` with an outline in `cell`.
-fn first_touch(outline: Outline, cell: Cell, path: StraightPath, Radius(radius): Radius) -> Option<Touch> {
+fn first_touch(
+    outline: Outline,
+    cell: Cell,
+    path: StraightPath,
+    Radius(radius): Radius,
+) -> Option<Touch> {
     let round = |center: DVec2, radius: f64| {
         let distance = distance_to_disc(path, center, radius)?;
         Some(Touch { distance, kind: TouchKind::Round(center) })

@@ -281,7 +281,8 @@ type EnterableGaps = [Option<EnterableGap>; 8];
 /// heights.
 fn of_tiles(world: &World, openers: &Openers) -> Vec<EnterableGaps> {
     let tiles = world.tiles().iter();
-    let mut of_tiles: Vec<EnterableGaps> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
+    let mut of_tiles: Vec<EnterableGaps> =
+        tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
     for moving in world.moving_tiles().iter().filter(|it| openers.can_move(it.driver)) {
         let mut states = moving.states.iter().map(|&state| world.tile(state));
         of_tiles[usize::from(moving.states[0].0)] = match moving.driver {

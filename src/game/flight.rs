@@ -204,7 +204,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::game::Look;
-    use crate::space::{Block, Body, Plane, BodyShape, SolidTexture, Sphere, SceneStart};
+    use crate::space::{Block, Body, BodyShape, Plane, SceneStart, SolidTexture, Sphere};
 
     /// A start between a floor, a ball, an inclined wall and a box.
     fn scene(degrees: f64) -> Scene {

@@ -35,7 +35,7 @@ use context::{Context, PerceivedGuard};
 use guard::{Guard, GuardActivity};
 use movement::{GuardWorld, RADIUS};
 use trail::Trail;
-use ways::{GuardTerrain, GuardPaths};
+use ways::{GuardPaths, GuardTerrain};
 
 pub(crate) use context::{Act, PerceivedPlayer};
 pub use guard::{Alarm, GuardView, Mood};
@@ -190,7 +190,13 @@ impl Guards {
         &self.acts
     }
 
-    fn step_one(&mut self, world: &World, targets: &[PerceivedPlayer], clouds: &[Cloud], index: usize) {
+    fn step_one(
+        &mut self,
+        world: &World,
+        targets: &[PerceivedPlayer],
+        clouds: &[Cloud],
+        index: usize,
+    ) {
         let stride = self.stride(world, targets, index);
         if stride == 0 {
             return;
@@ -210,7 +216,9 @@ impl Guards {
         let guard = &self.list[index];
         match guard.state {
             // A floor may have moved under the guard.
-            GuardActivity::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
+            GuardActivity::Asleep if guard.stagger == 0 => {
+                u16::from(!guard.mover.is_at_rest(world))
+            }
             GuardActivity::OnDuty | GuardActivity::Returning => {
                 let position = guard.mover.position();
                 let is_near = |target: &PerceivedPlayer| {
@@ -228,7 +236,13 @@ impl Guards {
     }
 
     /// Lets all guards within reach hear `sound`.
-    fn spread(&mut self, world: &World, targets: &[PerceivedPlayer], clouds: &[Cloud], sound: &Sound) {
+    fn spread(
+        &mut self,
+        world: &World,
+        targets: &[PerceivedPlayer],
+        clouds: &[Cloud],
+        sound: &Sound,
+    ) {
         let told = match sound.by {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
             Source::Player(_) | Source::Object => None,
@@ -406,7 +420,8 @@ impl Guards {
     /// The lamps that guards carry.
     pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
         let bearers = self.awake().filter(|guard| guard.kind == GuardKind::Lantern);
-        let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != GuardActivity::Asleep);
+        let up =
+            bearers.filter(|guard| !guard.state.is_down() && guard.state != GuardActivity::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
         up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
     }

@@ -76,8 +76,12 @@ impl Script {
     /// # Errors
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
-        let mut reader =
-            ScriptReader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
+        let mut reader = ScriptReader {
+            text,
+            header: Header::default(),
+            sections: Vec::new(),
+            faults: Vec::new(),
+        };
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let end = line.find('#').unwrap_or(line.len());
@@ -480,7 +484,8 @@ impl ScriptReader<'_> {
     }
 
     fn begin_section(&mut self, name: String, place: Range<usize>) {
-        self.sections.push(PlacedSection { section: Section { name, stretches: Vec::new() }, place });
+        self.sections
+            .push(PlacedSection { section: Section { name, stretches: Vec::new() }, place });
     }
 
     fn read_name(&mut self, line: Range<usize>) {

@@ -177,7 +177,8 @@ fn carve_around(chunk: &mut Chunk, area: &ChunkArea, (column, row): ChunkPositio
         let (across, down) = (x.abs_diff(column), y.abs_diff(row));
         across * across + down * down <= radius * radius + 1
     };
-    let is_rock = |(x, y): ChunkPosition| area.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
+    let is_rock =
+        |(x, y): ChunkPosition| area.contains(x, y) && [STONE, MOSS].contains(&chunk.get(x, y));
     let carved: Vec<_> = every_cell().filter(|&place| near(place) && is_rock(place)).collect();
     for (x, y) in carved {
         chunk.set(x, y, TUNNEL);

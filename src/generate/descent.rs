@@ -27,7 +27,7 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::chunk::{Chunk, ChunkArea, Extent, Terrain};
-use super::level::{Generator, GeneratedLevel};
+use super::level::{GeneratedLevel, Generator};
 use super::purpose::{Purpose, generator, hash};
 use super::tileset::Tileset;
 use super::window::best_heading;

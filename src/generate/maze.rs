@@ -149,7 +149,8 @@ impl Carving {
         for node in self.all() {
             let beside = self.beside(node);
             let is_way = |&next: &MazeNode| self.is_dug(between(node, next));
-            let (ways, walls): (Vec<MazeNode>, Vec<MazeNode>) = beside.into_iter().partition(is_way);
+            let (ways, walls): (Vec<MazeNode>, Vec<MazeNode>) =
+                beside.into_iter().partition(is_way);
             if ways.len() > 1 {
                 continue;
             }

@@ -250,7 +250,9 @@ fn property<'a>(
         return None;
     }
     match (section, entry.key) {
-        (CharacterTable::Tiles, "wall" | "secret") => WallText::read(entry, table).map(Meaning::Wall),
+        (CharacterTable::Tiles, "wall" | "secret") => {
+            WallText::read(entry, table).map(Meaning::Wall)
+        }
         (CharacterTable::Tiles, "door") => DoorText::read(entry, table).map(Meaning::Door),
         (CharacterTable::Tiles, "mask") => {
             SurfaceText::read(entry, r#"{ mask = "grate" }"#).map(Meaning::Mask)

@@ -18,8 +18,8 @@ use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::fault::{Fault, quoted};
 use crate::world::scene::{
-    Block, Body, EYE_CLEARANCE, Elevation, MAX_COORDINATE, Fraction, Plane, Scene, BodyShape, SolidTexture,
-    Sphere, SceneStart, Sun,
+    Block, Body, BodyShape, EYE_CLEARANCE, Elevation, Fraction, MAX_COORDINATE, Plane, Scene,
+    SceneStart, SolidTexture, Sphere, Sun,
 };
 use crate::world::{Heading, Scale, SkyGradient};
 
@@ -84,7 +84,9 @@ const KINDS: [BodyKind; 3] = [
         needs: "a point and a normal, or a height from -1e9 to 1e9",
         example: r##"[[plane]], height = 0 and color = "#608040""##,
         shape: |of| match (of.number, of.vector("point"), of.vector("normal")) {
-            (Some(height), None, None) => Plane::new(DVec3::Z * height, DVec3::Z).map(BodyShape::Plane),
+            (Some(height), None, None) => {
+                Plane::new(DVec3::Z * height, DVec3::Z).map(BodyShape::Plane)
+            }
             (None, Some(point), Some(normal)) => Plane::new(point, normal).map(BodyShape::Plane),
             _ => None,
         },

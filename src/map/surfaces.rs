@@ -153,7 +153,8 @@ impl<'a> PatternText<'a> {
             return SurfaceText::read(entry, r#"texture = "tile""#).map(Self::Plain);
         }
         let example = format!(r#"{} = ["tile", "marble"]"#, entry.key);
-        let [first, second] = entry.pair(&example)?.map(|entry| SurfaceText::read(&entry, &example));
+        let [first, second] =
+            entry.pair(&example)?.map(|entry| SurfaceText::read(&entry, &example));
         let surfaces = [first?, second?];
         Some(if entry.key == "checker" { Self::Checker(surfaces) } else { Self::Stripes(surfaces) })
     }

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use super::band::Band;
 use crate::color::Rgb;
-use crate::visibility::{FaceColumn, FaceTexels, Lighting, FrameContext};
+use crate::visibility::{FaceColumn, FaceTexels, FrameContext, Lighting};
 use crate::world::texture::MipLevel;
 
 /// The most rows and the most pixels of a band for which direct columns are faster.

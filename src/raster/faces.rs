@@ -19,7 +19,7 @@ use super::target::Target;
 use crate::cast::Side;
 use crate::color::Rgb;
 use crate::visibility::{
-    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, Lighting, Material, Pass, FrameContext,
+    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, FrameContext, Lighting, Material, Pass,
     SideLit, Surface,
 };
 use crate::world::texture::MipLevel;
@@ -330,7 +330,12 @@ impl<'a> ShownFace<'a> {
 }
 
 /// Draws a mask or a tint over the pixels behind it.
-pub(crate) fn draw_over(scene: FrameContext<'_>, list: &DrawList, face: &Face, target: &mut Target<'_>) {
+pub(crate) fn draw_over(
+    scene: FrameContext<'_>,
+    list: &DrawList,
+    face: &Face,
+    target: &mut Target<'_>,
+) {
     let shown = ShownFace::new(scene, list, face);
     match face.material {
         Material::Opaque(_) => {}

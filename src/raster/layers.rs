@@ -3,7 +3,7 @@
 use super::faces;
 use super::target::Target;
 use crate::visibility::{
-    Billboard, BillboardPart, DrawList, FullyLit, Layer, Lighting, Pass, FrameContext, Surface,
+    Billboard, BillboardPart, DrawList, FrameContext, FullyLit, Layer, Lighting, Pass, Surface,
 };
 
 /// Draws the layers of `list` in order.

@@ -24,8 +24,8 @@ use super::span_pair::SpanPairs;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
-    Backdrop, DrawList, Faded, Lighting, Pass, VisiblePlane, PlaneKind, PlaneSide, PlaneSurface, Rows,
-    FrameContext, SpanMapping,
+    Backdrop, DrawList, Faded, FrameContext, Lighting, Pass, PlaneKind, PlaneSide, PlaneSurface,
+    Rows, SpanMapping, VisiblePlane,
 };
 use crate::world::{Covering, Light, Paint, Pattern, Tile, TileId, TileKind};
 
@@ -139,7 +139,12 @@ fn sort<M: Sampling>(scene: FrameContext<'_>, list: &DrawList, order: &mut Vec<P
 
 /// Draws the backdrops: the rows above or below the horizon that show one colour or the sky in all
 /// columns.
-fn draw_backdrops(scene: FrameContext<'_>, list: &DrawList, sky: &SkyView<'_>, target: &mut Target<'_>) {
+fn draw_backdrops(
+    scene: FrameContext<'_>,
+    list: &DrawList,
+    sky: &SkyView<'_>,
+    target: &mut Target<'_>,
+) {
     let projection = scene.projection;
     let (ground, width) = (projection.first_row_of_ground(), projection.columns());
     let halves = [(Pass::Floor, ground..projection.rows()), (Pass::Ceiling, 0..ground)];

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::visibility::{Pass, Projection, FrameContext};
+use crate::visibility::{FrameContext, Pass, Projection};
 use crate::world::{Sky, SkyGradient, Texture};
 
 /// The sky as seen by a camera.

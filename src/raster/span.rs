@@ -8,7 +8,7 @@ use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::color::srgb::mean_of_two;
-use crate::visibility::{Pass, FrameContext, SpanMapping, TexelPlaces};
+use crate::visibility::{FrameContext, Pass, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevel, MipLevelByShifts};
 use crate::world::{Covering, Paint, Pattern, Texture};
 

@@ -13,7 +13,7 @@ use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
-use crate::visibility::{Faded, Lighting, FrameContext, SpanMapping, TexelPlaces};
+use crate::visibility::{Faded, FrameContext, Lighting, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 

@@ -55,7 +55,10 @@ fn pixels((low, high): SlopeInterval, per_slope: f64, count: u32) -> Range<u32> 
     (first as u32).min(count)..(last as u32).min(count)
 }
 
-fn of_sphere(sphere: &RelativeSphere, projection: &SceneProjection) -> Option<(SlopeInterval, SlopeInterval)> {
+fn of_sphere(
+    sphere: &RelativeSphere,
+    projection: &SceneProjection,
+) -> Option<(SlopeInterval, SlopeInterval)> {
     let axes = &projection.axes;
     let depth = sphere.center.dot(axes.forward);
     let side = DVec2::new(sphere.center.dot(axes.right), depth);
@@ -83,7 +86,10 @@ fn tangents(center: DVec2, radius: f64) -> Option<SlopeInterval> {
     Some((slope(left, f64::NEG_INFINITY), slope(right, f64::INFINITY)))
 }
 
-fn of_block(block: &RelativeBlock, projection: &SceneProjection) -> Option<(SlopeInterval, SlopeInterval)> {
+fn of_block(
+    block: &RelativeBlock,
+    projection: &SceneProjection,
+) -> Option<(SlopeInterval, SlopeInterval)> {
     let axes = &projection.axes;
     let sides = [block.low, block.high];
     let corners = (0..8).map(|corner| {

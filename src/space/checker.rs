@@ -144,7 +144,8 @@ fn mean_of_small(place: f64, width: f64) -> f64 {
 /// [`mean_along`] for a place in the first period.
 #[inline(always)]
 fn mean_within(place: f64, width: f64) -> f64 {
-    let (low, high) = (WavePosition::new(place - width / 2.0), WavePosition::new(place + width / 2.0));
+    let (low, high) =
+        (WavePosition::new(place - width / 2.0), WavePosition::new(place + width / 2.0));
     let mean = ((high.integral() - low.integral()) / width).clamp(-1.0, 1.0);
     if low.is_in_cube_of(&high) { low.sign() } else { mean }
 }

@@ -12,7 +12,7 @@ use glam::{BVec3, DVec3};
 
 use super::lanes::{Lanes, Vectors};
 use crate::numeric::{two_product, two_sum};
-use crate::world::scene::{Block, Plane, BodyShape, Sphere};
+use crate::world::scene::{Block, BodyShape, Plane, Sphere};
 
 /// A shape relative to an eye.
 #[derive(Clone, Copy, Debug)]

@@ -194,7 +194,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::space::{Block, Plane, BodyShape, Sphere};
+    use crate::space::{Block, BodyShape, Plane, Sphere};
 
     /// Points on a coarse grid, so that bodies share surfaces.
     fn point(reach: i32) -> impl Strategy<Value = DVec3> {

@@ -45,7 +45,12 @@ pub(crate) enum TerminalErrorKind {
 impl Error {
     /// Returns true if the user can avoid the error, with another terminal or platform.
     pub fn is_mistake(&self) -> bool {
-        !matches!(self.0, TerminalErrorKind::AlreadyTaken | TerminalErrorKind::GivenBack | TerminalErrorKind::Io { .. })
+        !matches!(
+            self.0,
+            TerminalErrorKind::AlreadyTaken
+                | TerminalErrorKind::GivenBack
+                | TerminalErrorKind::Io { .. }
+        )
     }
 
     /// Wraps an error that occurred while `doing` something (such as "reading keys").

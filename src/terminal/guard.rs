@@ -188,7 +188,11 @@ impl TerminalGuard {
     /// to the shell again.
     fn lock_taken(&self) -> io::Result<MutexGuard<'_, TerminalState>> {
         let state = self.lock();
-        if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(TerminalErrorKind::GivenBack))) }
+        if state.taken {
+            Ok(state)
+        } else {
+            Err(io::Error::other(Error::from(TerminalErrorKind::GivenBack)))
+        }
     }
 
     fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {

@@ -161,7 +161,9 @@ impl Decoder {
     /// sequence or a key by itself.
     fn may_be_key(&self) -> bool {
         match self.state {
-            DecoderState::Escape | DecoderState::SingleShift | DecoderState::ControlSequenceStart => true,
+            DecoderState::Escape
+            | DecoderState::SingleShift
+            | DecoderState::ControlSequenceStart => true,
             DecoderState::String(_) => self.unit.len() == INTRODUCER_LENGTH,
             _ => false,
         }
@@ -229,33 +231,49 @@ fn step(state: DecoderState, byte: u8) -> ByteEffect {
         }
         (DecoderState::Ground | DecoderState::Escape, 0x80..) => ByteEffect::Abandon,
         (DecoderState::Character { missing: 1 }, 0x80..=0xbf)
-        | (DecoderState::SingleShift | DecoderState::ConsoleKey, b' '..=b'~') => ByteEffect::Complete(UnitKind::Key),
+        | (DecoderState::SingleShift | DecoderState::ConsoleKey, b' '..=b'~') => {
+            ByteEffect::Complete(UnitKind::Key)
+        }
         (DecoderState::Character { missing }, 0x80..=0xbf) => {
             ByteEffect::Continue(DecoderState::Character { missing: missing - 1 })
         }
         (DecoderState::Escape, ESCAPE) => ByteEffect::Split,
         (DecoderState::Escape, b'O') => ByteEffect::Continue(DecoderState::SingleShift),
         (DecoderState::Escape, b'[') => ByteEffect::Continue(DecoderState::ControlSequenceStart),
-        (DecoderState::Escape, b'P') => ByteEffect::Continue(DecoderState::String(UnitKind::DeviceControl)),
+        (DecoderState::Escape, b'P') => {
+            ByteEffect::Continue(DecoderState::String(UnitKind::DeviceControl))
+        }
         (DecoderState::Escape, b']' | b'_' | b'^' | b'X') => {
             ByteEffect::Continue(DecoderState::String(UnitKind::OtherString))
         }
         (DecoderState::Ground | DecoderState::Escape, _) => ByteEffect::Complete(UnitKind::Key),
-        (DecoderState::ControlSequenceStart, b'[') => ByteEffect::Continue(DecoderState::ConsoleKey),
-        (DecoderState::ControlSequenceStart, b'M') => ByteEffect::Continue(DecoderState::MouseBytes { missing: 3 }),
+        (DecoderState::ControlSequenceStart, b'[') => {
+            ByteEffect::Continue(DecoderState::ConsoleKey)
+        }
+        (DecoderState::ControlSequenceStart, b'M') => {
+            ByteEffect::Continue(DecoderState::MouseBytes { missing: 3 })
+        }
         (DecoderState::ControlSequenceStart | DecoderState::ControlSequence, b' '..=b'?') => {
             ByteEffect::Continue(DecoderState::ControlSequence)
         }
         (DecoderState::ControlSequenceStart | DecoderState::ControlSequence, b'@'..=b'~') => {
             ByteEffect::Complete(UnitKind::ControlSequence)
         }
-        (DecoderState::MouseBytes { missing: 1 }, b' '..) => ByteEffect::Complete(UnitKind::MouseBytes),
+        (DecoderState::MouseBytes { missing: 1 }, b' '..) => {
+            ByteEffect::Complete(UnitKind::MouseBytes)
+        }
         (DecoderState::MouseBytes { missing }, b' '..) => {
             ByteEffect::Continue(DecoderState::MouseBytes { missing: missing - 1 })
         }
-        (DecoderState::String(kind), ESCAPE) => ByteEffect::Continue(DecoderState::StringEscape(kind)),
-        (DecoderState::String(kind), BELL) | (DecoderState::StringEscape(kind), b'\\') => ByteEffect::Complete(kind),
-        (DecoderState::String(kind), b' '..=b'~' | 0x80..) => ByteEffect::Continue(DecoderState::String(kind)),
+        (DecoderState::String(kind), ESCAPE) => {
+            ByteEffect::Continue(DecoderState::StringEscape(kind))
+        }
+        (DecoderState::String(kind), BELL) | (DecoderState::StringEscape(kind), b'\\') => {
+            ByteEffect::Complete(kind)
+        }
+        (DecoderState::String(kind), b' '..=b'~' | 0x80..) => {
+            ByteEffect::Continue(DecoderState::String(kind))
+        }
         (DecoderState::StringEscape(_), _) => ByteEffect::RestartEscaped,
         _ => ByteEffect::Restart,
     }

@@ -324,7 +324,11 @@ pub(crate) fn known(report: &str) -> TerminalProperties {
         "tmux" => return TerminalProperties { is_tmux: true, ..TerminalProperties::default() },
         // Dots: measured with DejaVu. Its quadrants have gaps (notcurses#1517).
         "xterm" => {
-            return TerminalProperties { colors: TrueColorSupport::Ask, shades: ShadeInk::Dots, ..TerminalProperties::default() };
+            return TerminalProperties {
+                colors: TrueColorSupport::Ask,
+                shades: ShadeInk::Dots,
+                ..TerminalProperties::default()
+            };
         }
         _ => {}
     }

@@ -24,11 +24,11 @@ use ratatui::backend::Backend;
 use super::event::MouseUnits;
 use super::flow::{Flow, Request};
 use super::input::{Answer, Decoder, TerminalInput};
-use super::known::{TrueColorSupport, TerminalProperties};
-use super::sequence::{TerminalChanges, KeyFlags};
+use super::known::{TerminalProperties, TrueColorSupport};
+use super::sequence::{KeyFlags, TerminalChanges};
 use super::{
-    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, SessionOptions, Phase, QuitReason,
-    Screen, TmuxClient, WindowSize, sequence,
+    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Phase, QuitReason, Screen,
+    SessionOptions, TmuxClient, WindowSize, sequence,
 };
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::tui::GlyphSet;

@@ -13,7 +13,7 @@ use super::signals::{Signal, Signals};
 use super::tmux::TmuxCommand;
 use super::unix::Device;
 use super::{
-    Error, Event, SessionOptions, Protocol, QuitReason, Recorder, Screen, TmuxClient, WindowSize,
+    Error, Event, Protocol, QuitReason, Recorder, Screen, SessionOptions, TmuxClient, WindowSize,
 };
 use crate::tui::GlyphSet;
 

@@ -23,7 +23,7 @@ use std::task::Poll;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::known::{TrueColorSupport, TerminalProperties, known};
+use super::known::{TerminalProperties, TrueColorSupport, known};
 use crate::tui::GlyphSet;
 
 /// The client of tmux that shows the program.

@@ -464,7 +464,8 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// Marks the key as up and ignores its repetitions.
     fn suppress(&mut self) {
-        let may_repeat = matches!(self.state, KeyState::Down | KeyState::Repeats | KeyState::Suppressed);
+        let may_repeat =
+            matches!(self.state, KeyState::Down | KeyState::Repeats | KeyState::Suppressed);
         self.state = if may_repeat { KeyState::Suppressed } else { KeyState::Up };
         self.last_byte = self.last_byte.filter(|_| may_repeat);
         self.tap = Tap::default();

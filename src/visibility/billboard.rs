@@ -89,7 +89,11 @@ enum Pose {
 
 impl Billboard {
     /// The billboard of `thing` in an image; `None` if it is outside the picture.
-    pub(crate) fn of_thing(scene: FrameContext<'_>, image: MirrorTransform, thing: Thing) -> Option<Self> {
+    pub(crate) fn of_thing(
+        scene: FrameContext<'_>,
+        image: MirrorTransform,
+        thing: Thing,
+    ) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
         let base = sprite.base(world.room_in(thing.cell));

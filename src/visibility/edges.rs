@@ -19,7 +19,7 @@ use super::Projection;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows};
 use super::fan::Border;
 use super::sectors::{Sector, SectorId, TileSectors};
-use super::walk::{ColumnMemory, BorderGroup, Visit, SectorWalk, texture_coordinate_at};
+use super::walk::{BorderGroup, ColumnMemory, SectorWalk, Visit, texture_coordinate_at};
 use crate::world::TileKind;
 
 /// The height in the picture of a face on the grid, as a linear function of the column.
@@ -200,7 +200,8 @@ impl SectorWalk<'_> {
                 let [column, row] = visit.image.cell_to_map(place);
                 grid.tile(column, row)
             });
-            let is_clear = in_front.is_none_or(|tile| self.fan.sectors.continues(visit.sector, tile));
+            let is_clear =
+                in_front.is_none_or(|tile| self.fan.sectors.continues(visit.sector, tile));
             if beside != Some(tile) || !is_clear {
                 break;
             }

@@ -19,7 +19,7 @@ use glam::DVec2;
 
 use super::face::CellFace;
 use super::sectors::{SectorId, Sectors};
-use super::{Projection, FrameContext, WalkStats};
+use super::{FrameContext, Projection, WalkStats};
 use crate::cast::{
     Caster, CommonOrder, Course, DynCaster, MajorAxisTraversal, MirrorTransform, Order, Ray, Side,
 };

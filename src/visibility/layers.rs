@@ -134,7 +134,11 @@ fn look(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &DrawList) {
 /// Calls `follow` with the index of the image and each edge of the area on the map that a ray part covers. It
 /// skips edges whose ends are not finite. In the direct image, it also skips edges at which a part begins,
 /// because another part ends there.
-fn for_each_edge(scene: FrameContext<'_>, list: &DrawList, mut follow: impl FnMut(usize, [DVec2; 2])) {
+fn for_each_edge(
+    scene: FrameContext<'_>,
+    list: &DrawList,
+    mut follow: impl FnMut(usize, [DVec2; 2]),
+) {
     let origin = scene.projection.origin();
     for layer in &list.passed {
         let Layer::Part(part) = layer else { continue };

@@ -20,10 +20,10 @@ use glam::DVec2;
 use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, RaySegment};
 use super::edges::WallBorder;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
-use super::fan::{Border, SectorEntry, Fan, FanMemory, RayStarts};
+use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
 use super::projection::Rise;
 use super::sectors::{GapObject, PlaneSide, Sector, SectorId, TileSectors};
-use super::{Projection, FrameContext, WalkStats};
+use super::{FrameContext, Projection, WalkStats};
 use crate::cast::{
     Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
     is_from_left,
@@ -783,9 +783,10 @@ impl SectorWalk<'_> {
         let WalkMemory { next, borders, .. } = &mut *self.memory;
         let PendingVisit { visit, entries, .. } = &mut next[slot as usize];
         entries.extend(
-            borders[group.borders.clone()]
-                .iter()
-                .map(|border| SectorEntry { column: border.columns.start, place: border.face.place }),
+            borders[group.borders.clone()].iter().map(|border| SectorEntry {
+                column: border.columns.start,
+                place: border.face.place,
+            }),
         );
         if let Some((visit, _)) = visit {
             visit.columns.end = range.end;

@@ -86,7 +86,9 @@ impl DistanceField {
                 cells.resize(width, CodedDistance::NONE);
             }
             cells.push(CodedDistance::NONE);
-            cells.extend(row.map(|may_be| if may_be { CodedDistance::NONE } else { CodedDistance::ONE }));
+            cells.extend(
+                row.map(|may_be| if may_be { CodedDistance::NONE } else { CodedDistance::ONE }),
+            );
             cells.push(CodedDistance::NONE);
         }
         cells.resize(width * height, CodedDistance::NONE);
@@ -116,7 +118,9 @@ impl DistanceField {
     /// before the cell in reading order or after it.
     pub(crate) fn measured(&self) -> Self {
         let width = self.width;
-        let farthest = |&cell: &CodedDistance| if cell == CodedDistance::NONE { 0 } else { CodedDistance::MAX };
+        let farthest = |&cell: &CodedDistance| {
+            if cell == CodedDistance::NONE { 0 } else { CodedDistance::MAX }
+        };
         let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
         for end in (2 * width..=cells.len()).step_by(width) {
             let (before, row) = cells[..end].split_at_mut(end - width);

@@ -71,7 +71,8 @@ impl Texture {
         has_alpha: bool,
         texels: impl Fn() -> T + Send + Sync + 'static,
     ) -> Self {
-        let source = PictureSource::on_demand(move || TexturePicture::from_fn(width, height, texels()));
+        let source =
+            PictureSource::on_demand(move || TexturePicture::from_fn(width, height, texels()));
         Self::new(width, height, has_alpha, source)
     }
 

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::support::{complaint_about, output_of};
 use cellcaster::game::{Game, Intent, Intents};
-use cellcaster::generate::{CHUNK_SIDE, Chunk, ChunkArea, Extent, Generator, GeneratedLevel, Site, Terrain};
+use cellcaster::generate::{
+    CHUNK_SIDE, Chunk, ChunkArea, Extent, GeneratedLevel, Generator, Site, Terrain,
+};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
 use proptest::prelude::*;

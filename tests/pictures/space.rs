@@ -3,7 +3,7 @@
 use cellcaster::color::Rgb;
 use cellcaster::render::{Frame, FrameSize, PixelAspect};
 use cellcaster::space::{
-    Block, Body, Camera, Elevation, Fraction, Plane, Ray, Renderer, Scene, BodyShape, SolidTexture,
+    Block, Body, BodyShape, Camera, Elevation, Fraction, Plane, Ray, Renderer, Scene, SolidTexture,
     Sphere, Sun,
 };
 use cellcaster::world::{FieldOfView, Heading, Scale};

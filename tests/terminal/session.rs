@@ -9,7 +9,7 @@ use std::env;
 use std::thread;
 use std::time::Duration;
 
-use cellcaster::terminal::{Event, Key, SessionOptions, Phase, Session};
+use cellcaster::terminal::{Event, Key, Phase, Session, SessionOptions};
 use cellcaster::tui::canvas::Canvas;
 use ratatui::widgets::{Paragraph, Wrap};
 use rustix::process::Signal;

@@ -512,7 +512,11 @@ const NUMBERS: [Setting<Config>; 21] = [
         about: "the largest window",
         value: &Number(20..=2048, NumberField::U16(|it| &mut it.columns)),
     },
-    Setting { key: "rows", about: "", value: &Number(10..=1024, NumberField::U16(|it| &mut it.rows)) },
+    Setting {
+        key: "rows",
+        about: "",
+        value: &Number(10..=1024, NumberField::U16(|it| &mut it.rows)),
+    },
     Setting {
         key: "drain-seconds",
         about: "the time that sessions have when the server ends",

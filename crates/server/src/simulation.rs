@@ -21,7 +21,7 @@ use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::{Instant, sleep};
 
-pub(crate) use self::client::{SimulatedClient, Conditions, guest};
+pub(crate) use self::client::{Conditions, SimulatedClient, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::tapes::Tapes;
 use crate::accounts::HostStore;
@@ -165,7 +165,8 @@ impl Rig {
     /// Connects a visitor without letting time pass; returns their index.
     pub(crate) fn connect(&mut self, visitor: Visitor, speaks: Speaks, depth: ColorDepth) -> usize {
         let Self { runtime, host, .. } = self;
-        let client = runtime.block_on(async { SimulatedClient::come(host, visitor, speaks, depth) });
+        let client =
+            runtime.block_on(async { SimulatedClient::come(host, visitor, speaks, depth) });
         self.clients.push(client);
         self.clients.len() - 1
     }

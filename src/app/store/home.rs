@@ -145,7 +145,12 @@ impl Home {
         }
     }
 
-    fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<ChangeResult> {
+    fn replace(
+        &self,
+        found: Found,
+        changes: &[Change],
+        known: &Progress,
+    ) -> io::Result<ChangeResult> {
         let Found { mut progress, damage } = found;
         let sentence = damage.map(|damage| self.put_aside(damage)).transpose()?;
         if sentence.is_some() {

@@ -5,7 +5,7 @@ use super::titles::titled;
 use super::*;
 use crate::app::recording::RunLog;
 use crate::app::store::{Descent, MAX_SAVES, Run, Save, SaveId, SavedGame, map_key};
-use crate::app::{SettingOrigins, Offers, InitialState, Origin, OwnLevel};
+use crate::app::{InitialState, Offers, Origin, OwnLevel, SettingOrigins};
 use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
 use crate::tui::GlyphSet;
@@ -205,7 +205,8 @@ fn a_resumed_game_is_recorded_from_the_start_of_its_level() {
     let script =
         std::env::temp_dir().join(format!("cellcaster-record-{}.script", std::process::id()));
     let file = std::fs::File::create(&script).unwrap();
-    rig.app.script = Some(crate::game::ScriptWriter::with_header(Box::new(file), Header::default()));
+    rig.app.script =
+        Some(crate::game::ScriptWriter::with_header(Box::new(file), Header::default()));
     rig.choose("Continue");
     walk(&mut rig);
     rig.app.script = None;
@@ -234,7 +235,10 @@ fn the_next_campaign_level_asks_too_and_is_listed_with_saved_games() {
     assert!(text(&mut rig.app, 80, 24).contains("Continue  2 games"));
     rig.app.begin(Levels::builtin(0).unwrap());
     rig.app.next_level();
-    assert_eq!((rig.app.game.title(), rig.app.screen()), ("The Museum of Walls", AppScreen::HasSaved));
+    assert_eq!(
+        (rig.app.game.title(), rig.app.screen()),
+        ("The Museum of Walls", AppScreen::HasSaved)
+    );
 }
 
 #[test]
@@ -420,7 +424,8 @@ fn settings_are_kept_unless_a_flag_or_a_file_sets_them() {
     assert_eq!((next.glyphs, next.depth), (GlyphSet::Quadrant, Some(ColorDepth::True)));
     assert_eq!(next.frame_time, Duration::from_secs(1) / 60);
 
-    let given = SettingOrigins { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
+    let given =
+        SettingOrigins { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
     let next = Settings { given, ..plain }.preferring(&kept);
     assert_eq!((next.glyphs, next.frame_time), (GlyphSet::Half, thirty));
     assert_eq!(next.depth, Some(ColorDepth::True));

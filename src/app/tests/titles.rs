@@ -2,7 +2,7 @@
 
 use super::missions::own_map;
 use super::*;
-use crate::app::{Offers, InitialState};
+use crate::app::{InitialState, Offers};
 use crate::map::builtin;
 
 const ENTER: Key = Key::Enter;

@@ -209,12 +209,16 @@ impl Mixtures {
         let light = LightTables::get();
         let nearest = colors.map(|color| self.nearest(light.level(color)));
         let level = light.level_of_mean(colors, shares);
-        let wanted =
-            TargetColors { parts: nearest.map(|(place, _)| place), mean: self.nearest(level).0, shares };
+        let wanted = TargetColors {
+            parts: nearest.map(|(place, _)| place),
+            mean: self.nearest(level).0,
+            shares,
+        };
         let indices = nearest.map(|(_, index)| index);
         let parts = (self.error_of_parts(&wanted, indices), CellMixture::Parts(indices));
         let (quarters, pair) = self.mixed(level);
-        let shade = (self.error_of_shade(&wanted, quarters, pair), CellMixture::Shade(quarters, pair));
+        let shade =
+            (self.error_of_shade(&wanted, quarters, pair), CellMixture::Shade(quarters, pair));
         let best = if shade.0 < parts.0 { shade } else { parts };
 
         let mut shared = (best.0 + SHARING, best.1);

@@ -6,7 +6,9 @@
 use glam::DVec2;
 
 use super::context::{Act, Context, PerceivedPlayer};
-use super::guard::{GUESSES, Guard, MAX_PACES, PACE, AttackPhase, KnownPlayer, GuardActivity, WONDERS};
+use super::guard::{
+    AttackPhase, GUESSES, Guard, GuardActivity, KnownPlayer, MAX_PACES, PACE, WONDERS,
+};
 use super::perception::NOSE;
 use super::walking::WalkProgress;
 use crate::game::sound::{Sound, SoundKind};
@@ -66,8 +68,12 @@ impl Guard {
             GuardActivity::OnDuty => self.do_duty(context),
             GuardActivity::Returning => self.return_to_duty(context),
             GuardActivity::Wondering { .. } => self.wonder(context),
-            GuardActivity::Searching { around, next, left } => self.search(context, around, next, left),
-            GuardActivity::Tracking { target, mark, lost } => self.track(context, target, mark, lost),
+            GuardActivity::Searching { around, next, left } => {
+                self.search(context, around, next, left)
+            }
+            GuardActivity::Tracking { target, mark, lost } => {
+                self.track(context, target, mark, lost)
+            }
             GuardActivity::Chasing { fright } => self.chase(context, fright),
             GuardActivity::Attacking { phase, left } => self.attack(context, phase, left),
             GuardActivity::Down { left } => self.stay_down(left.saturating_sub(context.stride)),
@@ -223,7 +229,9 @@ impl Guard {
 /// Wondering, searching and tracking: the behaviour of guards who have noticed something.
 impl Guard {
     pub(crate) fn wonder(&mut self, context: &mut Context) {
-        let GuardActivity::Wondering { about, looks, goes, hurries, wakes } = self.state else { return };
+        let GuardActivity::Wondering { about, looks, goes, hurries, wakes } = self.state else {
+            return;
+        };
         let way = about - self.mover.position();
         if looks > 0 {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
@@ -295,7 +303,9 @@ impl Guard {
             return;
         }
         match self.go_to(context, cell, speed) {
-            WalkProgress::OnTheWay => self.state = GuardActivity::Tracking { target, mark, lost: 0 },
+            WalkProgress::OnTheWay => {
+                self.state = GuardActivity::Tracking { target, mark, lost: 0 }
+            }
             WalkProgress::There if newer => {
                 self.state = GuardActivity::Tracking { target, mark: mark + 1, lost: 0 };
             }
@@ -322,7 +332,9 @@ impl Guard {
     /// Goes to a fallen guard if this guard sees one.
     pub(crate) fn look_for_fallen(&mut self, context: &mut Context) {
         let is_busy = match self.state {
-            GuardActivity::OnDuty | GuardActivity::Returning | GuardActivity::Searching { .. } => false,
+            GuardActivity::OnDuty | GuardActivity::Returning | GuardActivity::Searching { .. } => {
+                false
+            }
             GuardActivity::Wondering { wakes, hurries, .. } => wakes.is_some() || hurries,
             _ => true,
         };
@@ -527,7 +539,10 @@ impl Guard {
         if left > 0 {
             return;
         }
-        self.state = GuardActivity::Attacking { phase: AttackPhase::Strike { has_hit: false }, left: STRIKE };
+        self.state = GuardActivity::Attacking {
+            phase: AttackPhase::Strike { has_hit: false },
+            left: STRIKE,
+        };
         if is_archer {
             self.shoot(context, target);
         } else {
@@ -535,7 +550,13 @@ impl Guard {
         }
     }
 
-    fn strike(&mut self, context: &mut Context, target: &PerceivedPlayer, has_hit: bool, left: u16) {
+    fn strike(
+        &mut self,
+        context: &mut Context,
+        target: &PerceivedPlayer,
+        has_hit: bool,
+        left: u16,
+    ) {
         let is_archer = self.kind == GuardKind::Archer;
         let has_hit = has_hit || !is_archer && self.hits(context, target);
         self.look = Some(self.mover.facing);

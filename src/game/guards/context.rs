@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::movement::GuardWorld;
 use super::trail::Trail;
-use super::ways::{Gait, GuardTerrain, GuardPaths};
+use super::ways::{Gait, GuardPaths, GuardTerrain};
 use crate::game::rules::Rules;
 use crate::game::sight::Cloud;
 use crate::game::sound::{Sound, SoundKind, Source};

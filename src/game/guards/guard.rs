@@ -267,8 +267,13 @@ impl Guard {
             GuardActivity::Attacking { .. } => self.state = GuardActivity::Chasing { fright: 0 },
             GuardActivity::Asleep => {
                 let about = self.mover.position() - direction;
-                self.state =
-                    GuardActivity::Wondering { about, looks: 30, goes: true, hurries: false, wakes: None };
+                self.state = GuardActivity::Wondering {
+                    about,
+                    looks: 30,
+                    goes: true,
+                    hurries: false,
+                    wakes: None,
+                };
             }
             _ => {}
         }
@@ -443,7 +448,9 @@ impl Guard {
             quarry.position = place(quarry.position);
         }
         match &mut self.state {
-            GuardActivity::Wondering { about, wakes, .. } => (*about, *wakes) = (place(*about), None),
+            GuardActivity::Wondering { about, wakes, .. } => {
+                (*about, *wakes) = (place(*about), None)
+            }
             GuardActivity::Searching { around, next, .. } => {
                 (*around, *next) = (cell(*around), next.map(cell));
             }

@@ -8,7 +8,9 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::ways::{DROP, Footing, Gait, GuardTerrain};
-use crate::game::collision::{MovingBody, Obstacles, WorldObstacles, Radius, Stature, is_clear, slide};
+use crate::game::collision::{
+    MovingBody, Obstacles, Radius, Stature, WorldObstacles, is_clear, slide,
+};
 use crate::game::fall::VerticalMotion;
 use crate::game::player::STEP_HEIGHT;
 use crate::game::rules::STEP;

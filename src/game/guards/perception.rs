@@ -10,7 +10,7 @@
 use glam::DVec2;
 
 use super::context::{Context, PerceivedPlayer};
-use super::guard::{ALARMED, GUESSES, Guard, KnownPlayer, GuardActivity, WONDERS};
+use super::guard::{ALARMED, GUESSES, Guard, GuardActivity, KnownPlayer, WONDERS};
 use crate::game::sound::{Sound, SoundKind, Source, half_cells};
 use crate::world::{Cell, Difficulty, GuardKind};
 
@@ -56,7 +56,8 @@ impl Guard {
             }
             let is_quarry = self.quarry.is_some_and(|quarry| quarry.target == index);
             if gain > most || is_quarry && self.state.is_alarmed() {
-                self.quarry = Some(KnownPlayer { target: index, position: target.position, unseen: 0 });
+                self.quarry =
+                    Some(KnownPlayer { target: index, position: target.position, unseen: 0 });
             }
             most = most.max(gain);
         }
@@ -135,8 +136,13 @@ impl Guard {
             | GuardActivity::Chasing { .. } => {}
             _ if self.awareness >= ALARMED => self.raise_alarm(context),
             GuardActivity::Wondering { hurries, wakes, looks, goes, .. } => {
-                self.state =
-                    GuardActivity::Wondering { about: quarry.position, hurries, wakes, looks, goes };
+                self.state = GuardActivity::Wondering {
+                    about: quarry.position,
+                    hurries,
+                    wakes,
+                    looks,
+                    goes,
+                };
             }
             _ if self.awareness >= WONDERS => self.begin_to_wonder(context, quarry.position, false),
             _ => {}
@@ -157,7 +163,8 @@ impl Guard {
 
     /// Makes an idle hound smell the trails of players.
     fn smell(&mut self, context: &mut Context) {
-        let is_busy = matches!(self.state, GuardActivity::Tracking { .. }) || self.state.is_alarmed();
+        let is_busy =
+            matches!(self.state, GuardActivity::Tracking { .. }) || self.state.is_alarmed();
         if self.kind != GuardKind::Hound || is_busy || self.blind > 0 {
             return;
         }
@@ -277,7 +284,8 @@ impl Guard {
     fn answer_call(&mut self, about: DVec2) {
         let looks = if self.state == GuardActivity::Asleep { 60 } else { 20 };
         self.awareness = self.awareness.max(WONDERS);
-        self.state = GuardActivity::Wondering { about, looks, goes: true, hurries: true, wakes: None };
+        self.state =
+            GuardActivity::Wondering { about, looks, goes: true, hurries: true, wakes: None };
     }
 }
 

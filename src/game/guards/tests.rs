@@ -113,8 +113,11 @@ impl Scene {
     /// Whether every guard's body has room.
     fn is_sound(&self) -> bool {
         self.guards.list.iter().all(|guard| {
-            let ground =
-                GuardWorld { world: &self.world, terrain: &self.guards.terrain, gait: guard.gait() };
+            let ground = GuardWorld {
+                world: &self.world,
+                terrain: &self.guards.terrain,
+                gait: guard.gait(),
+            };
             ground.has_room_for(&guard.mover)
         })
     }

@@ -402,7 +402,13 @@ impl GuardPaths {
         }
         let (begun, used) = (self.now, self.now);
         if self.fields.len() < MAX_FIELDS {
-            self.fields.push(GoalDistances { goal, gait, distances: Distances::default(), begun, used });
+            self.fields.push(GoalDistances {
+                goal,
+                gait,
+                distances: Distances::default(),
+                begun,
+                used,
+            });
         } else {
             let oldest = self.fields.iter_mut().min_by_key(|field| field.used)?;
             if oldest.used + 1 >= self.now {

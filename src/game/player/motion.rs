@@ -3,8 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::collision::{MovingBody, WorldObstacles, Radius, Stature, overlaps, slide};
-use crate::game::fall::{VerticalMotion, GRAVITY, VerticalRange};
+use crate::game::collision::{MovingBody, Radius, Stature, WorldObstacles, overlaps, slide};
+use crate::game::fall::{GRAVITY, VerticalMotion, VerticalRange};
 use crate::game::intent::{Intent, Intents};
 use crate::game::rules::STEP;
 use crate::game::stance::Stance;
@@ -177,7 +177,8 @@ impl Motion {
         let DampedMotion { velocity, displacement } =
             approach_in_plane(self.body.velocity, target, FRICTION, STEP);
         let mut place = WorldObstacles { step, others, ..self.place(world) };
-        let mut body = slide(&mut place, MovingBody { velocity, ..self.body }, displacement, RADIUS);
+        let mut body =
+            slide(&mut place, MovingBody { velocity, ..self.body }, displacement, RADIUS);
         if body.velocity.length() < STILL {
             body.velocity = DVec2::ZERO;
         }

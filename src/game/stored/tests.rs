@@ -10,7 +10,7 @@ use self::crowd::Crowd;
 use super::*;
 use crate::game::tests::missions::EVERYTHING;
 use crate::game::{Game, Intents, MultiplayerRules, Rules, Script, Sees, Strikes};
-use crate::generate::{Extent, Generator, GeneratedLevel};
+use crate::generate::{Extent, GeneratedLevel, Generator};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
 use crate::world::{Difficulty, World};

@@ -1,7 +1,7 @@
 //! Properties of games with guards, mechanisms, hazards and pickups.
 
 use super::*;
-use crate::game::script::{ScriptWriter, Script};
+use crate::game::script::{Script, ScriptWriter};
 use crate::map;
 use crate::world::{Difficulty, Supply};
 

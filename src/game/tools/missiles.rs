@@ -7,7 +7,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::collision::{WorldObstacles, Radius, Stature, fly};
+use crate::game::collision::{Radius, Stature, WorldObstacles, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
@@ -153,8 +153,13 @@ impl Missile {
     /// for too long.
     fn step(&mut self, world: &World) -> bool {
         let stature = Stature { feet: self.height, height: 0.0 };
-        let place =
-            WorldObstacles { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] };
+        let place = WorldObstacles {
+            world,
+            stature,
+            step: 0.0,
+            has_shapes: world.has_shapes(),
+            others: &[],
+        };
         let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);
         self.position = position;
         let room = place.room(position, SIZE);

@@ -149,7 +149,12 @@ impl Ground {
 
     /// The cells within `most` steps of `from` through cells for which `is_open` returns true,
     /// nearest first, with the number of steps to each.
-    fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(CellProperties) -> bool) -> Vec<(Cell, u32)> {
+    fn ways_from(
+        &self,
+        from: Cell,
+        most: u32,
+        is_open: impl Fn(CellProperties) -> bool,
+    ) -> Vec<(Cell, u32)> {
         let mut flood = Flood::new((self.width().get(), self.cells.len() as u32), from);
         let next = || flood.next(|cell| is_open(self.kind(cell)));
         iter::from_fn(next).take_while(|&(_, distance)| distance <= most).collect()

@@ -6,7 +6,9 @@ use super::*;
 use crate::cast::Side;
 use crate::raster::SurfaceBuffer;
 use crate::render::Frame;
-use crate::visibility::{FaceColumn, FrameSize, PixelAspect, Projection, Rows, SideLit, StatsCounter};
+use crate::visibility::{
+    FaceColumn, FrameSize, PixelAspect, Projection, Rows, SideLit, StatsCounter,
+};
 use crate::world::{Camera, FieldOfView, Heading, Texture};
 
 const HEIGHT: u32 = 90;

@@ -229,7 +229,8 @@ impl BlockElement {
     /// The block element and style with the fewest bytes after `current` that show these two halves.
     pub(crate) fn cheapest(halves: [PackedColor; 2], current: Option<Style>) -> (Self, Style) {
         let [top, bottom] = halves;
-        let plain = |element, [text, ground]: [PackedColor; 2]| (element, Style::plain(text, ground));
+        let plain =
+            |element, [text, ground]: [PackedColor; 2]| (element, Style::plain(text, ground));
         let Some(current) = current else { return plain(Self::Upper, halves) };
         if top == bottom && !current.has_no_modifiers() {
             let text = current.foreground;

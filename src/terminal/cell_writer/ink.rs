@@ -1,7 +1,7 @@
 //! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
 use super::block::MosaicShape;
-use super::style::{PackedColorKind, Notation, PackedColor};
+use super::style::{Notation, PackedColor, PackedColorKind};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
 use crate::color::palette;
@@ -118,13 +118,17 @@ impl Inks {
             Rgb::new(red, green, blue)
         };
         self.of(match (one.shade.kind(), other.shade.kind()) {
-            (PackedColorKind::Rgb(one), PackedColorKind::Rgb(other)) => PackedColor::rgb(middle(one, other)),
-            (PackedColorKind::Indexed(one @ FIRST_FIXED..), PackedColorKind::Indexed(other @ FIRST_FIXED..)) => {
-                PackedColor::indexed(palette::nearest_of_256(of_indices(one, other)))
+            (PackedColorKind::Rgb(one), PackedColorKind::Rgb(other)) => {
+                PackedColor::rgb(middle(one, other))
             }
-            (PackedColorKind::Indexed(one @ ..FIRST_FIXED), PackedColorKind::Indexed(other @ ..FIRST_FIXED)) => {
-                PackedColor::indexed(palette::nearest_of_16(of_indices(one, other)))
-            }
+            (
+                PackedColorKind::Indexed(one @ FIRST_FIXED..),
+                PackedColorKind::Indexed(other @ FIRST_FIXED..),
+            ) => PackedColor::indexed(palette::nearest_of_256(of_indices(one, other))),
+            (
+                PackedColorKind::Indexed(one @ ..FIRST_FIXED),
+                PackedColorKind::Indexed(other @ ..FIRST_FIXED),
+            ) => PackedColor::indexed(palette::nearest_of_16(of_indices(one, other))),
             _ => one.shade,
         })
     }

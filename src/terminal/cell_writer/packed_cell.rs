@@ -52,7 +52,9 @@ impl PackedCell {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(CellText::of(symbol, |_| cell.cell_width()), style, glyph_table),
+            None => {
+                Self::of_symbol(CellText::of(symbol, |_| cell.cell_width()), style, glyph_table)
+            }
         }
     }
 
@@ -147,7 +149,8 @@ impl PackedCell {
     fn of_symbol(symbol: CellText, style: Style, glyph_table: &mut GlyphTable) -> Self {
         match symbol {
             CellText::Blank => Self::of_element(BlockElement::Space, style, glyph_table),
-            CellText::Character(character @ FIRST_MOSAIC..) => match Self::mosaic(character, style) {
+            CellText::Character(character @ FIRST_MOSAIC..) => match Self::mosaic(character, style)
+            {
                 Some(mosaic) => {
                     let colors = style.colors().map(PackedColor::color);
                     Self::of_mosaic(mosaic, colors, glyph_table)

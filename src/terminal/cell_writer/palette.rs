@@ -31,10 +31,10 @@
 use crate::color::oklab::Oklab;
 use crate::color::{Rgb, palette};
 use crate::terminal::cell_writer::bytes::{Bytes, PaletteWriter};
-use crate::terminal::cell_writer::ink::{self, Ink, Price, ColorCode};
+use crate::terminal::cell_writer::ink::{self, ColorCode, Ink, Price};
 use crate::terminal::cell_writer::packed_cell::PackedCell;
 use crate::terminal::cell_writer::screen::Screen;
-use crate::terminal::cell_writer::style::{PackedColorKind, PackedColor, Style};
+use crate::terminal::cell_writer::style::{PackedColor, PackedColorKind, Style};
 use crate::terminal::sequence::PALETTE;
 
 /// The known entries of the terminal's palette.
@@ -149,7 +149,9 @@ impl TerminalPalette {
         }
         match shade.kind() {
             // The entry with this index may have been redefined.
-            PackedColorKind::Indexed(index @ 16..) => PackedColor::rgb(palette::of_256(index).channels()),
+            PackedColorKind::Indexed(index @ 16..) => {
+                PackedColor::rgb(palette::of_256(index).channels())
+            }
             _ => self.entry(shade).map_or(shade, PackedColor::indexed),
         }
     }
@@ -197,7 +199,8 @@ impl TerminalPalette {
         }
         let (entry, _) = ink::nearest(&self.labs, wanted.lab);
         let color = self.colors[usize::from(entry)];
-        self.nearest[place] = NearestEntry { shade: wanted.shade, color, entry, found_at: self.frame };
+        self.nearest[place] =
+            NearestEntry { shade: wanted.shade, color, entry, found_at: self.frame };
         (color != PackedColor::DEFAULT).then_some(entry)
     }
 
@@ -558,7 +561,8 @@ impl Quantizer {
             let found = changes.binary_search_by_key(&shade.in_bits(), |(before, _)| *before);
             found.map_or(shade, |index| changes[index].1)
         });
-        let shades = self.shades.iter().zip(0_u8..).filter(|(shade, _)| **shade != PackedColor::NONE);
+        let shades =
+            self.shades.iter().zip(0_u8..).filter(|(shade, _)| **shade != PackedColor::NONE);
         self.by_shade.clear();
         self.by_shade.extend(shades.map(|(shade, place)| (shade.in_bits(), place)));
         self.by_shade.sort_unstable();

@@ -361,7 +361,12 @@ impl Pen {
 
     /// Adds a cell of pixels at the cursor, and returns the colours after it.
     #[inline]
-    fn push_pixels(&mut self, shape: MosaicShape, pixels: [PackedColor; 2], current: [PackedColor; 2]) -> [PackedColor; 2] {
+    fn push_pixels(
+        &mut self,
+        shape: MosaicShape,
+        pixels: [PackedColor; 2],
+        current: [PackedColor; 2],
+    ) -> [PackedColor; 2] {
         let (element, colors) = BlockElement::cheapest_after(current, pixels);
         let mut piece = self.frame.piece();
         if colors != current {

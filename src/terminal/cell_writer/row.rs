@@ -23,10 +23,12 @@ use crate::terminal::cell_writer::block::{BlockElement, MosaicShape};
 use crate::terminal::cell_writer::ink::{self, Ink, Inks, Price};
 use crate::terminal::cell_writer::packed_cell::{Form, GlyphId, GlyphTable, PackedCell};
 use crate::terminal::cell_writer::pen::Pen;
-use crate::terminal::cell_writer::screen::{ScreenRow, Screen};
+use crate::terminal::cell_writer::screen::{Screen, ScreenRow};
 use crate::terminal::cell_writer::shift::{BYTE, CELL, Loss, Shift, Shifts};
 use crate::terminal::cell_writer::style::{Notation, PackedColor, Style};
-use crate::terminal::cell_writer::trellis::{DrawAction, ColorTables, RowParameters, Trellis, CellTarget};
+use crate::terminal::cell_writer::trellis::{
+    CellTarget, ColorTables, DrawAction, RowParameters, Trellis,
+};
 use crate::tui::canvas::SHADES;
 
 /// Makes a row look like its target.
@@ -154,7 +156,13 @@ impl RowEncoder {
     }
 
     /// Makes a row look like its target within `fidelity`.
-    fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: ScreenRow, fidelity: Fidelity) {
+    fn draw_row(
+        &mut self,
+        pen: &mut Pen,
+        shifts: &mut Shifts,
+        mut row: ScreenRow,
+        fidelity: Fidelity,
+    ) {
         if row.state.intricate {
             // The extent of an intricate character is unknown.
             return draw_row(pen, shifts, row);
@@ -173,7 +181,9 @@ impl RowEncoder {
         for &(column, action) in actions {
             match action {
                 DrawAction::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
-                DrawAction::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
+                DrawAction::Draw(element, style) => {
+                    draw_near(pen, &mut row, column, element, style)
+                }
             }
         }
         row.state.exact = row.shown == row.targets;
@@ -265,7 +275,9 @@ fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Opti
     let (form, colors) = target.recolorable(glyph_table)?;
     let (shape, character) = match form {
         Form::Block(shape) => (shape, None),
-        Form::Glyph(id) => (MosaicShape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
+        Form::Glyph(id) => {
+            (MosaicShape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8))
+        }
     };
     Some(CellTarget { inks: inks.of_both(colors), shape, character })
 }

@@ -300,7 +300,15 @@ impl Screen {
         rows.filter_map(move |(y, (((shown, marks), targets), state))| {
             let place = usize::from(y) * width;
             let wanted = wanted.get(place..place + targets.len()).unwrap_or_default();
-            is_asked(state).then_some(ScreenRow { y, glyph_table, shown, targets, marks, wanted, state })
+            is_asked(state).then_some(ScreenRow {
+                y,
+                glyph_table,
+                shown,
+                targets,
+                marks,
+                wanted,
+                state,
+            })
         })
     }
 }

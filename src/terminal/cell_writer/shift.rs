@@ -213,7 +213,9 @@ impl Landmarks {
         let mut likely = [None; MAX_TRIED];
         let mut most = [CHANCE; MAX_TRIED];
         for by in 1..=FARTHEST {
-            for (way, count) in [(ShiftDirection::Left, votes.left(by)), (ShiftDirection::Right, votes.right(by))] {
+            for (way, count) in
+                [(ShiftDirection::Left, votes.left(by)), (ShiftDirection::Right, votes.right(by))]
+            {
                 if let Some(rank) = most.iter().position(|&most| count > most) {
                     likely[rank..].rotate_right(1);
                     most[rank..].rotate_right(1);
@@ -228,7 +230,8 @@ impl Landmarks {
     fn votes(&self) -> Votes {
         let mut votes = Votes([0; PLACES]);
         let around = self.before.windows(PLACES);
-        let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != CellHash::NONE);
+        let mut places =
+            self.now.iter().copied().zip(around).filter(|&(now, _)| now != CellHash::NONE);
         for _ in 0..self.now.len().div_ceil(MAX_AT_ONCE) {
             votes.add(places.by_ref().take(MAX_AT_ONCE));
         }
@@ -431,7 +434,8 @@ mod tests {
     #[test]
     fn a_shift_uncovers_unknown_cells() {
         let mut shown = row("abcdef");
-        Shift { columns: 1..5, by: 2, way: ShiftDirection::Left }.apply(&mut shown, PackedCell::UNKNOWN);
+        Shift { columns: 1..5, by: 2, way: ShiftDirection::Left }
+            .apply(&mut shown, PackedCell::UNKNOWN);
         assert_eq!(shown[..3], row("ade"));
         assert_eq!((shown[3], shown[4]), (PackedCell::UNKNOWN, PackedCell::UNKNOWN));
         assert_eq!(shown[5..], row("f"));

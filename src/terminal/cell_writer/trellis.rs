@@ -15,7 +15,7 @@
 //! these are within it. It took 1.7 times the bytes at the same mean error at high fidelity, and 2.3 times at low.
 
 use super::block::{BlockElement, MosaicShape};
-use super::ink::{Ink, Inks, Price, ColorCode};
+use super::ink::{ColorCode, Ink, Inks, Price};
 use super::palette::TerminalPalette;
 use super::style::{PackedColor, Style};
 
@@ -160,7 +160,8 @@ impl Trellis {
                 StepKind::DrawExactly => self.actions.push((*column, DrawAction::DrawExactly)),
                 StepKind::Draw(element) => {
                     let [text, ground] = colors_of(keys[at]);
-                    self.actions.push((*column, DrawAction::Draw(element, Style::plain(text, ground))));
+                    self.actions
+                        .push((*column, DrawAction::Draw(element, Style::plain(text, ground))));
                 }
             }
             at = usize::from(before);
@@ -198,7 +199,8 @@ impl Paths {
     fn past_fixed(&mut self, x: u16) -> PathTurns {
         let before = self.cheapest();
         *self = Self::one(self.cost[before], [UNKNOWN; 2], Some(x + 1));
-        let turn = PathAction { kind: StepKind::DrawExactly, before: before as u8, sources: [0; 2] };
+        let turn =
+            PathAction { kind: StepKind::DrawExactly, before: before as u8, sources: [0; 2] };
         PathTurns { column: x, turns: [turn; KEPT], keys: self.keys }
     }
 
@@ -358,7 +360,12 @@ impl<'a> Branches<'a> {
         }
     }
 
-    fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut SurvivorPaths, store: &mut ColorTables) {
+    fn draw_in_new_colors(
+        &self,
+        errors: &Errors,
+        survivors: &mut SurvivorPaths,
+        store: &mut ColorTables,
+    ) {
         let [upper, lower] = self.wanted.inks;
         let (bytes_above, bytes_below) = (upper.bytes(), lower.bytes());
         let shortest = shortest(min(bytes_above, bytes_below), store.palette);
@@ -397,8 +404,18 @@ impl<'a> Branches<'a> {
         offer(BlockElement::Upper, above, ground_below, ColorChange::NOTHING.text(upper, UPPER));
         offer(BlockElement::Upper, below, text_above, ColorChange::NOTHING.ground(lower, LOWER));
         if self.wanted.character.is_none() {
-            offer(BlockElement::Lower, above, text_below, ColorChange::NOTHING.ground(upper, UPPER));
-            offer(BlockElement::Lower, below, ground_above, ColorChange::NOTHING.text(lower, LOWER));
+            offer(
+                BlockElement::Lower,
+                above,
+                text_below,
+                ColorChange::NOTHING.ground(upper, UPPER),
+            );
+            offer(
+                BlockElement::Lower,
+                below,
+                ground_above,
+                ColorChange::NOTHING.text(lower, LOWER),
+            );
         }
     }
 
@@ -460,7 +477,13 @@ impl<'a> Branches<'a> {
 
     /// Adds the paths that would survive if they draw `element` at these costs.
     #[inline]
-    fn offer(&self, survivors: &mut SurvivorPaths, costs: &PathValues, element: BlockElement, told: ColorChange) {
+    fn offer(
+        &self,
+        survivors: &mut SurvivorPaths,
+        costs: &PathValues,
+        element: BlockElement,
+        told: ColorChange,
+    ) {
         if survivors.would_keep(least(costs)) {
             self.add_all(survivors, costs, element, told);
         }
@@ -468,7 +491,13 @@ impl<'a> Branches<'a> {
 
     /// Adds the paths if at least one would survive. Not inlined, so that the check before the call can be.
     #[inline(never)]
-    fn add_all(&self, survivors: &mut SurvivorPaths, costs: &PathValues, element: BlockElement, told: ColorChange) {
+    fn add_all(
+        &self,
+        survivors: &mut SurvivorPaths,
+        costs: &PathValues,
+        element: BlockElement,
+        told: ColorChange,
+    ) {
         for (path, &cost) in costs.iter().enumerate() {
             if survivors.would_keep(cost) {
                 self.add(survivors, cost, path, element, told);

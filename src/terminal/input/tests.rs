@@ -187,7 +187,9 @@ fn alt_with_a_sequence_starter_is_a_key_after_the_wait() {
     for (text, character) in [("\x1b[", '['), ("\x1bO", 'o'), ("\x1bP", 'p'), ("\x1b]", ']')] {
         let mut decoder = Decoder::default();
         decoder.feed(text.as_bytes(), |input| panic!("{input:?} came too early"));
-        let [TerminalInput::Key(event)] = settle(&mut decoder)[..] else { panic!("{text:?} is a key") };
+        let [TerminalInput::Key(event)] = settle(&mut decoder)[..] else {
+            panic!("{text:?} is a key")
+        };
         assert_eq!(event.key, Key::Char(character));
         assert!(event.modifiers.alt);
     }

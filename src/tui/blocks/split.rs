@@ -217,7 +217,10 @@ fn rounded(value: f32) -> u32 {
 
 /// The distance of each point along an axis.
 #[inline(always)]
-fn along<const N: usize>(points: &[[CellValues<i16>; N]; 3], axis: &[CellValues<i16>; 3]) -> [CellValues<i16>; N] {
+fn along<const N: usize>(
+    points: &[[CellValues<i16>; N]; 3],
+    axis: &[CellValues<i16>; 3],
+) -> [CellValues<i16>; N] {
     let mut distances = [[0_i16; CELLS]; N];
     for channel in 0..3 {
         for_each(&mut distances, |distance, place, cell| {

@@ -14,8 +14,10 @@ fn of<Row: AsRef<str>>(rows: &[Row]) -> DistanceField {
 
 /// The distances of the cells of the map, without the border.
 fn inner(distance_field: &DistanceField) -> Vec<Vec<u16>> {
-    let rows: Vec<&[CodedDistance]> = distance_field.cells.chunks_exact(distance_field.width).collect();
-    let lines = |row: &&[CodedDistance]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
+    let rows: Vec<&[CodedDistance]> =
+        distance_field.cells.chunks_exact(distance_field.width).collect();
+    let lines =
+        |row: &&[CodedDistance]| row[1..row.len() - 1].iter().map(|cell| cell.lines()).collect();
     rows[1..rows.len() - 1].iter().map(lines).collect()
 }
 

@@ -186,7 +186,8 @@ impl PostgresDatabase {
                     thread::sleep(wait(conflicts));
                     conflicts += 1;
                 }
-                Some(StatementFault::Conflict | StatementFault::Full | StatementFault::Refused) | None => {
+                Some(StatementFault::Conflict | StatementFault::Full | StatementFault::Refused)
+                | None => {
                     self.undo(isolation);
                     return Err(failure);
                 }
@@ -232,7 +233,10 @@ impl PostgresDatabase {
         }
     }
 
-    fn connect(&mut self, deadline: tokio::time::Instant) -> Result<PostgresConnection, StoreFailure> {
+    fn connect(
+        &mut self,
+        deadline: tokio::time::Instant,
+    ) -> Result<PostgresConnection, StoreFailure> {
         if let Some((_, failure)) = self.refused.as_ref().filter(|(at, _)| at.elapsed() < PAUSE) {
             return Err(failure.clone());
         }
@@ -548,7 +552,9 @@ fn fault(error: &Error) -> StatementFault {
     match error.code() {
         Some(code) if CONFLICTS.contains(&code) => StatementFault::Conflict,
         Some(&SqlState::DISK_FULL) => StatementFault::Full,
-        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => StatementFault::Lost,
+        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => {
+            StatementFault::Lost
+        }
         Some(_) => StatementFault::Refused,
         None if is_of_the_value(error) => StatementFault::Refused,
         None => StatementFault::Lost,

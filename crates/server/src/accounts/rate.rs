@@ -7,7 +7,7 @@
 
 use std::net::IpAddr;
 
-use super::{AddressPrefix, AccountRefusal, UnixTime};
+use super::{AccountRefusal, AddressPrefix, UnixTime};
 
 /// The number of accounts that a network may create.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,8 +16,8 @@ use super::rate::milliseconds;
 use super::results::with_run;
 use super::statements::{Isolation, Row, Statements};
 use super::{
-    Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
-    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, AccountRefusal, StoreFailure,
+    Account, AccountId, AccountKey, AccountRefusal, AccountSettings, AddressPrefix, Ban, BanTarget,
+    Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, StoreFailure,
     UnixTime, VerifiedRun, sqlite,
 };
 

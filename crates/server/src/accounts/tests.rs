@@ -214,7 +214,10 @@ fn a_ban_applies_until_it_ends() {
         assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[0]));
         assert_eq!(store.ban_of(&Identity::default(), at(0)).unwrap(), None);
         // Nobody can take a banned name.
-        assert_eq!(store.create_account(None, &key(3), &rude, at(1)), Err(AccountRefusal::NameBanned));
+        assert_eq!(
+            store.create_account(None, &key(3), &rude, at(1)),
+            Err(AccountRefusal::NameBanned)
+        );
         store.create_account(None, &key(3), &rude, at(2)).unwrap();
         // A later ban replaces the earlier one.
         let longer = ban(range(), None);

@@ -124,7 +124,10 @@ fn warned<T>((opened, damage): (T, Option<String>)) -> T {
 
 /// The address of the cluster's bus that `options` name, and two connections to the database of all hosts: one for
 /// leases and one for visits, so that neither waits for other calls.
-fn cluster(options: &Serve, store: &StoreLocation) -> Result<Option<(String, [HostStore; 2])>, Error> {
+fn cluster(
+    options: &Serve,
+    store: &StoreLocation,
+) -> Result<Option<(String, [HostStore; 2])>, Error> {
     let Some(address) = options.cluster() else { return Ok(None) };
     let StoreLocation::Address(store) = store else {
         return Err(Error::mistake(

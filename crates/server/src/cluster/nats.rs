@@ -30,7 +30,7 @@ use futures_util::StreamExt;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use super::bus::{BusAnswer, Bus, BusFault, HostRequest, Key};
+use super::bus::{Bus, BusAnswer, BusFault, HostRequest, Key};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 

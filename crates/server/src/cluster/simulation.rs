@@ -86,7 +86,8 @@ impl ClusterRun {
         let mut chance = SplitMix64::new(seed);
         let world = World::new(chance.bits(), HOSTS);
         let catalog = Arc::new(catalog(HALL));
-        let hosts = (0..HOSTS).map(|host| SimulatedHost::new(&world, &catalog, host, chance.bits()));
+        let hosts =
+            (0..HOSTS).map(|host| SimulatedHost::new(&world, &catalog, host, chance.bits()));
         let hosts: Vec<SimulatedHost> = hosts.collect();
         let players = (0..PLAYERS).map(SimulatedPlayer::new).collect();
         Self { world, chance, catalog, hosts, players, let_in: Vec::new(), returns: 0 }
@@ -150,7 +151,8 @@ impl ClusterRun {
         let now = Instant::now();
         for (index, host) in self.hosts.iter().enumerate() {
             if !host.is_killed && (all || host.well_at <= now) {
-                self.world.set(index, |link| *link = HostLinks { delay: 2, ..HostLinks::default() });
+                self.world
+                    .set(index, |link| *link = HostLinks { delay: 2, ..HostLinks::default() });
             }
         }
     }

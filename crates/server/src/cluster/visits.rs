@@ -101,7 +101,11 @@ impl Visits {
         let counting = BTreeSet::new();
         let registry =
             Registry { notice, counting, is_unsure: false, is_away: false, has_left: false };
-        Self(Arc::new(VisitsState { store, registry: Mutex::new(registry), ended: Mutex::default() }))
+        Self(Arc::new(VisitsState {
+            store,
+            registry: Mutex::new(registry),
+            ended: Mutex::default(),
+        }))
     }
 
     /// Begins a visit.

@@ -102,9 +102,9 @@ where
     let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
         Some(Ok(request)) => operator.answer(&request).await,
         Some(Err(error)) => AdminReply::Fault(format!("the request can't be parsed: {error}")),
-        None => {
-            AdminReply::Fault(format!("a request must be one line of at most {MAX_REQUEST_BYTES} bytes"))
-        }
+        None => AdminReply::Fault(format!(
+            "a request must be one line of at most {MAX_REQUEST_BYTES} bytes"
+        )),
     };
     let mut line = serde_json::to_vec(&reply)?;
     line.push(b'\n');

@@ -32,7 +32,7 @@ use crate::load::Work;
 use crate::lock::locked;
 use crate::rooms::room::{Command, Entry, Header, MemberId, Mode, Room, RoomView};
 use cellcaster::game::{
-    self, Intents, LevelName, Outcome, PlayerColor, ScriptWriter, Rules, STEPS_PER_SECOND, Stretch,
+    self, Intents, LevelName, Outcome, PlayerColor, Rules, STEPS_PER_SECOND, ScriptWriter, Stretch,
 };
 
 /// The maximum number of steps to catch up on after a delay.

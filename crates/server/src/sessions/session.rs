@@ -42,7 +42,7 @@ use crate::bucket::Bucket;
 use crate::rooms::room::RoomView;
 use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
-use cellcaster::terminal::{Event, KeyEvent, SessionOptions, Phase, Protocol, WindowSize};
+use cellcaster::terminal::{Event, KeyEvent, Phase, Protocol, SessionOptions, WindowSize};
 
 /// The number of keys that a visitor may press per second. A held key repeats about 30 times a second.
 const KEYS: f64 = 200.0;

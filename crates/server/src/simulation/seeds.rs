@@ -26,7 +26,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{SimulatedClient, Conditions, ENTER, HALL, Rig, Speaks, Wish, catalog};
+use super::{Conditions, ENTER, HALL, Rig, SimulatedClient, Speaks, Wish, catalog};
 use crate::load::Worker;
 use crate::rooms::room::Mode;
 use cellcaster::color::palette::ColorDepth;

@@ -24,7 +24,7 @@ use super::outbox::Outbox;
 use super::visitor::{self, Departure, Link, MAX_VARIABLES, Visitor};
 use super::wire::ConnectionState;
 use crate::accounts::AccountKey;
-use crate::admission::{Refusal, ConnectionId};
+use crate::admission::{ConnectionId, Refusal};
 use crate::logging;
 use cellcaster::terminal::WindowSize;
 

@@ -24,7 +24,7 @@ use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, timeout};
 
 use crate::accounts::{AccountKey, AddressPrefix};
-use crate::admission::{Admission, Admitted, Outcome, Refusal, ConnectionId};
+use crate::admission::{Admission, Admitted, ConnectionId, Outcome, Refusal};
 use crate::config::LiveConfig;
 use crate::lock::locked;
 use crate::logging::{ConnectionEvent, Throttle};

@@ -107,7 +107,9 @@ impl Server {
         let drain = config.get().drain;
         logging::draining(drain.as_secs());
         let until_end = drain + LAST_WORDS.min(drain);
-        for (next, time) in [(ShutdownPhase::Draining, until_end), (ShutdownPhase::Closing, CLOSING)] {
+        for (next, time) in
+            [(ShutdownPhase::Draining, until_end), (ShutdownPhase::Closing, CLOSING)]
+        {
             gate.enter(next);
             let all = async { while tasks.join_next().await.is_some() {} };
             if timeout(time, all).await.is_ok() {

@@ -52,8 +52,7 @@ fn lines_wait_in_order_and_are_bounded() {
 }
 
 #[test]
-fn a_removal_reaches_its_targets_before_any_line()
--> Result<(), Box<dyn std::error::Error>> {
+fn a_removal_reaches_its_targets_before_any_line() -> Result<(), Box<dyn std::error::Error>> {
     let visitors = Visitors::default();
     let key = AccountKey::new([1; 32]);
     let mut ada = visitors.arrive(here(1), Some(key));

@@ -55,11 +55,7 @@ fn acknowledged_changes_survive_a_killed_process() {
     let mut next = 0;
     for round in 0..KILLS {
         let mut process = Command::new(env::current_exe().unwrap())
-            .args([
-                "--exact",
-                "--nocapture",
-                "kept::acknowledged_changes_survive_a_killed_process",
-            ])
+            .args(["--exact", "--nocapture", "kept::acknowledged_changes_survive_a_killed_process"])
             .env(WRITER, format!("{}:{next}", folder.display()))
             .stdout(Stdio::piped())
             .spawn()

@@ -17,7 +17,7 @@ use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer, Surface};
 use cellcaster::rng::SplitMix64;
-use cellcaster::space::{Block, Body, Ray, Scene, BodyShape, SolidTexture};
+use cellcaster::space::{Block, Body, BodyShape, Ray, Scene, SolidTexture};
 use cellcaster::world::{Camera, FieldOfView, Fog, Heading, World};
 
 /// The width and the height of the pictures.

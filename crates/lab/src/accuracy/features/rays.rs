@@ -225,7 +225,8 @@ fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<Met> 
     }
     let t = &(&FixedPoint::new(line) - &across.0) / &across.1;
     let place = &along.0 + &(&t * &along.1);
-    let is_within = place >= FixedPoint::new(start) && place <= FixedPoint::new(start + (1.0 - part));
+    let is_within =
+        place >= FixedPoint::new(start) && place <= FixedPoint::new(start + (1.0 - part));
     (!t.is_negative() && is_within).then_some(Met { cell, t, is_end: false })
 }
 

@@ -8,7 +8,7 @@ use super::super::fixed_point::FixedPoint;
 use super::Feature;
 use cellcaster::color::Rgb;
 use cellcaster::rng::SplitMix64;
-use cellcaster::space::{Block, Body, Plane, Ray, Scene, BodyShape, SolidTexture, Sphere};
+use cellcaster::space::{Block, Body, BodyShape, Plane, Ray, Scene, SolidTexture, Sphere};
 
 const RAYS: usize = 2000;
 const BODIES: usize = 6;
@@ -23,8 +23,9 @@ pub(crate) fn features(seed: u64) -> Vec<Feature> {
         Some(BodyShape::Sphere(Sphere::new(point(5.0), 0.25 * (index + 1) as f64)?))
     });
     let spheres = scene(spheres);
-    let planes =
-        scene((0..BODIES).filter_map(|_| Some(BodyShape::Plane(Plane::new(point(5.0), point(1.0))?))));
+    let planes = scene(
+        (0..BODIES).filter_map(|_| Some(BodyShape::Plane(Plane::new(point(5.0), point(1.0))?))),
+    );
     let boxes = (0..BODIES).filter_map(|_| {
         let corner = point(5.0);
         Some(BodyShape::Block(Block::new(corner, corner + point(3.0))?))
@@ -107,12 +108,17 @@ fn meet(shape: &BodyShape, ray: &Ray) -> Option<FixedPoint> {
 
 /// The distance to a box, found by the slabs between opposite faces. No direction in the report is
 /// parallel to a face.
-fn meet_block(block: &Block, origin: &[FixedPoint; 3], direction: &[FixedPoint; 3]) -> Option<FixedPoint> {
+fn meet_block(
+    block: &Block,
+    origin: &[FixedPoint; 3],
+    direction: &[FixedPoint; 3],
+) -> Option<FixedPoint> {
     let (low, high) = (fixed(block.low()), fixed(block.high()));
     let slabs: Option<Vec<(FixedPoint, FixedPoint)>> = (0..3)
         .map(|axis| {
             let speed = &direction[axis];
-            let to = |face: &FixedPoint| (!speed.is_zero()).then(|| &(face - &origin[axis]) / speed);
+            let to =
+                |face: &FixedPoint| (!speed.is_zero()).then(|| &(face - &origin[axis]) / speed);
             let (one, other) = (to(&low[axis])?, to(&high[axis])?);
             Some(if one < other { (one, other) } else { (other, one) })
         })

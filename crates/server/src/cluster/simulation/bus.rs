@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-use super::super::bus::{BusAnswer, Bus, BusFault, HostRequest, Key};
-use super::world::{WorldState, StoredMessage, LOOK, TIMEOUT, World};
+use super::super::bus::{Bus, BusAnswer, BusFault, HostRequest, Key};
+use super::world::{LOOK, StoredMessage, TIMEOUT, World, WorldState};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 

@@ -8,7 +8,7 @@ use tokio::runtime::Builder;
 use tokio::sync::Notify;
 use tokio::time::{Instant, sleep};
 
-use super::{HOSTS, ClusterRun};
+use super::{ClusterRun, HOSTS};
 use crate::accounts::AccountKey;
 use crate::admin::{AdminReply, AdminRequest, Target};
 use crate::operator::Operator;

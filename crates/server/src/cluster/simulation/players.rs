@@ -5,7 +5,7 @@ use tokio::task::JoinHandle;
 use super::super::Entrant;
 use super::super::message::LogMessage;
 use super::world::World;
-use super::{HOSTS, ClusterRun, wish};
+use super::{ClusterRun, HOSTS, wish};
 use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::rooms::directory::{Place, RoomRefusal};

@@ -4,8 +4,8 @@ use std::sync::atomic::Ordering;
 
 use super::Shared;
 use crate::accounts::{
-    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
-    Origin, AccountRefusal, StoreFailure, UnixTime,
+    Account, AccountId, AccountKey, AccountRefusal, AccountSettings, Ban, BanTarget, HostStore,
+    Identity, Name, Origin, StoreFailure, UnixTime,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
@@ -34,7 +34,10 @@ const NOT_NOW: &str = "The host can't save this now; try again later.";
 impl Shared {
     /// Looks up a visitor. On failure, returns the sentence that tells them why they may not play, and their
     /// departure.
-    pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<AccountData, (String, Departure)> {
+    pub(crate) async fn log_in(
+        &self,
+        visitor: &Visitor,
+    ) -> Result<AccountData, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {

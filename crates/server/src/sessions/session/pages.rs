@@ -11,7 +11,7 @@ use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use cellcaster::app::parts::{self, Choice as _, PageKind, Menu, of_steps};
+use cellcaster::app::parts::{self, Choice as _, Menu, PageKind, of_steps};
 use cellcaster::world::Difficulty;
 
 /// The number of rooms listed in the lobby. If there are more, another page lists all of them.
@@ -283,7 +283,11 @@ impl Ui {
     fn first_walk(&self) -> RoomTarget {
         let names = &self.host.catalog.names;
         let level = names.iter().position(|name| name == FIRST_LEVEL).unwrap_or(0);
-        RoomTarget::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
+        RoomTarget::New {
+            mode: Mode::Roam,
+            level,
+            difficulty: self.identity.preferences.difficulty,
+        }
     }
 
     /// The label and the value of a room's menu entry.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{BETWEEN_KEYS, Bystander, SeedRun, STEADY, hall};
+use super::{BETWEEN_KEYS, Bystander, STEADY, SeedRun, hall};
 use crate::sessions::session::Session;
 use crate::simulation::emulator::Emulator;
 use crate::simulation::looks::looks;
