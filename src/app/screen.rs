@@ -367,7 +367,7 @@ impl App {
         match self.pages.press((key, press), bindings, held, self.now) {
             Effect::Other => match self.pages.menu.choice() {
                 Some(MenuChoice::Continue(id)) if self.removes(key) => {
-                    self.open(AppScreen::Remove(id))
+                    self.open(AppScreen::Remove(id));
                 }
                 _ => self.press_command(key, press),
             },

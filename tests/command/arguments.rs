@@ -206,7 +206,7 @@ fn a_missing_file_is_the_only_reported_fault() {
     ");
     let output = cellcaster(&["check", MAP, "tests/bad_maps/no_start.toml"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("cross.toml: right"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("cross.toml: valid"));
     let report = String::from_utf8(output.stderr).unwrap();
     assert!(report.ends_with("cellcaster: 1 of 2 maps have faults; see above\n"), "{report}");
 }

@@ -69,10 +69,10 @@ impl Guard {
             GuardActivity::Returning => self.return_to_duty(context),
             GuardActivity::Wondering { .. } => self.wonder(context),
             GuardActivity::Searching { around, next, left } => {
-                self.search(context, around, next, left)
+                self.search(context, around, next, left);
             }
             GuardActivity::Tracking { target, mark, lost } => {
-                self.track(context, target, mark, lost)
+                self.track(context, target, mark, lost);
             }
             GuardActivity::Chasing { fright } => self.chase(context, fright),
             GuardActivity::Attacking { phase, left } => self.attack(context, phase, left),

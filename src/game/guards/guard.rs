@@ -449,7 +449,7 @@ impl Guard {
         }
         match &mut self.state {
             GuardActivity::Wondering { about, wakes, .. } => {
-                (*about, *wakes) = (place(*about), None)
+                (*about, *wakes) = (place(*about), None);
             }
             GuardActivity::Searching { around, next, .. } => {
                 (*around, *next) = (cell(*around), next.map(cell));

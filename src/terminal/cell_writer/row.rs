@@ -182,7 +182,7 @@ impl RowEncoder {
             match action {
                 DrawAction::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
                 DrawAction::Draw(element, style) => {
-                    draw_near(pen, &mut row, column, element, style)
+                    draw_near(pen, &mut row, column, element, style);
                 }
             }
         }

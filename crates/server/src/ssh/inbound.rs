@@ -18,7 +18,7 @@ use tokio::sync::Notify;
 use tokio::task::yield_now;
 use tokio::time::{Instant, timeout};
 
-use super::wire::{ByteLimits, MIN};
+use super::wire::{ByteLimits, MIN_READ};
 use crate::bucket::Bucket;
 use crate::lock::locked;
 use cellcaster::terminal::WindowSize;
@@ -198,7 +198,7 @@ impl PendingInput {
             return Appended::Full;
         }
         let allowed = self.bucket.fill(now);
-        let fewest = MIN.min(room as f64);
+        let fewest = MIN_READ.min(room as f64);
         if allowed < fewest {
             return Appended::TooFast(self.bucket.time_until(fewest));
         }

@@ -69,7 +69,7 @@ pub(crate) struct ConnectionState {
 /// The maximum burst, in seconds at the full rate.
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause. This keeps pauses rare.
-pub(crate) const MIN: f64 = 1024.0;
+pub(crate) const MIN_READ: f64 = 1024.0;
 /// The largest allowed read, in bytes. Packets have 32 KB plus framing (RFC 4253, section 6.1).
 const MAX_PACKET_BYTES: usize = 35_000;
 const READER: usize = 0;
@@ -151,7 +151,7 @@ impl<S> Wire<S> {
                 left => Ok(left as usize),
             });
         }
-        let fewest = MIN.min(f64::from(limits.per_second));
+        let fewest = MIN_READ.min(f64::from(limits.per_second));
         loop {
             let now = Instant::now();
             let bytes = self.bucket.fill(now.saturating_duration_since(self.line.begun));
