@@ -78,7 +78,7 @@ fn an_unwritable_folder_is_reported_and_the_game_goes_on() {
         }
         let screen = play_daily(&data, &[]).replace('\n', "");
         assert_eq!(screen.matches("cellcaster: ").count(), 1, "{screen}");
-        assert!(screen.contains(reason) && screen.contains("kept"), "{screen}");
+        assert!(screen.contains(reason) && screen.contains("not saved"), "{screen}");
         assert!(screen.contains("Floor 1 on normal: "), "{screen}");
     }
 }

@@ -60,7 +60,7 @@ pub(crate) fn measure_maps(time: Duration) -> Table {
             "ray ratio",
             "time, µs/frame",
             "frame ratio",
-            "time to read, ms",
+            "load time, ms",
             "bytes/cell",
         ]),
         rows: rows.collect(),

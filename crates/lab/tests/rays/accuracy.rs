@@ -140,7 +140,7 @@ fn the_motion_uses_the_requested_friction_and_step() {
     let report =
         json(&["--part", "motion", "--rounds", "0", "--friction", "7", "--steps-per-second", "25"]);
     let title = report["tables"]["motion"]["title"].as_str().unwrap();
-    assert!(title.contains(" friction of 7 per second "), "{title}");
+    assert!(title.contains("a friction of 7 per second"), "{title}");
     let is_players = |row: &&Value| row["rate × step"] == 7.0 / 25.0 && row["step, s"] == "1/25";
     assert_eq!(rows(&report, "motion").iter().filter(is_players).count(), 5);
     let orders: Vec<f64> =

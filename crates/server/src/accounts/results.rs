@@ -229,7 +229,7 @@ mod tests {
             ("level /dev/zero\n2 s forward\n", "has no board"),
             ("level floor 2\n2 s forward\n", "has no board"),
             ("level floor 1\n2 s forward\n", "has no board"),
-            (&WON.replace("seed 0", "seed 1"), "another seed"),
+            (&WON.replace("seed 0", "seed 1"), "a different seed"),
             (&long, "longer than half an hour"),
             (&"#".repeat(MAX_SCRIPT_BYTES + 1), "longer than half an hour"),
             ("level cellar\n2 s fly\n", "unknown intent"),

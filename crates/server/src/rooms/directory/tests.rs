@@ -93,8 +93,8 @@ fn a_panic_ends_only_its_own_room() {
         let mut ben = rooms.enter(RoomId(1), &name("Ben")).unwrap();
         let mut ada = rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap();
         let mut watcher = rooms.watch(RoomId(2)).unwrap();
-        assert!(end_of(&mut ada).await.contains("fault"));
-        assert!(end_of(&mut watcher).await.contains("fault"));
+        assert!(end_of(&mut ada).await.contains("error in this server"));
+        assert!(end_of(&mut watcher).await.contains("error in this server"));
         assert_eq!(ada.act(Command::Again), Ok(()));
         drop((ada, watcher));
         listed(&rooms, &[1]).await;
