@@ -80,5 +80,5 @@ fn a_stopped_host_is_no_longer_listed() {
     let other = &hosts.running[1].0;
     assert_eq!(other.admin_says(&["hosts"]).lines().count(), 2);
     assert_eq!(other.admin_says(&["who"]), "nobody is online\n");
-    assert!(other.admin_says(&["drain"]).starts_with("the server ends"));
+    assert!(other.admin_says(&["drain"]).starts_with("the server is shutting down"));
 }
