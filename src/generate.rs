@@ -2,7 +2,7 @@
 //! while the player walks.
 //!
 //! A [`Terrain`] is a function from the position of a [`Chunk`] to its cells. It depends on
-//! neighbouring chunks only through their positions. A [`Level`] is a terrain with an extent. A
+//! neighbouring chunks only through their positions. A [`GeneratedLevel`] is a terrain with an extent. A
 //! [`Window`] keeps the chunks around the player as an ordinary [`World`](crate::world::World), so
 //! casting, drawing and collision work as on any map, and at the same cost.
 //!

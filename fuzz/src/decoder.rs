@@ -13,7 +13,9 @@ use std::time::Duration;
 
 use allocation_counter::measure;
 use cellcaster::rng::SplitMix64;
-use cellcaster::terminal::{Event, Key, KeyEvent, Modifiers, Options, Phase, Protocol, WindowSize};
+use cellcaster::terminal::{
+    Event, Key, KeyEvent, Modifiers, Phase, Protocol, SessionOptions, WindowSize,
+};
 use cellcaster::tui::canvas::Canvas;
 use ratatui::style::Color;
 
@@ -47,7 +49,7 @@ pub fn run(data: &[u8]) {
 
 fn protocol(kind: u8) -> Protocol {
     let term = TERMS[usize::from(kind) % TERMS.len()];
-    let options = Options::from_environment(|name| match name {
+    let options = SessionOptions::from_environment(|name| match name {
         "TERM" => Some(term.to_owned()),
         "SSH_TTY" if kind >> 3 & 1 == 1 => Some("/dev/pts/0".to_owned()),
         "COLORTERM" if kind >> 4 & 1 == 1 => Some("truecolor".to_owned()),

@@ -1,7 +1,7 @@
 //! A room and its visitors. Their terminals send arbitrary bytes, and the log of the round
 //! reproduces the room bit for bit. A session ends only after it has restored its terminal.
 
-use cellcaster::terminal::{Options, WindowSize};
+use cellcaster::terminal::{SessionOptions, WindowSize};
 use cellcaster_server::fuzzing::Hall;
 
 use crate::alacritty::Alacritty;
@@ -94,7 +94,7 @@ pub fn run(data: &[u8]) {
 
 fn arrive(hall: &mut Hall, choices: &mut Bytes) -> Terminal {
     let kind = choices.byte();
-    let options = Options::from_environment(|name| match name {
+    let options = SessionOptions::from_environment(|name| match name {
         "TERM" => {
             Some(["xterm-256color", "linux", "tmux", "dumb"][usize::from(kind & 3)].to_owned())
         }

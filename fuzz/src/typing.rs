@@ -6,7 +6,7 @@
 //! them is bounded by their length, so nobody can make a host work by typing.
 
 use allocation_counter::measure;
-use cellcaster::terminal::{Options, WindowSize};
+use cellcaster::terminal::{SessionOptions, WindowSize};
 use cellcaster_server::fuzzing::Hall;
 
 use crate::bytes::Bytes;
@@ -24,7 +24,8 @@ pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let (kind, width) = (choices.byte(), choices.byte());
     let term = ["xterm-256color", "linux", "xterm-kitty", "dumb"][usize::from(kind & 3)];
-    let options = Options::from_environment(|name| (name == "TERM").then(|| term.to_owned()));
+    let options =
+        SessionOptions::from_environment(|name| (name == "TERM").then(|| term.to_owned()));
     let mut hall = Hall::small((kind >> 2).into());
     let columns = 20 + u16::from(width) % 80;
     hall.arrive("Ada", options, WindowSize::new((columns, 24), (0, 0)));

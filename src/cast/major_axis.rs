@@ -217,7 +217,7 @@ impl IntegerRay {
         }
     }
 
-    /// The same as [`Path::step`], but crosses as many lines at once as are clear.
+    /// The same as [`IntegerRay::step`], but crosses as many lines at once as are clear.
     #[inline]
     fn leap(
         self,
@@ -245,7 +245,7 @@ impl IntegerRay {
         }
     }
 
-    /// The same as [`Path::leap`], but also leaps across everything that is clear in a beam.
+    /// The same as [`IntegerRay::leap`], but also leaps across everything that is clear in a beam.
     #[inline]
     fn leap_along_beams(
         self,

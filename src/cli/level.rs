@@ -55,7 +55,7 @@ pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     }
 }
 
-/// The level in the map file of `place`, and its [`Watch`]. Only files can be watched.
+/// The level in the map file of `place`, and its [`MapWatcher`]. Only files can be watched.
 pub(crate) fn watch(place: &LevelOptions) -> Result<(Level, MapWatcher), Error> {
     match place.map.as_deref() {
         Some(name) if name != STANDARD_INPUT && Path::new(name).is_file() => {

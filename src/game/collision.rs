@@ -20,7 +20,7 @@
 //! be represented in doubles. Rounding would stop a player who slides along such a line in every
 //! step.
 //!
-//! A [`Place`] presents the world as obstacles for one body, given the height of its feet and its
+//! A [`WorldObstacles`] presents the world as obstacles for one body, given the height of its feet and its
 //! own height. A cell has gaps, between a floor and a ceiling or above a roof. A player is clear of
 //! the cell if one gap contains the whole body. For feet at one height, the world is therefore
 //! two-dimensional: some cells block, the others do not, and the sweep needs nothing else.

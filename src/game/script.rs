@@ -356,7 +356,7 @@ fn example(word: &str) -> String {
 /// Writes a script while the game is played.
 ///
 /// The recorder writes a stretch in one piece when the stretch ends, so the output is a valid
-/// script at any time. It writes the last stretch when it is [finished](Recorder::finish) or
+/// script at any time. It writes the last stretch when it is [finished](ScriptWriter::finish) or
 /// dropped.
 #[derive(Debug)]
 pub struct ScriptWriter<W: Write> {

@@ -160,7 +160,7 @@ impl GeneratedLevel {
     }
 }
 
-/// Two levels are equal if they come from the same call of [`Level::new`].
+/// Two levels are equal if they come from the same call of [`GeneratedLevel::new`].
 impl PartialEq for GeneratedLevel {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.tileset, &other.tileset)

@@ -2,7 +2,7 @@
 //!
 //! Each chunk has corridors along its northern and western sides, with a door to the next chunk at
 //! the end of each. All corridors are therefore connected, and no view extends beyond the doors.
-//! The rest of the chunk is a [`Block`] with doors to the corridors.
+//! The rest of the chunk is a [`RoomArea`] with doors to the corridors.
 //!
 //! Walls are in odd columns and rows, doors in even ones, and furniture only in cells whose column
 //! and row are both odd. No wall therefore ends at a door, and each door stands between walls. The

@@ -44,7 +44,7 @@ impl<'a> SurfaceText<'a> {
         Some(Self { source, place: entry.value_place.clone() })
     }
 
-    /// Reads the panorama in `entry` as [`Surface::read`] does.
+    /// Reads the panorama in `entry` as [`SurfaceText::read`] does.
     fn read_panorama(entry: &Entry<'a, '_>) -> Option<Self> {
         let example = r#"panorama = "hills""#;
         let text = entry.string(example)?;

@@ -109,7 +109,7 @@ impl SceneProjection {
     }
 
     /// The direction through the middle of a column, at the middle of the picture's height. Its sum
-    /// with [`Projection::upwards`] is the direction of a ray, whose `t` is the distance to the
+    /// with [`SceneProjection::upwards`] is the direction of a ray, whose `t` is the distance to the
     /// camera plane.
     pub(crate) fn across(&self, column: u32) -> DVec3 {
         // The offsets are exact halves, so a column and its mirror image have exactly opposite

@@ -154,7 +154,7 @@ impl TerminalGuard {
         self.shutting_down.store(true, Ordering::SeqCst);
     }
 
-    /// Returns true if [`Guard::shut_down`] was called.
+    /// Returns true if [`TerminalGuard::shut_down`] was called.
     pub(crate) fn is_shutting_down(&self) -> bool {
         self.shutting_down.load(Ordering::SeqCst)
     }

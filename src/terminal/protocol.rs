@@ -98,7 +98,7 @@ enum FrameKind {
     Refinement,
 }
 
-/// The state of mouse reports. Their unit is in [`Changes`].
+/// The state of mouse reports. Their unit is in [`TerminalChanges`].
 #[derive(Clone, Copy, Debug, Default)]
 struct Mouse {
     /// Whether the terminal can report positions in pixels.

@@ -173,7 +173,7 @@ impl TerminalChanges {
         self.key_flags = KeyFlags::Unset;
     }
 
-    /// Records that the terminal may have received a part of the sequences from [`Changes::end`].
+    /// Records that the terminal may have received a part of the sequences from [`TerminalChanges::end`].
     pub(crate) fn mark_key_flags_uncertain(&mut self) {
         if self.key_flags == KeyFlags::Received {
             self.key_flags = KeyFlags::Pushed;

@@ -43,8 +43,8 @@ pub(crate) struct DistanceField {
 const BLOCK: usize = 1 << BLOCK_BITS;
 const BLOCK_BITS: u32 = 3;
 
-/// A number of lines in a byte: exact up to [`Coded::EXACT`], then rounded down to a multiple of
-/// [`Coded::STEP`]. The largest number exceeds the lines of any map.
+/// A number of lines in a byte: exact up to [`CodedDistance::EXACT`], then rounded down to a multiple of
+/// [`CodedDistance::STEP`]. The largest number exceeds the lines of any map.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct CodedDistance(u8);
 

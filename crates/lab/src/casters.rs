@@ -7,7 +7,7 @@
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
 //! | [`Fixed`] | lines in order, in fixed point | drummyfish, LRS, "Raycasting" |
-//! | [`Table`] | x and y lines separately, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
+//! | [`AngleTable`] | x and y lines separately, along the nearest of a fixed number of angles | F. Permadi, "Ray-Casting Tutorial" |
 //! | [`March`] | constant steps | the method against which Lode Vandevenne warns |
 //!
 //! Except for the exact caster, all casters treat doors, glass, masks and shapes as walls, and none
@@ -53,7 +53,7 @@ pub enum Method {
     Accumulate,
     /// [`Fixed`].
     Fixed(Fixed),
-    /// [`Table`].
+    /// [`AngleTable`].
     Table(AngleTable),
     /// [`March`].
     March(March),

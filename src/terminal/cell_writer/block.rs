@@ -10,7 +10,7 @@
 use super::style::{PackedColor, Style};
 use crate::tui::canvas::Mosaic;
 
-/// A mosaic without the last dot. Its number is below [`Shape::COUNT`].
+/// A mosaic without the last dot. Its number is below [`MosaicShape::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MosaicShape(u8);
 
@@ -69,13 +69,13 @@ impl MosaicShape {
         }
     }
 
-    /// The number of the shape, less than [`Shape::COUNT`].
+    /// The number of the shape, less than [`MosaicShape::COUNT`].
     #[inline]
     pub(crate) const fn get(self) -> u8 {
         self.0
     }
 
-    /// The shape with this number, which must come from [`Shape::get`].
+    /// The shape with this number, which must come from [`MosaicShape::get`].
     #[inline]
     pub(crate) const fn new(number: u8) -> Self {
         Self(number)

@@ -185,7 +185,7 @@ impl Price {
         Self { farthest, bytes: worth / farthest }
     }
 
-    /// The price in this number of parts of a cell, as [`Shape`] counts them.
+    /// The price in this number of parts of a cell, as [`MosaicShape`] counts them.
     #[inline]
     pub(crate) fn of_parts(self, parts: u8) -> Self {
         const HALF: f32 = MosaicShape::PARTS as f32 / 2.0;

@@ -42,7 +42,7 @@ use crate::terminal::sequence::PALETTE;
 pub(crate) struct TerminalPalette {
     /// Whether entries may be defined.
     is_on: bool,
-    /// The colour of each entry. [`Shade::DEFAULT`] for undefined entries.
+    /// The colour of each entry. [`PackedColor::DEFAULT`] for undefined entries.
     colors: Vec<PackedColor>,
     /// The colours of the entries in L\*a\*b\*, component by component.
     labs: [Vec<f32>; 3],
@@ -251,7 +251,7 @@ impl TerminalPalette {
     /// Begins a frame, on a terminal with this `style`: counts the shown colours and the targets'
     /// colours, row by row, and defines the frequent ones.
     ///
-    /// Returns true if there are [definitions](Palette::definitions).
+    /// Returns true if there are [definitions](TerminalPalette::definitions).
     pub(crate) fn begin_frame(
         &mut self,
         screen: &Screen,
@@ -400,7 +400,7 @@ impl TerminalPalette {
 #[derive(Debug)]
 struct Quantizer {
     clusters: Clusters,
-    /// The colour of each entry. [`Shade::NONE`] for undefined entries.
+    /// The colour of each entry. [`PackedColor::NONE`] for undefined entries.
     shades: Vec<PackedColor>,
     /// The entries, sorted by the bits of their colours.
     by_shade: Vec<(u32, u8)>,

@@ -313,7 +313,7 @@ impl Screen {
     }
 }
 
-/// Replaces the colours of `cells`. A cell becomes unknown if one of its colours becomes [`Shade::NONE`].
+/// Replaces the colours of `cells`. A cell becomes unknown if one of its colours becomes [`PackedColor::NONE`].
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(PackedColor) -> PackedColor) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {

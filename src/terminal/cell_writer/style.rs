@@ -148,7 +148,7 @@ impl Style {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PackedColor(u32);
 
-/// The kind of a [`Shade`].
+/// The kind of a [`PackedColor`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PackedColorKind {
     Default,
@@ -234,7 +234,7 @@ impl PackedColor {
         Self(Self::RGB | pixel.to_bits())
     }
 
-    /// A number of [`Shade::BITS`] bits, unique to the colour.
+    /// A number of [`PackedColor::BITS`] bits, unique to the colour.
     #[inline]
     pub(crate) const fn in_bits(self) -> u32 {
         self.0

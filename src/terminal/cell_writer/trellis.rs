@@ -23,7 +23,7 @@ use super::style::{PackedColor, Style};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CellTarget {
     pub(crate) inks: [Ink; 2],
-    /// The shape of a block; [`Shape::HALF`] for a character.
+    /// The shape of a block; [`MosaicShape::HALF`] for a character.
     pub(crate) shape: MosaicShape,
     /// The number of bytes of its only glyph. `None` if any block element will do.
     pub(crate) character: Option<u8>,

@@ -176,7 +176,7 @@ impl HostStore {
     /// one, unless it is refused for another reason.
     ///
     /// # Errors
-    /// A [`Refusal`]: for example, the name is taken or banned, or the network creates too many accounts.
+    /// A [`AccountRefusal`]: for example, the name is taken or banned, or the network creates too many accounts.
     pub fn create_account(
         &mut self,
         origin: Option<&Origin>,
@@ -207,7 +207,7 @@ impl HostStore {
     /// Changes the name of an account.
     ///
     /// # Errors
-    /// [`Refusal`].
+    /// [`AccountRefusal`].
     pub fn rename(
         &mut self,
         id: AccountId,

@@ -59,7 +59,7 @@ pub(crate) struct ConnectionState {
     hello: Mutex<Hello>,
     is_logged_in: AtomicBool,
     read: AtomicU64,
-    /// The time of [`Line::last_sign`], in milliseconds since `begun`.
+    /// The time of [`ConnectionState::last_sign`], in milliseconds since `begun`.
     last_sign: AtomicU64,
     is_cut: AtomicBool,
     /// The wakers of the reader and the writer.
