@@ -41,7 +41,7 @@ pub use self::event::{
     Event, Key, KeyEvent, Modifiers, MouseButton, MouseEvent, MouseEventKind, Phase, QuitReason,
     UnknownKey, WindowSize,
 };
-pub use self::fidelity::{Fidelity, UnknownFidelity};
+pub use self::fidelity::{Effort, Fidelity, UnknownFidelity};
 pub use self::guard::Recorder;
 pub use self::known::{ColorSource, Detected, SessionOptions, locale_without_utf8};
 pub use self::protocol::Protocol;

@@ -12,6 +12,7 @@
 
 mod block;
 mod bytes;
+mod greedy;
 mod ink;
 mod packed_cell;
 mod palette;
@@ -44,7 +45,7 @@ pub(crate) use self::style::Style;
 #[cfg(not(feature = "cli"))]
 use self::style::Style;
 use self::style::{Notation, PackedColor};
-use super::fidelity::Fidelity;
+use super::fidelity::{Effort, Fidelity};
 use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
@@ -77,6 +78,7 @@ pub struct CellWriter<W> {
     cursor_visible: bool,
     bytes_written: u64,
     fidelity: Fidelity,
+    effort: Effort,
     shifts: Shifts,
     refinement: Refinement,
 }
@@ -92,6 +94,7 @@ impl<W: Write> CellWriter<W> {
             cursor_visible: false,
             bytes_written: 0,
             fidelity: Fidelity::EXACT,
+            effort: Effort::Search,
             shifts: Shifts::default(),
             refinement: Refinement::new(),
         }
@@ -110,6 +113,11 @@ impl<W: Write> CellWriter<W> {
     /// Sets the fidelity of colours from the next frame on.
     pub fn set_fidelity(&mut self, fidelity: Fidelity) {
         self.fidelity = fidelity;
+    }
+
+    /// Sets the effort at fidelities that are not exact, from the next frame on.
+    pub fn set_effort(&mut self, effort: Effort) {
+        self.effort = effort;
     }
 
     /// Sets whether characters beyond ASCII are replaced by similar ones, from the next frame on.
@@ -227,7 +235,7 @@ impl<W: Write> CellWriter<W> {
         if is_exact {
             rows.for_each(|row| draw_row(pen, shifts, row));
         } else {
-            RowEncoder::draw_rows(pen, shifts, rows, self.fidelity);
+            RowEncoder::draw_rows(pen, shifts, rows, (self.fidelity, self.effort));
         }
     }
 }

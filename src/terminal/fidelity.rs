@@ -45,6 +45,17 @@ impl Fidelity {
     }
 }
 
+/// The effort that an encoder spends on finding few bytes within a tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// A search through the ways to show each row.
+    #[default]
+    Search,
+    /// A choice for each cell by itself, in a third of the time. It takes more bytes at the same
+    /// error.
+    Greedy,
+}
+
 /// The named fidelities.
 const NAMED: [(&str, Fidelity); 3] =
     [("exact", Fidelity::EXACT), ("high", Fidelity::HIGH), ("low", Fidelity::LOW)];

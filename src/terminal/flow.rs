@@ -15,7 +15,12 @@
 //! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
 //! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
-//! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take.
+//! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The rate is
+//! that of the link or of a [budget], whichever is lower. Frames that exceed the budget in spite of that become fewer.
+//!
+//! If the processor is short, frames are encoded greedily, which takes a third of the time and more bytes. On a link
+//! or a budget that is too narrow for greedy frames, the search still pays off, because greedy frames would be fewer or
+//! coarser than it makes them.
 //!
 //! This module has neither a clock nor a terminal. Its functions receive events and their times, which are durations
 //! since any fixed moment.
@@ -28,10 +33,14 @@
 //! Rejected: raising and lowering the fidelity step by step. The fidelity then reacts late at the beginning of motion,
 //! when lag is most noticeable.
 
+mod budget;
+
 use std::collections::VecDeque;
+use std::num::NonZero;
 use std::time::Duration;
 
-use crate::terminal::Fidelity;
+use self::budget::Budget;
+use crate::terminal::{Effort, Fidelity};
 
 /// The state of flow control.
 #[derive(Debug, Default)]
@@ -55,6 +64,9 @@ pub(crate) struct Flow {
     link: Link,
     /// The estimated number of bytes that an exact frame of motion would take.
     exact_bytes: f64,
+    budget: Option<Budget>,
+    /// The effort to prefer.
+    effort: Effort,
 }
 
 /// A request to the terminal, after a frame or alone.
@@ -109,11 +121,15 @@ const FENCE_INTERVAL: Duration = Duration::from_secs(5);
 /// The number of frames per second that the rate should sustain.
 const FRAMES_PER_SECOND: f64 = 18.0;
 /// An exact frame takes 1 + 0.32 t times the bytes of a frame at tolerance t: 3.6 times at 8, and 8.7 times at 24.
+/// Greedy frames take fewer bytes at the same tolerance, with larger errors.
 const SAVING: f64 = 0.32;
+const GREEDY_SAVING: f64 = 0.44;
 /// The factor by which a high estimate decreases with each frame.
 const DECAY: f64 = 0.99;
 /// The coarsest fidelity. Beyond it, fewer frames are better than coarser frames.
 const MIN_FIDELITY: Fidelity = Fidelity::new(48);
+/// The coarsest fidelity of greedy frames. Beyond it, the search is worth its time.
+const MIN_GREEDY_FIDELITY: Fidelity = Fidelity::LOW;
 
 impl Flow {
     /// Flow control for an unknown link. The link is a network if `is_remote`.
@@ -147,6 +163,9 @@ impl Flow {
             self.fenced_at = now;
         }
         self.frames_sent += u64::from(bytes > 0);
+        if let Some(budget) = &mut self.budget {
+            budget.sent(now, bytes);
+        }
         self.in_flight.push_back(Sent { at: now, bytes, request });
         self.active_at = now;
         self.has_input = false;
@@ -198,6 +217,23 @@ impl Flow {
         self.forgotten = 0;
     }
 
+    /// Sets the limit of bytes per second on the wire. `None` means no limit.
+    pub(crate) fn set_budget(&mut self, bytes_per_second: Option<NonZero<u32>>) {
+        self.budget = bytes_per_second.map(Budget::new);
+    }
+
+    /// Records that the wire has carried frames of `bytes` bytes with `on_wire` bytes.
+    pub(crate) fn carried(&mut self, bytes: usize, on_wire: usize) {
+        if let Some(budget) = &mut self.budget {
+            budget.carried(bytes, on_wire);
+        }
+    }
+
+    /// Sets the effort to prefer.
+    pub(crate) fn set_effort(&mut self, effort: Effort) {
+        self.effort = effort;
+    }
+
     /// Records that a key has arrived.
     pub(crate) fn received_input(&mut self) {
         self.has_input = true;
@@ -241,6 +277,11 @@ impl Flow {
         (self.awaits_answers() && !is_silent).then_some(due)
     }
 
+    /// The time from which on the budget allows the next frame.
+    pub(crate) fn affords_at(&self) -> Duration {
+        self.budget.map(|budget| budget.affords_at()).unwrap_or_default()
+    }
+
     /// Returns true while answers may arrive.
     pub(crate) fn awaits_answers(&self) -> bool {
         self.answers != Answers::Never && !self.in_flight.is_empty()
@@ -261,31 +302,41 @@ impl Flow {
         self.link.last_round_trip()
     }
 
-    /// The fidelity at which the link carries the next frame in time.
-    pub(crate) fn fidelity(&self) -> Fidelity {
+    /// The fidelity at which the link and the budget carry the next frame in time, and the effort for it.
+    pub(crate) fn quality(&self) -> (Fidelity, Effort) {
         if self.timeouts > 0 && self.answers == Answers::Given {
-            return MIN_FIDELITY;
+            return (MIN_FIDELITY, Effort::Search);
         }
         if self.is_remote && !self.link.is_known() {
-            return FIRST_FIDELITY;
+            return (FIRST_FIDELITY, self.effort_at(FIRST_FIDELITY));
         }
-        self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.fidelity_within(rate))
+        let of_link =
+            self.link.usable_rate().map(|rate| self.exact_bytes * FRAMES_PER_SECOND / rate);
+        let of_budget = self.budget.map(|budget| budget.excess(FRAMES_PER_SECOND));
+        let excess = of_link.into_iter().chain(of_budget).fold(0.0, f64::max);
+        let fidelity = fidelity_for(excess, self.effort);
+        match self.effort_at(fidelity) {
+            Effort::Greedy => (fidelity, Effort::Greedy),
+            Effort::Search => (fidelity_for(excess, Effort::Search), Effort::Search),
+        }
+    }
+
+    /// The effort for frames at `fidelity`.
+    pub(crate) fn effort_at(&self, fidelity: Fidelity) -> Effort {
+        if fidelity <= MIN_GREEDY_FIDELITY { self.effort } else { Effort::Search }
     }
 
     /// Records that a frame of motion was sent. The first frame does not count as motion, because it paints the whole
     /// screen.
-    pub(crate) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
+    pub(crate) fn sent_motion(&mut self, bytes: usize, (fidelity, effort): (Fidelity, Effort)) {
+        let exact_bytes =
+            bytes as f64 * (1.0 + f64::from(fidelity.tolerance()) * saving_of(effort));
         if self.link.is_known() {
-            let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
-            self.exact_bytes = (self.exact_bytes * DECAY).max(bytes as f64 * saving);
+            self.exact_bytes = (self.exact_bytes * DECAY).max(exact_bytes);
         }
-    }
-
-    /// The best fidelity for a link that carries `rate` bytes per second.
-    fn fidelity_within(&self, rate: f64) -> Fidelity {
-        let excess = self.exact_bytes * FRAMES_PER_SECOND / rate;
-        let tolerance = (excess - 1.0).max(0.0) / SAVING;
-        Fidelity::new(tolerance.min(f64::from(MIN_FIDELITY.tolerance())).round() as u8)
+        if let Some(budget) = &mut self.budget {
+            budget.moved(exact_bytes);
+        }
     }
 
     fn frames_in_flight(&self) -> usize {
@@ -328,6 +379,19 @@ impl Flow {
         // Exponential backoff, as in RFC 6298.
         let factor = 1_u32.checked_shl(self.timeouts).unwrap_or(u32::MAX);
         first.saturating_mul(factor).min(MAX_TIMEOUT)
+    }
+}
+
+/// The best fidelity if exact frames take `excess` times the available bytes.
+fn fidelity_for(excess: f64, effort: Effort) -> Fidelity {
+    let tolerance = (excess - 1.0).max(0.0) / saving_of(effort);
+    Fidelity::new(tolerance.min(f64::from(MIN_FIDELITY.tolerance())).round() as u8)
+}
+
+fn saving_of(effort: Effort) -> f64 {
+    match effort {
+        Effort::Search => SAVING,
+        Effort::Greedy => GREEDY_SAVING,
     }
 }
 

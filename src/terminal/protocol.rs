@@ -16,6 +16,7 @@
 //! for each of them.
 
 use std::collections::VecDeque;
+use std::num::NonZero;
 use std::time::Duration;
 
 use crossterm::terminal::LeaveAlternateScreen;
@@ -27,8 +28,8 @@ use super::input::{Answer, Decoder, TerminalInput};
 use super::known::{TerminalProperties, TrueColorSupport};
 use super::sequence::{KeyFlags, TerminalChanges};
 use super::{
-    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Phase, QuitReason, Screen,
-    SessionOptions, TmuxClient, WindowSize, sequence,
+    CellWriter, ColorSource, Detected, Effort, Event, Fidelity, Key, KeyEvent, Phase, QuitReason,
+    Screen, SessionOptions, TmuxClient, WindowSize, sequence,
 };
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::tui::GlyphSet;
@@ -92,8 +93,8 @@ pub struct Protocol {
 /// The kind of a frame.
 #[derive(Clone, Copy, Debug)]
 enum FrameKind {
-    /// A new picture, at this fidelity.
-    Motion(Fidelity),
+    /// A new picture, at this fidelity and with this effort.
+    Motion(Fidelity, Effort),
     /// The last picture again, more exact.
     Refinement,
 }
@@ -488,10 +489,14 @@ impl Protocol {
     /// Draws a frame on a blank screen. The changes since the last frame are added to the
     /// [output](Protocol::output).
     pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) {
-        let fidelity = self.fidelity();
+        let (fidelity, effort) = match self.options.fidelity {
+            Some(fidelity) => (fidelity, self.flow.effort_at(fidelity)),
+            None => self.flow.quality(),
+        };
         self.writer.set_fidelity(fidelity);
+        self.writer.set_effort(effort);
         self.writer.draw_frame(render);
-        self.drawn = Some(FrameKind::Motion(fidelity));
+        self.drawn = Some(FrameKind::Motion(fidelity, effort));
     }
 
     /// Shows the last frame more exactly, unless it is exact.
@@ -521,6 +526,27 @@ impl Protocol {
         self.options.fidelity = fidelity;
     }
 
+    /// Limits the bytes per second that frames take on the wire. `None` means no limit.
+    pub fn set_budget(&mut self, bytes_per_second: Option<NonZero<u32>>) {
+        self.flow.set_budget(bytes_per_second);
+    }
+
+    /// The time from which on the budget allows the next frame. The caller decides whether to wait.
+    pub fn affords_at(&self) -> Duration {
+        self.flow.affords_at()
+    }
+
+    /// Records that the wire has carried frames of `bytes` bytes with `on_wire` bytes, so that the budget counts the
+    /// bytes after compression and encryption.
+    pub fn carried(&mut self, bytes: usize, on_wire: usize) {
+        self.flow.carried(bytes, on_wire);
+    }
+
+    /// Sets the effort to prefer for frames that are not exact. It is greedy if the processor is short.
+    pub fn set_effort(&mut self, effort: Effort) {
+        self.flow.set_effort(effort);
+    }
+
     /// Sets whether frames are restricted to ASCII. After a change, the next frame is sent in full.
     pub fn set_ascii(&mut self, is_ascii: bool) {
         if self.options.is_ascii != is_ascii {
@@ -531,7 +557,7 @@ impl Protocol {
 
     /// The current fidelity of frames of motion.
     pub fn fidelity(&self) -> Fidelity {
-        self.options.fidelity.unwrap_or_else(|| self.flow.fidelity())
+        self.options.fidelity.unwrap_or_else(|| self.flow.quality().0)
     }
 
     /// Returns true if a network makes frames of motion coarser than necessary. In that case, `ssh -C` helps if it is
@@ -539,7 +565,7 @@ impl Protocol {
     pub fn is_limited_by_network(&self) -> bool {
         self.options.is_remote
             && self.options.fidelity.is_none()
-            && self.flow.fidelity() > Fidelity::EXACT
+            && self.flow.quality().0 > Fidelity::EXACT
     }
 
     /// The round-trip time of the terminal's latest answer. `None` if the terminal does not answer.
@@ -599,8 +625,8 @@ impl Protocol {
             }
             self.queue_request(bytes, now);
         }
-        if let FrameKind::Motion(fidelity) = drawn {
-            self.flow.sent_motion(bytes, fidelity);
+        if let FrameKind::Motion(fidelity, effort) = drawn {
+            self.flow.sent_motion(bytes, (fidelity, effort));
         }
     }
 

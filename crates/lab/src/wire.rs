@@ -23,7 +23,7 @@ use crate::report::{Diagram, Table, headings};
 use cellcaster::app::Replay;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
-use cellcaster::terminal::Fidelity;
+use cellcaster::terminal::{Effort, Fidelity};
 pub(crate) use encoder::Sink;
 use encoder::{COLUMNS, Encoder, EncoderRun};
 pub use tour::{report_glyphs, report_palettes};
@@ -43,14 +43,24 @@ pub struct WirePlan<'a> {
     pub fidelities: &'a [Fidelity],
 }
 
-/// Plays the script of `plan`, and compares ratatui's encoder (`stock`), Cellcaster's at each
-/// fidelity, and Cellcaster's at each fidelity with repeated characters and a defined palette
-/// (`+`).
+/// Plays the script of `plan`, and compares ratatui's encoder (`stock`) with Cellcaster's at each
+/// fidelity: by search, by a greedy choice (`greedy`), and by search with repeated characters and a
+/// defined palette (`+`).
 pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
-    let ours = [false, true].into_iter().flat_map(|extensions| {
-        plan.fidelities.iter().map(move |&fidelity| {
-            let encoder = Encoder::ours(plan.size, plan.depth, fidelity, extensions);
-            (format!("{fidelity}{}", if extensions { "+" } else { "" }), encoder)
+    let kinds = [(Effort::Search, false), (Effort::Greedy, false), (Effort::Search, true)];
+    let ours = kinds.into_iter().flat_map(|(effort, extensions)| {
+        // An exact frame needs no choice.
+        let has_choice =
+            move |fidelity: &&Fidelity| effort == Effort::Search || **fidelity != Fidelity::EXACT;
+        plan.fidelities.iter().filter(has_choice).map(move |&fidelity| {
+            let mut encoder = Encoder::ours(plan.size, plan.depth, fidelity, extensions);
+            encoder.set_effort(effort);
+            let suffix = match effort {
+                Effort::Greedy => " greedy",
+                Effort::Search if extensions => "+",
+                Effort::Search => "",
+            };
+            (format!("{fidelity}{suffix}"), encoder)
         })
     });
     let mut runs: Vec<EncoderRun> = std::iter::once(("stock".to_owned(), Encoder::stock()))

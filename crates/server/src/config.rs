@@ -91,6 +91,9 @@ pub struct Config {
     pub empty_room: Duration,
     /// The most frames that a session receives in a second.
     pub frames_per_second: u32,
+    /// The most bytes that pictures for a session take on the wire in a second; 0 for no limit. A session keeps the
+    /// limit that it begins with.
+    pub player_bytes_per_second: u32,
     /// The rooms that always exist.
     pub standing: Vec<RoomWish>,
     /// The folder for recordings of rooms; `None` if rooms are not recorded.
@@ -121,6 +124,7 @@ impl Default for Config {
             watchers: 32,
             empty_room: Duration::from_mins(1),
             frames_per_second: 30,
+            player_bytes_per_second: 60_000,
             // One room to walk around in, and one to play in.
             standing: [Mode::Roam, Mode::Tag].map(in_mode).into(),
             recordings: None,
@@ -433,7 +437,7 @@ const TEXTS: [Setting<Config>; 5] = [
 ];
 
 /// The number settings, in the order of a file. They follow the texts.
-const NUMBERS: [Setting<Config>; 21] = [
+const NUMBERS: [Setting<Config>; 22] = [
     Setting {
         key: "connections",
         about: "the limit of visitors who have logged in",
@@ -541,6 +545,12 @@ const NUMBERS: [Setting<Config>; 21] = [
         key: "frames-per-second",
         about: "the limit of frames for each visitor in a second; fewer if the processor is busy",
         value: &Number(5..=60, NumberField::U32(|it| &mut it.frames_per_second)),
+    },
+    Setting {
+        key: "player-bytes-per-second",
+        about: "the limit of bytes to each visitor in a second, after compression; pictures that move are\n\
+                coarser or fewer, and pictures at rest become exact; 0 for no limit",
+        value: &Number(0..=1 << 30, NumberField::U32(|it| &mut it.player_bytes_per_second)),
     },
 ];
 

@@ -171,7 +171,7 @@ impl Hall {
             session.draw(view, self.now);
         }
         let output = std::mem::take(session.output(self.now));
-        session.written(self.now);
+        session.written(0, 0, self.now);
         self.answer(visitor);
         output
     }

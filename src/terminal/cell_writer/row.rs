@@ -18,8 +18,8 @@ use std::cell::Cell;
 use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
-use crate::terminal::Fidelity;
 use crate::terminal::cell_writer::block::{BlockElement, MosaicShape};
+use crate::terminal::cell_writer::greedy;
 use crate::terminal::cell_writer::ink::{self, Ink, Inks, Price};
 use crate::terminal::cell_writer::packed_cell::{Form, GlyphId, GlyphTable, PackedCell};
 use crate::terminal::cell_writer::pen::Pen;
@@ -29,6 +29,7 @@ use crate::terminal::cell_writer::style::{Notation, PackedColor, Style};
 use crate::terminal::cell_writer::trellis::{
     CellTarget, ColorTables, DrawAction, RowParameters, Trellis,
 };
+use crate::terminal::{Effort, Fidelity};
 use crate::tui::canvas::SHADES;
 
 /// Makes a row look like its target.
@@ -124,6 +125,8 @@ pub(crate) struct RowEncoder {
     /// The cost if the cells had moved.
     moved: Vec<[f32; 2]>,
     trellis: Trellis,
+    /// The actions on the row's cells, without the cells to keep.
+    actions: Vec<(u16, DrawAction)>,
 }
 
 /// The two colours of each cell in L\*a\*b\*, component by component, so that several distances are
@@ -148,10 +151,10 @@ impl RowEncoder {
         pen: &mut Pen,
         shifts: &mut Shifts,
         rows: impl Iterator<Item = ScreenRow<'a>>,
-        fidelity: Fidelity,
+        (fidelity, effort): (Fidelity, Effort),
     ) {
         let mut encoder = ENCODER.take().unwrap_or_default();
-        rows.for_each(|row| encoder.draw_row(pen, shifts, row, fidelity));
+        rows.for_each(|row| encoder.draw_row(pen, shifts, row, (fidelity, effort)));
         ENCODER.set(Some(encoder));
     }
 
@@ -161,7 +164,7 @@ impl RowEncoder {
         pen: &mut Pen,
         shifts: &mut Shifts,
         mut row: ScreenRow,
-        fidelity: Fidelity,
+        (fidelity, effort): (Fidelity, Effort),
     ) {
         if row.state.intricate {
             // The extent of an intricate character is unknown.
@@ -177,8 +180,12 @@ impl RowEncoder {
         let mut store = ColorTables { inks: &mut self.inks, palette: pen.palette() };
         let wanted =
             |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
-        let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
-        for &(column, action) in actions {
+        let (keep, actions) = (&self.keep, &mut self.actions);
+        match effort {
+            Effort::Search => self.trellis.search(keep, wanted, terms, &mut store, actions),
+            Effort::Greedy => greedy::choose(keep, wanted, terms, &mut store, actions),
+        }
+        for &(column, action) in &self.actions {
             match action {
                 DrawAction::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
                 DrawAction::Draw(element, style) => {

@@ -37,15 +37,15 @@ fn send(flow: &mut Flow, now: Duration, bytes: usize) {
 
 #[test]
 fn the_first_frame_over_a_network_is_coarse() {
-    assert_eq!(Flow::new(false).fidelity(), Fidelity::EXACT);
+    assert_eq!(Flow::new(false).quality().0, Fidelity::EXACT);
     let mut flow = Flow::new(true);
     flow.sent(Duration::ZERO, 0, Request::Status);
     flow.answered(100 * MILLISECOND);
-    assert_eq!(flow.fidelity(), FIRST_FIDELITY);
+    assert_eq!(flow.quality().0, FIRST_FIDELITY);
     send(&mut flow, SECOND, 14_000);
-    flow.sent_motion(14_000, FIRST_FIDELITY);
+    flow.sent_motion(14_000, (FIRST_FIDELITY, Effort::Search));
     flow.answered(SECOND + 128 * MILLISECOND);
-    assert_eq!(flow.fidelity(), Fidelity::EXACT, "nothing has moved yet");
+    assert_eq!(flow.quality().0, Fidelity::EXACT, "nothing has moved yet");
 }
 
 #[test]
@@ -133,8 +133,8 @@ fn a_terminal_that_ignores_requests_is_not_asked_again() {
     flow.written(1001 * MILLISECOND);
     assert!(flow.may_send(1001 * MILLISECOND));
     assert!(!flow.awaits_answers());
-    flow.sent_motion(1000, Fidelity::EXACT);
-    assert!(flow.fidelity() > Fidelity::EXACT, "a kilobyte a second is slow");
+    flow.sent_motion(1000, (Fidelity::EXACT, Effort::Search));
+    assert!(flow.quality().0 > Fidelity::EXACT, "a kilobyte a second is slow");
 }
 
 #[test]
@@ -205,9 +205,9 @@ proptest! {
                 FlowEvent::Key => flow.received_input(),
                 FlowEvent::Forget => flow.forget(),
                 FlowEvent::Draw(bytes) if flow.may_send(now) => {
-                    let fidelity = flow.fidelity();
+                    let fidelity = flow.quality().0;
                     send(&mut flow, now, bytes);
-                    flow.sent_motion(bytes, fidelity);
+                    flow.sent_motion(bytes, (fidelity, Effort::Search));
                 }
                 FlowEvent::Draw(_) if flow.probe_is_due(now) => {
                     flow.sent(now, 0, Request::Fence);
@@ -272,10 +272,10 @@ fn jitter_is_not_mistaken_for_slowness() {
 fn frames_become_exact_again_when_the_link_becomes_fast() {
     let mut line = Simulation::of_one(20 * MILLISECOND, 100_000.0, Frames::all_of(40_000));
     line.walk(5 * SECOND);
-    assert!(line.players[0].flow.fidelity() > Fidelity::EXACT);
+    assert!(line.players[0].flow.quality().0 > Fidelity::EXACT);
     line.conditions.rate = 10e6;
     line.walk(20 * SECOND);
-    assert_eq!(line.players[0].flow.fidelity(), Fidelity::EXACT);
+    assert_eq!(line.players[0].flow.quality().0, Fidelity::EXACT);
 }
 
 /// Rejected: removing frames after a timeout. Their late answers made a link of 100 ms look like a link of 0 to 17
@@ -322,6 +322,57 @@ fn two_sessions_share_a_link_fairly() {
         let frames = player.shown_since(2 * SECOND).len();
         assert!(frames >= 40 * 19, "{frames} frames in 40 s");
     }
+}
+
+/// On links from 20 kbit/s to none, with and without `ssh -C`.
+#[test]
+fn frames_stay_within_the_budget() {
+    for budget in [10_000, 60_000, 400_000] {
+        for rate in [0.02 * MEGABIT, MEGABIT, 10.0 * MEGABIT, UNLIMITED] {
+            for frames in [Frames::CITADEL, Frames::COMPRESSED] {
+                let conditions =
+                    Conditions { delay: 20 * MILLISECOND, jitter: Duration::ZERO, rate };
+                let mut line = Simulation::new(conditions, &[frames]);
+                line.players[0].flow.set_budget(NonZero::new(budget));
+                line.walk(32 * SECOND);
+                let player = &line.players[0];
+                let a_second = player.on_wire_since(2 * SECOND) / 30.0;
+                assert!(a_second <= 1.03 * f64::from(budget), "{a_second} of {budget} at {rate}");
+                let count = player.shown_since(2 * SECOND).len();
+                let is_enough = budget < 60_000 || rate < MEGABIT || count >= 30 * 17;
+                assert!(is_enough, "{count} frames in 30 s with {budget} at {rate}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_budget_that_is_not_reached_changes_nothing() {
+    let frames = |budget: Option<NonZero<u32>>| {
+        let mut line = Simulation::of_one(20 * MILLISECOND, 10.0 * MEGABIT, Frames::COMPRESSED);
+        line.players[0].flow.set_budget(budget);
+        line.walk(10 * SECOND);
+        let shown = line.players[0].shown_since(Duration::ZERO);
+        shown.iter().map(|one| (one.sent_at, one.fidelity, one.bytes)).collect::<Vec<_>>()
+    };
+    assert_eq!(frames(None), frames(NonZero::new(10_000_000)));
+}
+
+#[test]
+fn a_short_processor_makes_frames_greedy_only_where_they_can_be_fine() {
+    let efforts = [0, 200_000, 60_000, 10_000].map(|budget| {
+        let mut line = Simulation::of_one(MILLISECOND, UNLIMITED, Frames::CITADEL);
+        line.players[0].flow.set_budget(NonZero::new(budget));
+        line.walk(5 * SECOND);
+        let flow = &mut line.players[0].flow;
+        let (finest, effort) = flow.quality();
+        assert_eq!(effort, Effort::Search);
+        flow.set_effort(Effort::Greedy);
+        let (fidelity, effort) = flow.quality();
+        assert!(effort == Effort::Greedy || fidelity == finest);
+        effort
+    });
+    assert_eq!(efforts, [Effort::Greedy, Effort::Greedy, Effort::Greedy, Effort::Search]);
 }
 
 /// The frames in flight when a link becomes slow arrive before any new frame. Without waiting for late answers, and

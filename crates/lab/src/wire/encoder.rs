@@ -17,7 +17,7 @@ use cellcaster::color::Rgb;
 use cellcaster::color::lab::Lab;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
-use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::terminal::{CellWriter, Effort, Fidelity};
 use cellcaster::tui::canvas::Mosaic;
 use cellcaster::tui::rgb_of;
 
@@ -86,6 +86,13 @@ impl Encoder {
         writer.set_repeats(extensions);
         writer.set_palette(extensions && depth == ColorDepth::True);
         Self { sink, kind: Kind::Ours(Box::new(writer)) }
+    }
+
+    /// Sets the effort at fidelities that are not exact.
+    pub(crate) fn set_effort(&mut self, effort: Effort) {
+        if let Kind::Ours(writer) = &mut self.kind {
+            writer.set_effort(effort);
+        }
     }
 
     /// Appends the bytes of a frame to `bytes`, by the calls that ratatui's `Terminal` makes to its

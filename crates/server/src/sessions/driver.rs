@@ -276,6 +276,6 @@ async fn govern(shared: Weak<Shared>) {
         let Some(shared) = shared.upgrade() else { return };
         let most = shared.config.get().frames_per_second;
         let sample = shared.load.sample(GOVERNED);
-        shared.load.set_frame_time(governor.decide(sample, most));
+        shared.load.set_rate(governor.decide(sample, most));
     }
 }

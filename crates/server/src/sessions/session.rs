@@ -33,12 +33,14 @@ mod talk;
 mod tests;
 mod ui;
 
+use std::num::NonZero;
 use std::time::Duration;
 
 use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent, Way};
 use self::ui::Ui;
 use crate::bucket::Bucket;
+use crate::load::Rate;
 use crate::rooms::room::RoomView;
 use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
@@ -227,9 +229,11 @@ impl Session {
         self.protocol.output(now)
     }
 
-    /// Records that all bytes taken from the output have been sent.
-    pub(crate) fn written(&mut self, now: Duration) {
+    /// Records that all bytes taken from the output have been sent: `bytes` bytes, with `on_wire` bytes on the
+    /// wire.
+    pub(crate) fn written(&mut self, bytes: usize, on_wire: usize, now: Duration) {
         self.protocol.written(now);
+        self.protocol.carried(bytes, on_wire);
     }
 
     /// The time of the next [`wake`](Self::wake), and the next check whether a frame [is due](Self::is_due),
@@ -243,12 +247,18 @@ impl Session {
     /// [`wakes_at`](Self::wakes_at) is reached.
     pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
         let looks = self.ending == Ending::Not && self.protocol.is_ready(now);
-        looks.then(|| self.pace.next(self.answers_key.is_some()))
+        looks.then(|| self.next_frame(self.answers_key.is_some()))
     }
 
-    /// Sets the interval between frames.
-    pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
+    /// Limits the bytes per second that frames take on the wire. `None` means no limit.
+    pub(crate) fn set_budget(&mut self, bytes_per_second: Option<NonZero<u32>>) {
+        self.protocol.set_budget(bytes_per_second);
+    }
+
+    /// Sets the interval between frames and the effort for each.
+    pub(crate) fn set_rate(&mut self, Rate { frame_time, effort }: Rate) {
         self.pace.set_frame_time(frame_time);
+        self.protocol.set_effort(effort);
     }
 
     /// Returns true once the session has ended. The driver may then send the output and close the connection.
@@ -267,7 +277,12 @@ impl Session {
         }
         let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
-        Some(self.pace.next(is_prompt).max(now))
+        Some(self.next_frame(is_prompt).max(now))
+    }
+
+    /// The time of the next frame by the frame rate and the budget of bytes.
+    fn next_frame(&self, answers_key: bool) -> Duration {
+        self.pace.next(answers_key).max(self.protocol.affords_at())
     }
 
     /// Handles the terminal's events.

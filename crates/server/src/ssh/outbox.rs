@@ -35,6 +35,8 @@ pub(crate) struct Passage {
     is_closed: AtomicBool,
     /// The number of parts sent.
     parts: AtomicU64,
+    /// The number of bytes written to the socket.
+    on_wire: AtomicU64,
     /// The rest of the frame, not yet passed to russh.
     rest: Mutex<Option<Frame>>,
     changed: Notify,
@@ -72,6 +74,11 @@ impl Outbox {
     /// Returns true if a frame can be sent.
     pub fn is_empty(&self) -> bool {
         self.passage.is_empty()
+    }
+
+    /// The number of bytes that the connection has written to its socket, after compression and encryption.
+    pub fn on_wire(&self) -> u64 {
+        self.passage.on_wire.load(Ordering::Acquire)
     }
 
     /// Sends a frame. After the link has ended, frames are accepted and discarded.
@@ -114,11 +121,17 @@ impl Passage {
             state: AtomicU8::new(EMPTY),
             is_closed: AtomicBool::new(false),
             parts: AtomicU64::new(0),
+            on_wire: AtomicU64::new(0),
             rest: Mutex::default(),
             changed: Notify::new(),
             metrics,
             sink: OnceLock::new(),
         }
+    }
+
+    /// Called when the stream has written bytes to its socket.
+    pub(crate) fn wrote(&self, bytes: usize) {
+        self.on_wire.fetch_add(bytes as u64, Ordering::AcqRel);
     }
 
     /// Called when the stream has written all bytes passed to it.

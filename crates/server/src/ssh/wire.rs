@@ -204,6 +204,9 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
         if mem::replace(&mut self.is_full, written.is_pending()) && written.is_ready() {
             self.line.note_sign();
         }
+        if let Poll::Ready(Ok(count)) = written {
+            self.line.passage.wrote(count);
+        }
         written
     }
 

@@ -100,12 +100,14 @@ impl Simulation {
             self.put(number, 0.0, Fidelity::EXACT, Request::Fence);
         }
         let player = &mut self.players[number];
-        if now >= player.due && player.flow.may_send(now) {
-            let fidelity = player.flow.fidelity();
+        if now >= player.due.max(player.flow.affords_at()) && player.flow.may_send(now) {
+            let fidelity = player.flow.quality().0;
             let bytes = player.frames.bytes(now, fidelity, self.random.unit());
             self.send(number, bytes, fidelity);
             let player = &mut self.players[number];
-            player.flow.sent_motion(bytes as usize, fidelity);
+            player.flow.sent_motion(bytes as usize, (fidelity, Effort::Search));
+            let on_wire = bytes * player.frames.carried(fidelity);
+            player.flow.carried(bytes as usize, on_wire as usize);
             player.due = now + FRAME_TIME;
         }
     }
@@ -262,6 +264,12 @@ impl Player {
     /// The frames sent at `time` or later.
     pub(crate) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
         self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
+    }
+
+    /// The bytes on the wire of the frames that are sent at `time` or later.
+    pub(crate) fn on_wire_since(&self, time: Duration) -> f64 {
+        let frames = self.shown_since(time).into_iter();
+        frames.map(|shown| shown.bytes as f64 * self.frames.carried(shown.fidelity)).sum()
     }
 
     /// The longest time between two frames that arrive from `begin` until `end`.

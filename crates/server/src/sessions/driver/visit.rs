@@ -7,6 +7,7 @@
 //!   that place, they have left the room.
 
 use std::net::IpAddr;
+use std::num::NonZero;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -63,6 +64,8 @@ pub(crate) struct Driver {
     ends_at: Option<Duration>,
     /// Whether a frame is in flight.
     is_sending: bool,
+    /// The bytes of the frame in flight, and the bytes on the wire before it.
+    sent: (usize, u64),
     /// Whether the server is shutting down.
     is_draining: bool,
     /// Whether the host is looking for the place that the visitor had before.
@@ -139,10 +142,11 @@ impl Driver {
             compresses: visitor.compresses,
             ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
-            frame_time: shared.load.frame_time(),
+            frame_time: shared.load.rate().frame_time,
         };
         let now = shared.now();
-        let session = Session::new(identity, options, visitor.size, host, now);
+        let mut session = Session::new(identity, options, visitor.size, host, now);
+        session.set_budget(NonZero::new(config.player_bytes_per_second));
         let (replies, replied) = mpsc::channel(MAX_REPLIES);
         Self {
             session,
@@ -161,6 +165,7 @@ impl Driver {
             answers_key: None,
             ends_at: None,
             is_sending: false,
+            sent: (0, 0),
             is_draining: false,
             is_returning: false,
             shared,
@@ -190,6 +195,7 @@ impl Driver {
                 if bytes.is_empty() && self.session.is_over() {
                     return 0;
                 }
+                self.sent = (bytes.len(), outbox.on_wire());
                 self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
                 // An empty frame is never in flight.
                 self.answers_key.take_if(|_| !self.is_sending);
@@ -206,7 +212,9 @@ impl Driver {
                 DriverEvent::Arrived(Arrival::Drains) => self.drain(now),
                 DriverEvent::Arrived(Arrival::Ended) => return 0,
                 DriverEvent::Drained => {
-                    self.session.written(now);
+                    let (bytes, before) = self.sent;
+                    let on_wire = outbox.on_wire().saturating_sub(before);
+                    self.session.written(bytes, on_wire as usize, now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
                         self.shared.metrics.key_time.observe(now.saturating_sub(key));
@@ -252,8 +260,7 @@ impl Driver {
         }
         // The snapshot is dropped before the driver waits.
         let view = self.place.as_mut().and_then(Place::view);
-        let frame_time = self.shared.load.frame_time();
-        self.session.set_frame_time(frame_time);
+        self.session.set_rate(self.shared.load.rate());
         if self.session.is_due(view.as_deref(), now) {
             let session = &mut self.session;
             aside(session.is_large(), || session.draw(view.as_deref(), now));

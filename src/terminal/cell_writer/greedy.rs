@@ -1,0 +1,88 @@
+//! The greedy choice: for each cell of a row by itself, the action with the fewest bytes within the tolerance.
+//!
+//! A cell whose error is within the tolerance is kept. Another cell is drawn in the terminal's current colours if
+//! these are near enough, with one new colour if that suffices, and otherwise with two. This is the cheap alternative
+//! to the [search](super::trellis), which also weighs errors against bytes and looks ahead.
+
+use super::block::BlockElement;
+use super::ink::{Ink, Inks, Price};
+use super::style::Style;
+use super::trellis::{CellTarget, ColorTables, DrawAction, RowParameters};
+
+/// Appends the actions on the cells of a row to `actions`, without the cells to keep. The other parameters are those of
+/// [`Trellis::search`](super::trellis::Trellis::search).
+pub(crate) fn choose(
+    keep: &[[f32; 2]],
+    wanted: impl Fn(usize, &mut Inks) -> Option<CellTarget>,
+    RowParameters { price, style, .. }: RowParameters,
+    tables: &mut ColorTables,
+    actions: &mut Vec<(u16, DrawAction)>,
+) {
+    actions.clear();
+    let told = style.and_then(Style::plain_colors);
+    // The terminal's text and background colours. `None` if they are unknown.
+    let mut told = told.map(|colors| tables.inks.of_both(colors));
+    for (x, [one, other]) in keep.iter().enumerate() {
+        if one + other < f32::INFINITY {
+            continue;
+        }
+        let action = match wanted(x, tables.inks) {
+            None => {
+                told = None;
+                DrawAction::DrawExactly
+            }
+            Some(target) => {
+                let (element, inks) = draw(&target, told, price, tables);
+                told = Some(inks);
+                DrawAction::Draw(element, Style::plain(inks[0].shade, inks[1].shade))
+            }
+        };
+        actions.push((x as u16, action));
+    }
+}
+
+/// The element and the text and background colours with the fewest bytes that show `target`.
+fn draw(
+    target: &CellTarget,
+    told: Option<[Ink; 2]>,
+    price: Price,
+    tables: &mut ColorTables,
+) -> (BlockElement, [Ink; 2]) {
+    let [upper, lower] = target.inks;
+    let is_near = |shown: Ink, wanted: Ink| shown.distance(wanted) <= price.farthest;
+    let is_block = target.character.is_none();
+    let is_flat = is_block && is_near(upper, lower);
+    let mut code = |ink: Ink| tables.palette.telling(ink, ink.bytes(), price).ink;
+    let Some([text, ground]) = told else {
+        let upper = code(upper);
+        return if is_flat {
+            (BlockElement::Space, [upper, upper])
+        } else {
+            (BlockElement::Upper, [upper, code(lower)])
+        };
+    };
+    let [text_above, text_below] = [is_near(text, upper), is_near(text, lower)];
+    let [ground_above, ground_below] = [is_near(ground, upper), is_near(ground, lower)];
+    if is_block && ground_above && ground_below {
+        (BlockElement::Space, [text, ground])
+    } else if text_above && ground_below {
+        (BlockElement::Upper, [text, ground])
+    } else if is_block && ground_above && text_below {
+        (BlockElement::Lower, [text, ground])
+    } else if is_block && text_above && text_below {
+        (BlockElement::Full, [text, ground])
+    } else if is_flat {
+        (BlockElement::Space, [text, code(upper)])
+    } else if text_above {
+        (BlockElement::Upper, [text, code(lower)])
+    } else if ground_below {
+        (BlockElement::Upper, [code(upper), ground])
+    } else if is_block && ground_above {
+        (BlockElement::Lower, [code(lower), ground])
+    } else if is_block && text_below {
+        (BlockElement::Lower, [text, code(upper)])
+    } else {
+        let upper = code(upper);
+        (BlockElement::Upper, [upper, code(lower)])
+    }
+}

@@ -1,0 +1,67 @@
+//! A budget of bytes: a limit on the bytes that frames take on the wire, after compression.
+
+use std::num::NonZero;
+use std::time::Duration;
+
+/// A limit on the bytes per second, with the debt that earlier frames have left.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Budget {
+    bytes_per_second: f64,
+    /// The time at which all frames so far are paid for.
+    paid_at: Duration,
+    /// The bytes that the wire carries for each byte of a frame.
+    wire_share: f64,
+    /// The mean bytes that recent frames of motion would take if they were exact.
+    exact_bytes: f64,
+}
+
+/// A frame may be sent if it will be paid for within this time. The first frame of a picture takes several times the
+/// bytes of the others.
+const BURST: Duration = Duration::from_millis(250);
+/// The weight of the latest frame in means.
+const WEIGHT: f64 = 0.1;
+
+impl Budget {
+    /// A budget of this number of bytes per second.
+    pub(crate) fn new(bytes_per_second: NonZero<u32>) -> Self {
+        let bytes_per_second = f64::from(bytes_per_second.get());
+        Self { bytes_per_second, paid_at: Duration::ZERO, wire_share: 1.0, exact_bytes: 0.0 }
+    }
+
+    /// The number of bytes of frames that it allows per second.
+    fn rate(&self) -> f64 {
+        self.bytes_per_second / self.wire_share
+    }
+
+    /// Records that a frame of this number of bytes was sent.
+    pub(crate) fn sent(&mut self, now: Duration, bytes: usize) {
+        let time = Duration::from_secs_f64(bytes as f64 / self.rate());
+        self.paid_at = self.paid_at.max(now) + time;
+    }
+
+    /// Records that a frame of motion would have taken this number of bytes if it were exact.
+    pub(crate) fn moved(&mut self, exact_bytes: f64) {
+        self.exact_bytes += (exact_bytes - self.exact_bytes) * WEIGHT;
+    }
+
+    /// The bytes of exact frames at this rate, as a multiple of the budget.
+    ///
+    /// Rejected: the largest recent frame in place of the mean. Frames then took half of the budget, because the debt
+    /// of a large frame is paid by the smaller ones after it.
+    pub(crate) fn excess(&self, frames_per_second: f64) -> f64 {
+        self.exact_bytes * frames_per_second / self.rate()
+    }
+
+    /// Records that the wire has carried a frame of `bytes` bytes with `on_wire` bytes.
+    pub(crate) fn carried(&mut self, bytes: usize, on_wire: usize) {
+        if bytes > 0 && on_wire > 0 {
+            let share = on_wire as f64 / bytes as f64;
+            self.wire_share += (share - self.wire_share) * WEIGHT;
+        }
+    }
+
+    /// The time from which on the next frame may be sent.
+    pub(crate) fn affords_at(&self) -> Duration {
+        self.paid_at.saturating_sub(BURST)
+    }
+}
