@@ -143,17 +143,22 @@ impl SectorWalk<'_> {
             return None;
         }
         let projection = self.scene.projection;
-        let x = f64::from(right.columns.start);
-        let [of_left, of_right] =
-            [left, right].map(|it| FaceEdges::new(projection, &it.face).rows_at(x));
         // The border is between two columns; its ray is in the middle.
+        let x = f64::from(right.columns.start);
         let between = x - 0.5..x + 0.5;
-        let end = if of_left > of_right {
-            self.end_of_wall(visit, left, left.face.right_end(), &between)
-        } else {
-            self.end_of_wall(visit, right, right.face.left_end(), &between)
+        let end_of = |border: &Border, end: DVec2| {
+            let place = self.end_of_wall(visit, border, end, &between)?;
+            Some(place.max(between.start).min(between.end))
         };
-        let place = end?.max(between.start).min(between.end);
+        // The left wall ends there if it is the nearer one there. Nearness anywhere else is no evidence, because a
+        // wall that rays graze recedes within a column.
+        let is_nearer = |&place: &f64| {
+            let [of_left, of_right] =
+                [left, right].map(|it| FaceEdges::new(projection, &it.face).rows_at(place));
+            of_left >= of_right
+        };
+        let of_left = end_of(left, left.face.right_end()).filter(is_nearer);
+        let place = of_left.or_else(|| end_of(right, right.face.left_end()))?;
         Some(WallBorder { place })
     }
 
