@@ -83,8 +83,8 @@ fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> 
         return Ok(vec![start_sshd(&plan.program())?]);
     }
     let (program, options) = (plan.program(), plan.server_options());
-    let connections = plan.sessions + plan.silent;
-    let start = |number| ServerProcess::start(&program, &options, connections, number);
+    let (lines, connections) = (plan.configuration(), plan.sessions + plan.silent);
+    let start = |number| ServerProcess::start(&program, &options, (&lines, connections), number);
     (0..plan.hosts).map(start).collect()
 }
 

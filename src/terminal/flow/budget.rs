@@ -17,7 +17,9 @@ pub(crate) struct Budget {
 
 /// A frame may be sent if it will be paid for within this time. The first frame of a picture takes several times the
 /// bytes of the others.
-const BURST: Duration = Duration::from_millis(250);
+const BURST: Duration = Duration::from_secs(1);
+/// The share of the budget that frames aim at. Without a reserve, frames that answer keys wait for the budget.
+const USED: f64 = 0.85;
 /// The weight of the latest frame in means.
 const WEIGHT: f64 = 0.1;
 
@@ -49,7 +51,7 @@ impl Budget {
     /// Rejected: the largest recent frame in place of the mean. Frames then took half of the budget, because the debt
     /// of a large frame is paid by the smaller ones after it.
     pub(crate) fn excess(&self, frames_per_second: f64) -> f64 {
-        self.exact_bytes * frames_per_second / self.rate()
+        self.exact_bytes * frames_per_second / (self.rate() * USED)
     }
 
     /// Records that the wire has carried a frame of `bytes` bytes with `on_wire` bytes.

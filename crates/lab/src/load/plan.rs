@@ -28,6 +28,12 @@ pub(crate) struct Load {
     /// How long each client waits before it answers a query of the server, in milliseconds
     #[arg(long, value_name = "MS", default_value_t = 0)]
     answer_delay: u64,
+    /// The server's limit of frames a second
+    #[arg(long = "fps", value_name = "N", default_value_t = 30)]
+    frames_per_second: u32,
+    /// The server's limit of bytes a second to each player [default: the server's own]
+    #[arg(long = "bytes", value_name = "N")]
+    bytes_per_second: Option<u32>,
     /// The number of hosts in a cluster; more than one needs --cluster and --store
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) hosts: usize,
@@ -62,6 +68,13 @@ impl Load {
     /// The time before a client answers a query.
     pub(crate) fn answer_delay(&self) -> Duration {
         Duration::from_millis(self.answer_delay)
+    }
+
+    /// Lines for the server's configuration.
+    pub(crate) fn configuration(&self) -> String {
+        let rate = format!("frames-per-second = {}\n", self.frames_per_second);
+        let budget = self.bytes_per_second.map(|it| format!("player-bytes-per-second = {it}\n"));
+        rate + &budget.unwrap_or_default()
     }
 
     /// The options for each server.

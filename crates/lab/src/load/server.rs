@@ -31,12 +31,12 @@ pub(crate) enum Access {
 }
 
 impl ServerProcess {
-    /// Starts `program` with these additional options, for this number of connections. Its `number`
-    /// among the servers of this run determines its processor.
+    /// Starts `program` with these additional options and lines of its configuration, for this number
+    /// of connections. Its `number` among the servers of this run determines its processor.
     pub(crate) fn start(
         program: &str,
         options: &[String],
-        connections: usize,
+        (lines, connections): (&str, usize),
         number: usize,
     ) -> Result<Self, Box<dyn Error>> {
         let folder = folder(number)?;
@@ -48,7 +48,7 @@ impl ServerProcess {
             &config,
             format!(
                 "connections = {most}\nconnections-per-address = {most}\nstartups = {most}\n\
-                 stall-seconds = 600\n\
+                 stall-seconds = 600\n{lines}\
                  [metrics]\nlisten = \"{metrics}\"\n"
             ),
         )?;

@@ -29,7 +29,8 @@ const AFTERWARDS: Duration = Duration::from_secs(90);
 
 /// Lets clients come and go.
 pub(crate) fn run(plan: &Load) -> Result<(), Box<dyn Error>> {
-    let server = ServerProcess::start(&plan.program(), &[], 2 * plan.sessions, 0)?;
+    let server =
+        ServerProcess::start(&plan.program(), &[], (&plan.configuration(), 2 * plan.sessions), 0)?;
     Builder::new_current_thread().enable_all().build()?.block_on(soak(plan, &server))
 }
 

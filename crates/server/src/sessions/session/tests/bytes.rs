@@ -6,6 +6,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::*;
+use crate::config::Config;
 use crate::rooms::room::Catalog;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
@@ -14,6 +15,7 @@ use cellcaster::terminal::Fidelity;
 fn walk(fidelity: Fidelity) -> Vec<Vec<u8>> {
     let catalog = Catalog::builtin();
     let mut rig = Rig::with(Wish { catalog, level: "museum", ..Wish::new(Mode::Roam) });
+    rig.live.replace(Config { player_bytes_per_second: 0, ..Config::default() });
     let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
     rig.session(one, move |session, _| session.protocol.set_fidelity(Some(fidelity)));
     for _ in 0..3 {
