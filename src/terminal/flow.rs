@@ -277,6 +277,11 @@ impl Flow {
         (self.awaits_answers() && !is_silent).then_some(due)
     }
 
+    /// The least time between two frames of motion under the budget.
+    pub(crate) fn frame_time(&self) -> Duration {
+        self.budget.map(|budget| budget.frame_time()).unwrap_or_default()
+    }
+
     /// The time from which on the budget allows the next frame.
     pub(crate) fn affords_at(&self) -> Duration {
         self.budget.map(|budget| budget.affords_at()).unwrap_or_default()
@@ -312,7 +317,7 @@ impl Flow {
         }
         let of_link =
             self.link.usable_rate().map(|rate| self.exact_bytes * FRAMES_PER_SECOND / rate);
-        let of_budget = self.budget.map(|budget| budget.excess(FRAMES_PER_SECOND));
+        let of_budget = self.budget.map(|budget| budget.excess());
         let excess = of_link.into_iter().chain(of_budget).fold(0.0, f64::max);
         let fidelity = fidelity_for(excess, self.effort);
         match self.effort_at(fidelity) {

@@ -531,6 +531,11 @@ impl Protocol {
         self.flow.set_budget(bytes_per_second);
     }
 
+    /// The least time between two frames of motion under the budget. Zero if the budget allows exact frames.
+    pub fn frame_time(&self) -> Duration {
+        self.flow.frame_time()
+    }
+
     /// The time from which on the budget allows the next frame. The caller decides whether to wait.
     pub fn affords_at(&self) -> Duration {
         self.flow.affords_at()

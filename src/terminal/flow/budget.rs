@@ -18,6 +18,8 @@ pub(crate) struct Budget {
 /// A frame may be sent if it will be paid for within this time. The first frame of a picture takes several times the
 /// bytes of the others.
 const BURST: Duration = Duration::from_secs(1);
+/// The interval of frames for which the budget is planned.
+const FRAME_TIME: Duration = Duration::from_millis(50);
 /// The share of the budget that frames aim at. Without a reserve, frames that answer keys wait for the budget.
 const USED: f64 = 0.85;
 /// The weight of the latest frame in means.
@@ -46,12 +48,17 @@ impl Budget {
         self.exact_bytes += (exact_bytes - self.exact_bytes) * WEIGHT;
     }
 
-    /// The bytes of exact frames at this rate, as a multiple of the budget.
+    /// The bytes of exact frames, one in each [`FRAME_TIME`], as a multiple of the budget.
     ///
     /// Rejected: the largest recent frame in place of the mean. Frames then took half of the budget, because the debt
     /// of a large frame is paid by the smaller ones after it.
-    pub(crate) fn excess(&self, frames_per_second: f64) -> f64 {
-        self.exact_bytes * frames_per_second / (self.rate() * USED)
+    pub(crate) fn excess(&self) -> f64 {
+        self.exact_bytes / FRAME_TIME.as_secs_f64() / (self.rate() * USED)
+    }
+
+    /// The least time between two frames: more frames would be coarser. Zero if all frames can be exact.
+    pub(crate) fn frame_time(&self) -> Duration {
+        if self.excess() > 1.0 { FRAME_TIME } else { Duration::ZERO }
     }
 
     /// Records that the wire has carried a frame of `bytes` bytes with `on_wire` bytes.

@@ -257,7 +257,7 @@ impl Session {
 
     /// Sets the interval between frames and the effort for each.
     pub(crate) fn set_rate(&mut self, Rate { frame_time, effort }: Rate) {
-        self.pace.set_frame_time(frame_time);
+        self.pace.set_frame_time(frame_time.max(self.protocol.frame_time()));
         self.protocol.set_effort(effort);
     }
 

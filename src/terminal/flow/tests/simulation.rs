@@ -108,7 +108,7 @@ impl Simulation {
             player.flow.sent_motion(bytes as usize, (fidelity, Effort::Search));
             let on_wire = bytes * player.frames.carried(fidelity);
             player.flow.carried(bytes as usize, on_wire as usize);
-            player.due = now + FRAME_TIME;
+            player.due = now + FRAME_TIME.max(player.flow.frame_time());
         }
     }
 
