@@ -14,7 +14,9 @@ pub(crate) struct Host {
 }
 
 /// One room, in the same map that [`PLAY`](super::PLAY) plays behind sshd.
-const CONFIGURATION: &str = "[[room]]\nmode = \"roam\"\nlevel = \"walks\"\n";
+/// Without a budget of bytes, because sshd has none.
+const CONFIGURATION: &str =
+    "player-bytes-per-second = 0\n[[room]]\nmode = \"roam\"\nlevel = \"walks\"\n";
 const MAP: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/citadel.toml"));
 
 impl Host {

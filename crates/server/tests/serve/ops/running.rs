@@ -167,7 +167,11 @@ fn spawn(
         .spawn()
         .unwrap();
     let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
-    let line = lines.find(|line| line.as_ref().unwrap().contains("ssh -p ")).unwrap().unwrap();
+    let line = lines.find(|line| line.as_ref().unwrap().contains("ssh -p "));
+    let line = line.unwrap_or_else(|| {
+        panic!("the server ended; its log:\n{}", fs::read_to_string(folder.join("log")).unwrap())
+    });
+    let line = line.unwrap();
     let (_, rest) = line.split_once("ssh -p ").unwrap();
     let port = rest.split(' ').next().unwrap().to_owned();
     (process, port)
