@@ -127,7 +127,7 @@ impl Game {
         });
     }
 
-    /// Moves the missiles and applies the effects of those that have ended.
+    /// Moves the missiles and applies the effects of missiles that have ended.
     pub(crate) fn move_missiles(&mut self) {
         if self.missiles.is_empty() {
             return;

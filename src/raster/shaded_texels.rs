@@ -2,7 +2,7 @@
 //!
 //! All texels of a batch are in one array of constant size. An address is an integer whose
 //! uppermost bits are the index, so a lookup needs no bounds check. Neighbouring columns with the
-//! same texels and the same lighting, such as those of a near wall, share a range.
+//! same texels and the same lighting, such as the columns of a near wall, share a range.
 
 use crate::color::Rgb;
 use crate::visibility::{Lighting, TextureStepper};

@@ -15,12 +15,11 @@
 //! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
 //! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
-//! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The rate is
-//! that of the link or of a [budget], whichever is lower. Frames that exceed the budget in spite of that become fewer.
+//! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The link
+//! limits the rate, and so may a [budget]. If frames still exceed the budget, there are fewer of them.
 //!
-//! If the processor is short, frames are encoded greedily, which takes a third of the time and more bytes. On a link
-//! or a budget that is too narrow for greedy frames, the search still pays off, because greedy frames would be fewer or
-//! coarser than it makes them.
+//! If the processor is short, frames are encoded greedily, which takes a third of the time and more bytes. If greedy
+//! frames would be coarser than low fidelity, they are searched all the same.
 //!
 //! This module has neither a clock nor a terminal. Its functions receive events and their times, which are durations
 //! since any fixed moment.

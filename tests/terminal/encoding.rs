@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use cellcaster::color::Rgb as Pixel;
 use cellcaster::color::palette::{ColorDepth, of_256};
-use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::terminal::{CellWriter, Effort, Fidelity};
 use cellcaster::tui::GlyphSet;
 use cellcaster::tui::canvas::{Canvas, Mosaic};
 use proptest::prelude::*;
@@ -442,9 +442,13 @@ proptest! {
         tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
         way in prop::sample::select(vec![Way::Backend, Way::Canvas]),
         is_shorter: bool,
+        is_greedy: bool,
     ) {
         let size = history[0].area.as_size();
         let mut screens = Screens::shorter(way, size, Fidelity::new(tolerance), is_shorter);
+        if is_greedy {
+            screens.terminal.backend_mut().set_effort(Effort::Greedy);
+        }
         for picture in &history {
             screens.draw(picture);
             let distance = screens.largest_distance(picture);

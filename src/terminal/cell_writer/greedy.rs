@@ -9,8 +9,8 @@ use super::ink::{Ink, Inks, Price};
 use super::style::Style;
 use super::trellis::{CellTarget, ColorTables, DrawAction, RowParameters};
 
-/// Appends the actions on the cells of a row to `actions`, without the cells to keep. The other parameters are those of
-/// [`Trellis::search`](super::trellis::Trellis::search).
+/// Appends the actions on the cells of a row to `actions`, without the cells to keep. The other parameters are the
+/// parameters of [`Trellis::search`](super::trellis::Trellis::search).
 pub(crate) fn choose(
     keep: &[[f32; 2]],
     wanted: impl Fn(usize, &mut Inks) -> Option<CellTarget>,

@@ -194,7 +194,7 @@ impl Rooms {
         _ = timeout(ENDING, all_closed).await;
     }
 
-    /// Opens the missing standing rooms, and lets those that are no longer wanted close.
+    /// Opens the missing standing rooms, and lets rooms that are no longer wanted close.
     fn open_standing(&self) {
         let (mut missing, closes_after) =
             locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));

@@ -435,7 +435,7 @@ struct InboxState {
     is_closed: bool,
     most: usize,
     next: u32,
-    /// Members who have joined, including those that the room does not know yet.
+    /// Members who have joined, including members that the room does not know yet.
     seats: Vec<InboxSeat>,
     /// The number of seats that were ever taken.
     seats_taken: u64,
