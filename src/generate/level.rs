@@ -15,9 +15,9 @@ use crate::fault::Faults;
 ///
 /// ```
 /// use cellcaster::game::Game;
-/// use cellcaster::generate::{Extent, Generator, Level};
+/// use cellcaster::generate::{Extent, GeneratedLevel, Generator};
 ///
-/// let level = Level::new(Generator::Maze.terrain(7), Extent::Endless)?;
+/// let level = GeneratedLevel::new(Generator::Maze.terrain(7), Extent::Endless)?;
 /// let start = level.start().unwrap();
 /// let game = Game::in_level(level, start).unwrap();
 /// assert_eq!(game.site(), Some(start));

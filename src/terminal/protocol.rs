@@ -45,10 +45,10 @@ use crate::tui::GlyphSet;
 /// use std::time::Duration;
 ///
 /// use cellcaster::tui::canvas::Canvas;
-/// use cellcaster::terminal::{Event, Key, Options, Protocol, WindowSize};
+/// use cellcaster::terminal::{Event, Key, Protocol, SessionOptions, WindowSize};
 /// use ratatui::style::Color;
 ///
-/// let options = Options::from_environment(|name| (name == "TERM").then(|| "xterm".to_owned()));
+/// let options = SessionOptions::from_environment(|name| (name == "TERM").then(|| "xterm".to_owned()));
 /// let mut protocol = Protocol::new(options, WindowSize::of_cells(80, 24));
 /// let now = Duration::ZERO;
 /// protocol.begin(now);
