@@ -282,8 +282,8 @@ impl Flow {
     }
 
     /// The time from which on the budget allows the next frame.
-    pub(crate) fn affords_at(&self) -> Duration {
-        self.budget.map(|budget| budget.affords_at()).unwrap_or_default()
+    pub(crate) fn budget_opens_at(&self) -> Duration {
+        self.budget.map(|budget| budget.opens_at()).unwrap_or_default()
     }
 
     /// Returns true while answers may arrive.
@@ -339,7 +339,7 @@ impl Flow {
             self.exact_bytes = (self.exact_bytes * DECAY).max(exact_bytes);
         }
         if let Some(budget) = &mut self.budget {
-            budget.moved(exact_bytes);
+            budget.sent_motion(exact_bytes);
         }
     }
 

@@ -537,8 +537,8 @@ impl Protocol {
     }
 
     /// The time from which on the budget allows the next frame. The caller decides whether to wait.
-    pub fn affords_at(&self) -> Duration {
-        self.flow.affords_at()
+    pub fn budget_opens_at(&self) -> Duration {
+        self.flow.budget_opens_at()
     }
 
     /// Records that the wire has carried frames of `bytes` bytes with `on_wire` bytes, so that the budget counts the

@@ -132,7 +132,7 @@ pub(crate) struct Governor {
 }
 
 /// The lowest rate, in frames a second.
-const MIN: f64 = 5.0;
+const MIN_RATE: f64 = 5.0;
 /// The busy share that the governor aims at while it limits the rate.
 const TARGET: f64 = 0.95;
 /// The busy share from which the processor counts as full.
@@ -156,7 +156,7 @@ impl Governor {
 
     /// The rate of each session. `most` is the configured limit in frames a second.
     pub(crate) fn decide(&mut self, Sample { busy, lateness }: Sample, most: u32) -> Rate {
-        let most = f64::from(most).max(MIN);
+        let most = f64::from(most).max(MIN_RATE);
         let is_full = busy >= FULL || lateness >= LATE;
         if is_full || busy >= GREEDY_FROM {
             self.effort = Effort::Greedy;
@@ -164,7 +164,7 @@ impl Governor {
             self.effort = Effort::Search;
         }
         let factor = if is_full { 0.8 } else { (TARGET / busy).min(MAX_RISE) };
-        self.rate = (self.rate.min(most) * factor).clamp(MIN, most);
+        self.rate = (self.rate.min(most) * factor).clamp(MIN_RATE, most);
         Rate { frame_time: Duration::from_secs_f64(1.0 / self.rate), effort: self.effort }
     }
 }
@@ -238,11 +238,11 @@ mod tests {
             most in 1_u32..240,
         ) {
             let mut governor = Governor::new();
-            let mut last = f64::from(most).max(MIN);
+            let mut last = f64::from(most).max(MIN_RATE);
             for (busy, lateness) in samples {
                 let sample = Sample { busy, lateness: Duration::from_millis(lateness) };
                 let rate = frames_a_second(governor.decide(sample, most));
-                prop_assert!(rate > MIN - 0.01 && rate < f64::from(most).max(MIN) + 0.01);
+                prop_assert!(rate > MIN_RATE - 0.01 && rate < f64::from(most).max(MIN_RATE) + 0.01);
                 prop_assert!(rate > last * 0.79 && rate < last * 1.051);
                 last = rate;
             }

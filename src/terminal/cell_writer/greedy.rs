@@ -19,21 +19,21 @@ pub(crate) fn choose(
     actions: &mut Vec<(u16, DrawAction)>,
 ) {
     actions.clear();
-    let told = style.and_then(Style::plain_colors);
-    // The terminal's text and background colours. `None` if they are unknown.
-    let mut told = told.map(|colors| tables.inks.of_both(colors));
+    let colors = style.and_then(Style::plain_colors);
+    // `None` if the terminal's colours are unknown.
+    let mut current = colors.map(|colors| tables.inks.of_both(colors));
     for (x, [one, other]) in keep.iter().enumerate() {
         if one + other < f32::INFINITY {
             continue;
         }
         let action = match wanted(x, tables.inks) {
             None => {
-                told = None;
+                current = None;
                 DrawAction::DrawExactly
             }
             Some(target) => {
-                let (element, inks) = draw(&target, told, price, tables);
-                told = Some(inks);
+                let (element, inks) = draw(&target, current, price, tables);
+                current = Some(inks);
                 DrawAction::Draw(element, Style::plain(inks[0].shade, inks[1].shade))
             }
         };
@@ -41,10 +41,11 @@ pub(crate) fn choose(
     }
 }
 
-/// The element and the text and background colours with the fewest bytes that show `target`.
+/// The element and the text and background colours with the fewest bytes after the `current` colours that show
+/// `target`.
 fn draw(
     target: &CellTarget,
-    told: Option<[Ink; 2]>,
+    current: Option<[Ink; 2]>,
     price: Price,
     tables: &mut ColorTables,
 ) -> (BlockElement, [Ink; 2]) {
@@ -53,7 +54,7 @@ fn draw(
     let is_block = target.character.is_none();
     let is_flat = is_block && is_near(upper, lower);
     let mut code = |ink: Ink| tables.palette.telling(ink, ink.bytes(), price).ink;
-    let Some([text, ground]) = told else {
+    let Some([text, ground]) = current else {
         let upper = code(upper);
         return if is_flat {
             (BlockElement::Space, [upper, upper])

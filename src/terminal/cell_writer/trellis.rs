@@ -256,9 +256,9 @@ const BOTH: u8 = 2;
 const ONE_COLOR: f32 = 3.0;
 const TWO_COLORS: f32 = 4.0;
 /// The smallest number of bytes of a colour's parameters.
-const MIN_COLOR: f32 = 2.0;
+const MIN_COLOR_BYTES: f32 = 2.0;
 /// The smallest number of bytes of a palette entry's parameters.
-const MIN_ENTRY: f32 = 7.0;
+const MIN_ENTRY_BYTES: f32 = 7.0;
 /// The approximate number of bytes of one repetition of the last block.
 const REPETITION: f32 = 0.5;
 
@@ -299,7 +299,7 @@ impl<'a> Branches<'a> {
             Some(_) => self.draw_character(&errors, survivors),
             None => self.draw_in_old_colors(&mut blocks, survivors),
         }
-        if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + MIN_COLOR) {
+        if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + MIN_COLOR_BYTES) {
             self.draw_in_new_colors(&errors, survivors, store);
         }
     }
@@ -433,8 +433,10 @@ impl<'a> Branches<'a> {
         self.offer_for_both(survivors, below, LOWER);
         // Halfway between two colours, the errors add up to at least their distance.
         let apart = upper.distance(lower);
-        let least =
-            ONE_COLOR + SPACE + MIN_COLOR + apart * min(self.prices[0].bytes, self.prices[1].bytes);
+        let least = ONE_COLOR
+            + SPACE
+            + MIN_COLOR_BYTES
+            + apart * min(self.prices[0].bytes, self.prices[1].bytes);
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
@@ -524,7 +526,7 @@ impl<'a> Branches<'a> {
 /// The smallest number of parameter bytes of a colour that takes `bytes` itself, or of an entry in its place.
 #[inline]
 fn shortest(bytes: f32, palette: &TerminalPalette) -> f32 {
-    if palette.is_on() { min(bytes, MIN_ENTRY) } else { bytes }
+    if palette.is_on() { min(bytes, MIN_ENTRY_BYTES) } else { bytes }
 }
 
 // The longer of the following functions are not inlined. On their own they compile to vector instructions, four paths

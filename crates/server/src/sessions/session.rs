@@ -282,7 +282,7 @@ impl Session {
 
     /// The time of the next frame by the frame rate and the budget of bytes.
     fn next_frame(&self, answers_key: bool) -> Duration {
-        self.pace.next(answers_key).max(self.protocol.affords_at())
+        self.pace.next(answers_key).max(self.protocol.budget_opens_at())
     }
 
     /// Handles the terminal's events.

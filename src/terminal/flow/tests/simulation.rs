@@ -100,7 +100,7 @@ impl Simulation {
             self.put(number, 0.0, Fidelity::EXACT, Request::Fence);
         }
         let player = &mut self.players[number];
-        if now >= player.due.max(player.flow.affords_at()) && player.flow.may_send(now) {
+        if now >= player.due.max(player.flow.budget_opens_at()) && player.flow.may_send(now) {
             let fidelity = player.flow.quality().0;
             let bytes = player.frames.bytes(now, fidelity, self.random.unit());
             self.send(number, bytes, fidelity);
