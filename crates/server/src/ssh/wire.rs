@@ -5,9 +5,13 @@
 //! be it keys, empty packets or key exchanges, costs the server no more than that. Compressed input is
 //! limited a second time, on its [way](super::inbound) to the session.
 //!
+//! russh reads the length of a packet and its rest one by one. A key is one packet, so a buffer of [`READ_AHEAD`] bytes
+//! saves a system call for each key and each answer of a terminal.
+//!
 //! russh allocates memory for a packet, up to 256 KB, as soon as its length has arrived, and then reads the
 //! packet at once. A read larger than any packet allowed on this server's channel ends the connection.
 
+use std::ops::Range;
 use std::pin::Pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -47,6 +51,9 @@ pub(crate) struct Wire<S> {
     line: Arc<ConnectionState>,
     bucket: Bucket,
     pause: Pin<Box<Sleep>>,
+    /// Bytes that were read from the socket but not yet by russh: the range `ahead` of `buffer`.
+    buffer: [u8; READ_AHEAD],
+    ahead: Range<usize>,
     /// Whether the last write found the socket full.
     is_full: bool,
 }
@@ -72,6 +79,8 @@ const BURST: f64 = 4.0;
 pub(crate) const MIN_READ: f64 = 1024.0;
 /// The largest allowed read, in bytes. Packets have 32 KB plus framing (RFC 4253, section 6.1).
 const MAX_PACKET_BYTES: usize = 35_000;
+/// The size of the buffer for reads, in bytes: several keys.
+const READ_AHEAD: usize = 256;
 const READER: usize = 0;
 const WRITER: usize = 1;
 
@@ -79,7 +88,8 @@ impl<S> Wire<S> {
     pub(crate) fn new(socket: S, line: Arc<ConnectionState>) -> Self {
         let bucket = line.limits.bucket(line.begun.elapsed());
         let pause = Box::pin(sleep_until(Instant::now()));
-        Self { socket, line, bucket, pause, is_full: false }
+        let buffer = [0; READ_AHEAD];
+        Self { socket, line, bucket, pause, buffer, ahead: 0..0, is_full: false }
     }
 }
 
@@ -163,11 +173,27 @@ impl<S> Wire<S> {
         }
     }
 
-    fn received(&mut self, bytes: &[u8]) {
-        self.line.read.fetch_add(bytes.len() as u64, Ordering::Relaxed);
-        self.line.note_sign();
-        self.bucket.take(bytes.len() as f64);
-        locked(&self.line.hello, |hello| hello.receive(bytes));
+}
+
+impl<S: AsyncRead + Unpin> Wire<S> {
+    /// Reads at most `most` bytes from the socket to `buffer`. Returns the number of bytes.
+    fn read(
+        &mut self,
+        cx: &mut Context<'_>,
+        buffer: &mut [u8],
+        most: usize,
+    ) -> Poll<io::Result<usize>> {
+        let most = most.min(buffer.len());
+        let mut part = ReadBuf::new(&mut buffer[..most]);
+        ready!(Pin::new(&mut self.socket).poll_read(cx, &mut part))?;
+        let bytes = part.filled();
+        if !bytes.is_empty() {
+            self.line.read.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+            self.line.note_sign();
+            self.bucket.take(bytes.len() as f64);
+            locked(&self.line.hello, |hello| hello.receive(bytes));
+        }
+        Poll::Ready(Ok(bytes.len()))
     }
 }
 
@@ -181,14 +207,21 @@ impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
         if buffer.remaining() > MAX_PACKET_BYTES {
             return Poll::Ready(Err(io::ErrorKind::FileTooLarge.into()));
         }
-        let most = ready!(self.allowance(cx))?.min(buffer.remaining());
-        let mut part = ReadBuf::new(buffer.initialize_unfilled_to(most));
-        ready!(Pin::new(&mut self.socket).poll_read(cx, &mut part))?;
-        let count = part.filled().len();
-        if count > 0 {
-            self.received(part.filled());
+        if self.ahead.is_empty() {
+            let most = ready!(self.allowance(cx))?;
+            if buffer.remaining() >= READ_AHEAD {
+                let count = ready!(self.read(cx, buffer.initialize_unfilled(), most))?;
+                buffer.advance(count);
+                return Poll::Ready(Ok(()));
+            }
+            let mut ahead = [0; READ_AHEAD];
+            self.ahead = 0..ready!(self.read(cx, &mut ahead, most))?;
+            self.buffer = ahead;
         }
-        buffer.advance(count);
+        let count = self.ahead.len().min(buffer.remaining());
+        let first = self.ahead.start;
+        buffer.put_slice(&self.buffer[first..first + count]);
+        self.ahead.start += count;
         Poll::Ready(Ok(()))
     }
 }
