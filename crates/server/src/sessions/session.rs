@@ -236,11 +236,25 @@ impl Session {
         self.protocol.carried(bytes, on_wire);
     }
 
+    /// The time from which on the driver must know at once that a frame has been sent. Until then, the terminal's
+    /// answer comes first in most cases, so that one event tells of both.
+    pub(crate) fn needs_drain_at(&self) -> Duration {
+        let Self { protocol, ui, .. } = self;
+        let is_answered = protocol.round_trip().is_some()
+            && protocol.frames_answered() < protocol.frames_sent();
+        if is_answered && ui.stay.is_some() { self.next_frame(false) } else { Duration::ZERO }
+    }
+
     /// The time of the next [`wake`](Self::wake), and the next check whether a frame [is due](Self::is_due),
     /// if nothing happens before; `None` for never.
     pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        self.due_at(room, now).into_iter().chain(self.acts_at()).min()
+    }
+
+    /// The time of the next [`wake`](Self::wake) if nothing happens before; `None` for never.
+    pub(crate) fn acts_at(&self) -> Option<Duration> {
         let ui = self.ui.wakes_at().filter(|_| self.ending == Ending::Not);
-        self.due_at(room, now).into_iter().chain(ui).chain(self.protocol.wakes_at()).min()
+        ui.into_iter().chain(self.protocol.wakes_at()).min()
     }
 
     /// The earliest time at which a newer snapshot may lead to a frame; `None` until the terminal replies or

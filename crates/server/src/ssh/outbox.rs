@@ -13,12 +13,14 @@ use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 use std::task::{Context, Poll, Waker};
+use std::time::Duration;
 
 use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
 use tokio::task::{unconstrained, yield_now};
+use tokio::time::Instant;
 
 use crate::lock::locked;
 use crate::metrics::Metrics;
@@ -37,6 +39,9 @@ pub(crate) struct Passage {
     parts: AtomicU64,
     /// The number of bytes written to the socket.
     on_wire: AtomicU64,
+    begun: Instant,
+    /// The time since `begun` at which the last frame drained, in microseconds.
+    drained_at: AtomicU64,
     /// The rest of the frame, not yet passed to russh.
     rest: Mutex<Option<Frame>>,
     changed: Notify,
@@ -76,6 +81,17 @@ impl Outbox {
         self.passage.is_empty()
     }
 
+    /// Returns true if the last frame has drained or the link has ended.
+    pub(crate) fn has_drained(&self) -> bool {
+        self.is_empty() || self.passage.is_closed.load(Ordering::Acquire)
+    }
+
+    /// The time at which the last frame drained.
+    pub(crate) fn drained_at(&self) -> Instant {
+        let micros = self.passage.drained_at.load(Ordering::Acquire);
+        self.passage.begun + Duration::from_micros(micros)
+    }
+
     /// The number of bytes that the connection has written to its socket, after compression and encryption.
     pub fn on_wire(&self) -> u64 {
         self.passage.on_wire.load(Ordering::Acquire)
@@ -105,7 +121,7 @@ impl Outbox {
     /// Do not use [`Outbox::is_empty`] to decide whether to await this. The frame can drain at any time, so
     /// the caller may miss that it has drained and then wait forever for another event.
     pub async fn drained(&mut self) {
-        while !self.is_empty() && !self.passage.is_closed.load(Ordering::Acquire) {
+        while !self.has_drained() {
             self.passage.changed.notified().await;
         }
         if self.passage.is_closed.load(Ordering::Acquire) {
@@ -122,6 +138,8 @@ impl Passage {
             is_closed: AtomicBool::new(false),
             parts: AtomicU64::new(0),
             on_wire: AtomicU64::new(0),
+            begun: Instant::now(),
+            drained_at: AtomicU64::new(0),
             rest: Mutex::default(),
             changed: Notify::new(),
             metrics,
@@ -142,6 +160,8 @@ impl Passage {
         if let Some(rest) = locked(&self.rest, Option::take) {
             self.send_part(rest);
         } else {
+            let micros = self.begun.elapsed().as_micros() as u64;
+            self.drained_at.store(micros, Ordering::Release);
             self.state.store(EMPTY, Ordering::Release);
             self.changed.notify_one();
         }

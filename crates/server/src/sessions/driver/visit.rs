@@ -201,6 +201,9 @@ impl Driver {
                 self.answers_key.take_if(|_| !self.is_sending);
             }
             let event = self.wait(inbound, outbox, wakes_at).await;
+            if self.is_sending && outbox.has_drained() {
+                self.note_drained(outbox);
+            }
             let now = self.shared.now();
             match event {
                 DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
@@ -211,15 +214,7 @@ impl Driver {
                 DriverEvent::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
                 DriverEvent::Arrived(Arrival::Drains) => self.drain(now),
                 DriverEvent::Arrived(Arrival::Ended) => return 0,
-                DriverEvent::Drained => {
-                    let (bytes, before) = self.sent;
-                    let on_wire = outbox.on_wire().saturating_sub(before);
-                    self.session.written(bytes, on_wire as usize, now);
-                    self.is_sending = false;
-                    if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.observe(now.saturating_sub(key));
-                    }
-                }
+                DriverEvent::Drained => {}
                 DriverEvent::RoomsChanged => {
                     let rooms = self.rooms.borrow_and_update().clone();
                     self.session.notify(SessionEvent::Rooms(rooms), now);
@@ -241,6 +236,18 @@ impl Driver {
                 self.leave();
                 return 1;
             }
+        }
+    }
+
+    /// Records that the frame in flight has drained.
+    fn note_drained(&mut self, outbox: &Outbox) {
+        let at = outbox.drained_at().saturating_duration_since(self.shared.begun);
+        let (bytes, before) = self.sent;
+        let on_wire = outbox.on_wire().saturating_sub(before);
+        self.session.written(bytes, on_wire as usize, at);
+        self.is_sending = false;
+        if let Some(key) = self.answers_key.take() {
+            self.shared.metrics.key_time.observe(at.saturating_sub(key));
         }
     }
 
@@ -272,11 +279,13 @@ impl Driver {
         } else if let Some(view) = &view {
             self.session.look_at(view);
         }
-        // If waking had no effect, for example because the terminal never replies, do not wake again at once.
-        let time = self.session.wakes_at(view.as_deref(), now);
-        *wakes_at = time
-            .map(|time| if time > self.woken_at { time } else { self.woken_at + RETRY_INTERVAL });
+        *wakes_at = self.after_wake(self.session.wakes_at(view.as_deref(), now));
         std::mem::take(self.session.output(now))
+    }
+
+    /// `time`, or a later time if waking at this time had no effect, for example because the terminal never replies.
+    fn after_wake(&self, time: Option<Duration>) -> Option<Duration> {
+        time.map(|time| if time > self.woken_at { time } else { self.woken_at + RETRY_INTERVAL })
     }
 
     async fn wait(
@@ -294,14 +303,18 @@ impl Driver {
         // In the other states, the driver is told of every change.
         let is_patient = is_sending || self.place.is_some() && !looks;
         let patience = is_patient.then_some(now + WAKE_INTERVAL);
-        let times = [wakes_at, quiet_end, self.ends_at, patience];
+        let drains_at = is_sending.then(|| self.session.needs_drain_at());
+        let awaits_drain = drains_at.is_some_and(|time| time <= now);
+        let drains_at = drains_at.filter(|_| !awaits_drain);
+        let acts_at = drains_at.and_then(|_| self.after_wake(self.session.acts_at()));
+        let times = [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, replied, in_lobby, presence, .. } = self;
         tokio::select! {
             biased;
             arrival = inbound.next() => DriverEvent::Arrived(arrival),
-            () = outbox.drained(), if is_sending => DriverEvent::Drained,
+            () = outbox.drained(), if awaits_drain => DriverEvent::Drained,
             Some(reply) = replied.recv() => DriverEvent::Replied(reply),
             notice = presence.notice() => DriverEvent::Notice(notice),
             () = changed(place.as_mut()), if looks => DriverEvent::Time,
