@@ -12,6 +12,9 @@
 //! `cellcaster-server` beside this one. `--sshd` measures OpenSSH's server, with one process of the
 //! game for each session, instead of `cellcaster-server`.
 //!
+//! `--table` measures one server with more and more players, at 20 and at 10 frames a second, and
+//! prints a table. `--update PAGE` writes the table to a page.
+//!
 //! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster. They are assigned
 //! to the processors in turn, while the clients run on all processors. Clients are spread over the
 //! hosts in turn, so each room has members on all hosts, which is the most expensive case.
@@ -31,6 +34,7 @@ mod plan;
 mod report;
 mod server;
 mod soak;
+mod table;
 #[path = "../../server/tests/support/wanderer.rs"]
 mod wanderer;
 
@@ -44,7 +48,7 @@ use tokio::time::sleep;
 
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
-use report::Tally;
+use report::{Figures, Tally};
 use server::{ServerProcess, Usage, between, pin, start_sshd};
 
 /// The time between two connections.
@@ -64,12 +68,36 @@ fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
     if plan.soak {
         return soak::run(plan);
     }
+    if plan.table {
+        return table::run(plan);
+    }
     if let Some(rooms) = plan.rooms {
         return bus::run(rooms, plan);
     }
     if plan.hosts > 1 && (plan.cluster.is_none() || plan.store.is_none()) {
         return Err("--hosts above 1 needs --cluster and --store".into());
     }
+    let measured = play_all(plan)?;
+    println!(
+        "memory        {:.1} MB empty, {:.1} MB with {} sessions, {:.1} MB at the end",
+        measured.megabytes[0], measured.megabytes[1], plan.sessions, measured.megabytes[2]
+    );
+    measured.figures.print();
+    plan.print_others(&measured.others);
+    Ok(())
+}
+
+/// The result of a measurement.
+struct Measured {
+    figures: Figures,
+    /// The memory of the servers: empty, with the sessions that play, and at the end.
+    megabytes: [f64; 3],
+    /// The time that the other processes have used.
+    others: Vec<Duration>,
+}
+
+/// Starts the servers, and plays on them.
+fn play_all(plan: &Load) -> Result<Measured, Box<dyn std::error::Error>> {
     let servers = start(plan)?;
     if servers.len() == 1 {
         pin(std::process::id(), 1);
@@ -88,7 +116,10 @@ fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> 
     (0..plan.hosts).map(start).collect()
 }
 
-async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std::error::Error>> {
+async fn play(
+    plan: &Load,
+    servers: &[ServerProcess],
+) -> Result<Measured, Box<dyn std::error::Error>> {
     let counts = Arc::new(AtomicBool::new(false));
     let mut clients = JoinSet::new();
     let empty = usage(servers);
@@ -116,16 +147,11 @@ async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std:
     counts.store(false, Ordering::Release);
     let (after, others_after) = (usage(servers), plan.others());
     let tallies = ended(clients).await;
-    println!(
-        "memory        {:.1} MB empty, {:.1} MB with {} sessions, {:.1} MB at the end",
-        megabytes(&empty),
-        megabytes(&walking),
-        plan.sessions,
-        megabytes(&after)
-    );
-    report::print(&tallies, plan.seconds, &between(&before, &after));
-    plan.print_others(&between(&others_before, &others_after));
-    Ok(())
+    Ok(Measured {
+        figures: Figures::of(&tallies, plan.seconds, &between(&before, &after)),
+        megabytes: [&empty, &walking, &after].map(|usage| megabytes(usage)),
+        others: between(&others_before, &others_after),
+    })
 }
 
 /// The resources that each server has used.

@@ -8,12 +8,14 @@
 //! formats needed code for each of them, and CSV and the plots left most of them out.
 
 mod formats;
+mod page;
 mod plot;
 
 use std::time::Instant;
 
 pub use formats::{Format, markdown};
 pub(crate) use formats::{Origin, Report};
+pub(crate) use page::update_page;
 
 /// A table.
 #[derive(Clone, Debug, PartialEq)]

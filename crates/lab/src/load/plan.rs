@@ -8,7 +8,7 @@ use clap::Args;
 use super::server::Usage;
 
 /// Play in real SSH sessions on one or more servers, and print their cost
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct Load {
     /// The number of sessions that play
     #[arg(long, value_name = "N", default_value_t = 20)]
@@ -34,6 +34,12 @@ pub(crate) struct Load {
     /// The server's limit of bytes a second to each player [default: the server's own]
     #[arg(long = "bytes", value_name = "N")]
     bytes_per_second: Option<u32>,
+    /// Print a table of the cost of 50 to 400 players at 20 frames a second, of 100 to 800 at 10, and of silent ones
+    #[arg(long, conflicts_with_all = ["sessions", "silent", "frames_per_second", "hosts", "rooms", "soak", "uses_sshd"])]
+    pub(crate) table: bool,
+    /// Replace the marked table in this page, instead of printing it
+    #[arg(long = "update", value_name = "FILE", requires = "table")]
+    pub(crate) page: Option<PathBuf>,
     /// The number of hosts in a cluster; more than one needs --cluster and --store
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) hosts: usize,
@@ -58,6 +64,11 @@ pub(crate) struct Load {
 }
 
 impl Load {
+    /// The same plan, with this number of sessions at this number of frames a second.
+    pub(crate) fn with(&self, sessions: usize, frames_per_second: u32) -> Self {
+        Self { sessions, frames_per_second, ..self.clone() }
+    }
+
     /// The program that is measured.
     pub(crate) fn program(&self) -> String {
         let name = if self.uses_sshd { "cellcaster" } else { "cellcaster-server" };
