@@ -114,7 +114,7 @@ impl Action {
         ("crosshair", "crosshair", Self::ToggleCrosshair, &[Key::Char('.')]),
         ("compass", "compass", Self::ToggleCompass, &[Key::Char(',')]),
         ("ghost", "best run", Self::ToggleGhost, &[Key::Char('0')]),
-        ("stats", "frames and link", Self::ToggleStats, &[Key::Char('i')]),
+        ("stats", "link statistics", Self::ToggleStats, &[Key::Char('i')]),
         ("leave", "leave", Self::Leave, &[Key::Char('q'), Key::Escape]),
     ];
 

@@ -177,7 +177,7 @@ impl Choice for ColorDepth {
 
 impl Choice for Correction {
     const ALL: &'static [NamedValue<Self>] = &[
-        (Self::None, "none", "as it is"),
+        (Self::None, "none", "original"),
         (Self::Contrast, "contrast", "more contrast"),
         (Self::RedGreen, "red-green", "red and green apart"),
     ];

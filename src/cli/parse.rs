@@ -112,7 +112,7 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
         .unwrap_or_default();
     let name = name_of(argument);
     let value = text(error, ContextKind::InvalidValue).unwrap_or_default();
-    let help = format!("\"{path} --help\" lists what there is");
+    let help = format!("see \"{path} --help\"");
     let or_help = |names: &[&str]| {
         nearest(name, names).map_or(help.clone(), |meant| format!("did you mean {meant}?"))
     };

@@ -236,7 +236,7 @@ fn unsuitable(
 }
 
 fn several_at_once(entry: &Entry<'_, '_>) -> Fault {
-    Fault::new(entry.key_place.clone(), format!("{:?} is several things at once", entry.key))
+    Fault::new(entry.key_place.clone(), format!("{:?} has more than one meaning", entry.key))
         .help("draw each with a character of its own")
 }
 

@@ -54,8 +54,8 @@ pub(crate) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Ta
         columns: headings([
             "evaluations",
             "rate × step",
-            "velocity, worst, relative",
-            "place, worst, relative",
+            "worst relative error of velocities",
+            "worst relative error of positions",
             "time, ns a step",
         ]),
         rows: rows.collect(),

@@ -39,8 +39,8 @@ pub(crate) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Tab
         keys: ["scene", "method", "parameter"],
         columns: headings([
             "wrong rays",
-            "distance, worst, relative",
-            "right rays: worst, ulp",
+            "worst relative error of distances",
+            "worst error of right rays, ulp",
             "instructions, a ray",
             "time, ns a ray",
         ]),
