@@ -33,6 +33,9 @@ const EXCESS: usize = 8;
 const ROOM: usize = MAX_LENGTH + 1 + EXCESS;
 
 impl Bytes {
+    /// No bytes, and no memory.
+    pub(crate) const NONE: Self = Self { memory: Vec::new(), length: 0 };
+
     /// The written bytes.
     pub(crate) fn as_slice(&self) -> &[u8] {
         &self.memory[..self.length]

@@ -3,6 +3,9 @@
 //! A move to a lower row is a carriage return and line feeds. With the return, the result is the same whether or not
 //! the terminal's line discipline adds a return to each feed. With a line feed alone, it would differ.
 
+use std::cell::Cell;
+use std::mem;
+
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
@@ -16,6 +19,12 @@ use crate::terminal::cell_writer::palette::TerminalPalette;
 use crate::terminal::cell_writer::screen::Screen;
 use crate::terminal::cell_writer::shift::{Shift, ShiftDirection};
 use crate::terminal::cell_writer::style::{PackedColor, Style};
+
+thread_local! {
+    /// The memory of frames, between the frames of all pens of a thread. A frame takes up to 32 kB, and a server has
+    /// hundreds of pens.
+    static MEMORY: Cell<Bytes> = const { Cell::new(Bytes::NONE) };
+}
 
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
@@ -145,11 +154,12 @@ impl Pen {
     /// Begins another frame.
     pub(crate) fn clear(&mut self) {
         self.frame.clear();
+        MEMORY.set(mem::take(&mut self.frame));
     }
 
     /// Forgets the terminal's state and the unsent bytes.
     pub(crate) fn forget(&mut self) {
-        self.frame.clear();
+        self.clear();
         self.palette.forget();
         (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
@@ -220,7 +230,7 @@ impl Pen {
     #[cold]
     fn write_repeated(&mut self) {
         let Some((shape, element)) = self.last else { return };
-        let count = usize::from(std::mem::take(&mut self.repeated));
+        let count = usize::from(mem::take(&mut self.repeated));
         let (encoded, bytes) = shape.encoded(element);
         let digits = if count > 1 { digits(count as u16) } else { 0 };
         if count * bytes <= 3 + digits {
@@ -246,6 +256,7 @@ impl Pen {
         }
         self.last = None;
         if self.frame.is_empty() {
+            self.frame = MEMORY.take();
             // A write to memory cannot fail.
             _ = queue!(self.frame, BeginSynchronizedUpdate);
         }
