@@ -3,7 +3,8 @@
 //! ```toml
 //! listen = "[::]:2222"
 //! connections = 400
-//! connections-per-address = 100    # behind a proxy, all visitors have one address
+//! connections-per-address = 100
+//! proxies = ["10.0.0.5"]
 //! message = "Races every Friday at 20:00"
 //! log = "info,connections=warn"
 //! maps = "/var/lib/cellcaster/maps"
@@ -31,7 +32,7 @@ use tokio::sync::watch;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::accounts::AccountRate;
+use crate::accounts::{AccountRate, AddressPrefix};
 use crate::admission::Limits;
 use crate::logging::LogFilter;
 use crate::rooms::directory::RoomLimits;
@@ -59,6 +60,8 @@ pub struct Config {
     pub maps: Option<PathBuf>,
     /// The address at which metrics are served over HTTP; `None` for none.
     pub metrics: Option<SocketAddr>,
+    /// The proxies, whose connections begin with a header that names the visitor.
+    pub proxies: Vec<AddressPrefix>,
     /// The limits on connections.
     pub admission: Limits,
     /// The number of accounts that a network may create.
@@ -109,6 +112,7 @@ impl Default for Config {
             log: LogFilter::default(),
             maps: None,
             metrics: None,
+            proxies: Vec::new(),
             admission: Limits::default(),
             accounts: AccountRate::default(),
             handshake: Duration::from_secs(20),
@@ -201,7 +205,7 @@ impl fmt::Display for Config {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, Setting { key, about, value }) in TEXTS.iter().enumerate() {
             let blank = if index > 0 { "\n" } else { "" };
-            writeln!(f, "{blank}# {about}")?;
+            writeln!(f, "{blank}# {}", about.replace('\n', "\n# "))?;
             match value.write(self) {
                 value if value.is_empty() => writeln!(f, "# {MAPS_EXAMPLE}")?,
                 value => writeln!(f, "{key} = {value}")?,
@@ -375,9 +379,13 @@ const MAX_MESSAGE_LENGTH: usize = 200;
 /// The longest name of a host, in characters.
 const MAX_NAME_LENGTH: usize = 40;
 
+/// The most ranges of addresses of proxies.
+const MAX_PROXIES: usize = 64;
+
 const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
 const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
 const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
+const PROXIES_EXAMPLE: &str = "proxies = [\"10.0.0.5\", \"10.1.0.0/16\"]";
 const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
 
 const LISTEN: Setting<Config> = Setting {
@@ -415,7 +423,7 @@ const METRICS_LISTEN: Setting<Config> = Setting {
 };
 
 /// The text settings, in the order of a file.
-const TEXTS: [Setting<Config>; 5] = [
+const TEXTS: [Setting<Config>; 6] = [
     LISTEN,
     Setting {
         key: "name",
@@ -434,6 +442,12 @@ const TEXTS: [Setting<Config>; 5] = [
         value: &Text { at: |it| &mut it.log, read: log, write: |log| format!("\"{log}\"") },
     },
     MAPS,
+    Setting {
+        key: "proxies",
+        about: "the addresses of proxies; each connection from them must begin with a PROXY header, whose\n\
+                address counts as the visitor's",
+        value: &Text { at: |it| &mut it.proxies, read: proxies, write: |list| address_list(list) },
+    },
 ];
 
 /// The number settings, in the order of a file. They follow the texts.
@@ -445,8 +459,8 @@ const NUMBERS: [Setting<Config>; 22] = [
     },
     Setting {
         key: "connections-per-address",
-        about: "the limit of connections from one IPv4 address or IPv6 /64; behind a proxy, all\n\
-                visitors have the same address",
+        about: "the limit of connections from one IPv4 address or IPv6 /64; behind a proxy that is not in\n\
+                proxies, all visitors have the same address",
         value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.per_address)),
     },
     Setting {
@@ -653,6 +667,40 @@ fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
         let help = format!("write {example}; [::] stands for all addresses of this machine");
         entry.reject(format!("{} is not an address with a port", quoted(text)), "", help)
     })
+}
+
+/// The addresses of proxies. An element with a fault makes the whole list faulty.
+fn proxies(entry: &Entry<'_, '_>) -> Option<Vec<AddressPrefix>> {
+    let Some(list) = entry.list() else {
+        entry.faults.push(entry.wrong_type("a list of addresses", PROXIES_EXAMPLE));
+        return None;
+    };
+    if list.len() > MAX_PROXIES {
+        let message = format!("there are {} proxies, and the limit is {MAX_PROXIES}", list.len());
+        return entry.reject(
+            message,
+            "",
+            "write a range such as 10.1.0.0/16 for several addresses",
+        );
+    }
+    let ranges: Vec<Option<AddressPrefix>> = list.iter().map(address_range).collect();
+    ranges.into_iter().collect()
+}
+
+fn address_range(entry: &Entry<'_, '_>) -> Option<AddressPrefix> {
+    let text = match entry.value {
+        DeValue::String(text) => text.as_ref(),
+        _ => "",
+    };
+    AddressPrefix::parse(text).or_else(|| {
+        let message = "this is neither an address nor a range of addresses";
+        entry.reject(message, "", format!("write {PROXIES_EXAMPLE}"))
+    })
+}
+
+fn address_list(ranges: &[AddressPrefix]) -> String {
+    let ranges: Vec<String> = ranges.iter().map(|range| format!("\"{range}\"")).collect();
+    format!("[{}]", ranges.join(", "))
 }
 
 fn message(entry: &Entry<'_, '_>) -> Option<String> {

@@ -8,6 +8,7 @@ mod gate;
 pub mod host_key;
 mod inbound;
 mod outbox;
+mod proxy_header;
 mod server;
 #[cfg(test)]
 mod simulated;

@@ -21,6 +21,8 @@ fn a_written_configuration_parses_to_itself() -> Result<(), Faults> {
     config.metrics = Some("127.0.0.1:9464".parse().unwrap());
     config.name = "Mara's \"cellar\"".to_owned();
     config.maps = Some("/srv/maps".into());
+    config.proxies =
+        ["10.0.0.5", "2001:db8::/32"].map(|it| AddressPrefix::parse(it).unwrap()).into();
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
     config.standing.pop();
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
@@ -74,6 +76,13 @@ fn text_faults_are_reported_with_their_lines() {
         "message = \"two\\nlines\"\nlog = \"info,conections=warn\"\n\
          [metrics]\nlisten = \"9464\"\nport = 9464\n"
     ));
+}
+
+#[test]
+fn proxy_faults_are_reported_with_their_lines() {
+    insta::assert_snapshot!(faults("proxies = [\"10.0.0.5\", \"10.0.0.0/33\",\n\"proxy\", 5]\n"));
+    insta::assert_snapshot!(faults("proxies = \"10.0.0.5\"\n"));
+    insta::assert_snapshot!(faults(&format!("proxies = [{}]\n", "\"10.0.0.5\", ".repeat(65))));
 }
 
 #[test]

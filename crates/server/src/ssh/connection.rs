@@ -27,7 +27,7 @@ use crate::config::LiveConfig;
 use crate::logging::{self, ConnectionEvent};
 
 /// The time limit for a client's first line, the version. A client sends it without input from its user.
-const VERSION_TIME: Duration = Duration::from_secs(3);
+pub(crate) const VERSION_TIME: Duration = Duration::from_secs(3);
 /// How long a session may take to finish after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
 /// The shortest pause between two checks whether a client is gone.
@@ -85,7 +85,7 @@ pub(crate) async fn serve<H: Host>(
             outcome
         }
     };
-    gate.leave(visit, outcome);
+    gate.leave(visit, peer.ip(), outcome);
 }
 
 /// Sends the client the reason for the disconnection, if its key exchange is complete, and waits until it has gone.

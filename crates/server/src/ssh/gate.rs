@@ -97,6 +97,33 @@ impl Gate {
         phases
     }
 
+    /// Returns true if connections from `address` begin with a header that names the visitor.
+    pub(crate) fn is_proxy(&self, address: IpAddr) -> bool {
+        self.config.get().proxies.iter().any(|range| range.contains(address))
+    }
+
+    /// Logs the end of a connection from a proxy that sent no valid header. This brings no penalty, because all visitors
+    /// come from the proxy's address. Returns the sentence for the client, if the client may be told.
+    pub(crate) fn end_without_header(&self, outcome: Outcome, proxy: IpAddr) -> Option<String> {
+        let now = self.begun.elapsed();
+        let is_told = locked(&self.state, |state| {
+            state.logged.log(ConnectionEvent::Ended(outcome), proxy);
+            outcome == Outcome::BrokeProtocol
+                && state.explanations.allow(AddressPrefix::network_of(proxy), now)
+        });
+        is_told.then(|| NO_HEADER.to_owned())
+    }
+
+    /// Counts and logs the refusal of a connection from a proxy before its header is read. Returns the sentence for the
+    /// client, if the client may be told.
+    pub(crate) fn refuse_early(&self, reason: Refusal, proxy: IpAddr) -> Option<String> {
+        let now = self.begun.elapsed();
+        locked(&self.state, |state| {
+            state.logged.log(ConnectionEvent::Refused(reason), proxy);
+            self.explain(state, reason, proxy, now)
+        })
+    }
+
     /// Admits a connection.
     ///
     /// # Errors
@@ -167,9 +194,11 @@ impl Gate {
         self.log(ConnectionEvent::Refused(reason), address);
     }
 
-    /// Counts the end of a connection.
-    pub(crate) fn leave(&self, visit: ConnectionId, outcome: Outcome) {
+    /// Counts the end of a connection. A proxy's own connections, which check whether the server answers, bring no
+    /// penalty.
+    pub(crate) fn leave(&self, visit: ConnectionId, peer: IpAddr, outcome: Outcome) {
         let now = self.begun.elapsed();
+        let outcome = if self.is_proxy(peer) { Outcome::Served } else { outcome };
         locked(&self.state, |state| {
             state.open.remove(&visit);
             state.admission.leave(visit, outcome, now);
@@ -201,6 +230,10 @@ const MAX: usize = 64;
 const MAX_PER_NETWORK: usize = 8;
 /// The most bytes read from a client during an explanation. Its version and its offer of algorithms take about 2,000.
 const MAX_READ: u64 = 16 << 10;
+
+/// The sentence for a client behind a proxy that is not set up.
+const NO_HEADER: &str = "This host expects a PROXY header from your address: its operator must switch it on in the \
+                         proxy, or remove the address from \"proxies\".";
 
 const DISCONNECT: u8 = 1;
 const TOO_MANY_CONNECTIONS: u32 = 12;

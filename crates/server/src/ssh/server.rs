@@ -6,14 +6,16 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::net::{TcpListener, TcpSocket};
+use tokio::net::{TcpListener, TcpSocket, TcpStream};
 use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
-use super::connection::{self, ssh_config};
+use super::connection::{self, VERSION_TIME, ssh_config};
 use super::gate::{Gate, ShutdownPhase, explain};
 use super::host_key::HostKey;
+use super::proxy_header;
 use super::visitor::Host;
+use crate::admission::{Outcome, Refusal};
 use crate::config::{Config, LiveConfig};
 use crate::logging;
 use crate::metrics::Metrics;
@@ -77,6 +79,18 @@ impl Server {
         let gate = Arc::new(Gate::new(config.clone(), metrics));
         let (ssh, host) = (Arc::new(ssh_config(&key)), Arc::new(host));
         let mut tasks = JoinSet::new();
+        // The connections from proxies whose headers are incomplete. They count apart from the admitted ones, because
+        // the addresses that those count by are unknown, but are limited to the same number.
+        let mut headers = JoinSet::<Headed>::new();
+        let enter = |tasks: &mut JoinSet<()>, socket: TcpStream, peer| match gate.admit(peer) {
+            Ok(entry) => {
+                // Frames are small, and each is written whole.
+                _ = socket.set_nodelay(true);
+                let (gate, ssh, host) = (gate.clone(), ssh.clone(), host.clone());
+                tasks.spawn(connection::serve(gate, ssh, host, socket, entry));
+            }
+            Err(sentence) => tell(tasks, socket, sentence),
+        };
         let mut second = interval(SECOND);
         second.set_missed_tick_behavior(MissedTickBehavior::Delay);
         tokio::pin!(stop);
@@ -85,17 +99,29 @@ impl Server {
                 () = &mut stop => break,
                 Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
                 _ = second.tick() => gate.end_second(),
-                accepted = listener.accept() => match accepted {
-                    Ok((socket, peer)) => match gate.admit(peer) {
-                        Ok(entry) => {
-                            // Frames are small, and each is written whole.
-                            _ = socket.set_nodelay(true);
-                            let (gate, ssh, host) = (gate.clone(), ssh.clone(), host.clone());
-                            tasks.spawn(connection::serve(gate, ssh, host, socket, entry));
+                Some(Ok((socket, proxy, visitor))) = headers.join_next(), if !headers.is_empty() => {
+                    match visitor {
+                        Ok(visitor) => enter(&mut tasks, socket, visitor),
+                        Err(outcome) => {
+                            let sentence = gate.end_without_header(outcome, proxy.ip());
+                            tell(&mut tasks, socket, sentence);
                         }
-                        Err(Some(sentence)) => _ = tasks.spawn(explain(socket, sentence)),
-                        Err(None) => {}
-                    },
+                    }
+                }
+                accepted = listener.accept() => match accepted {
+                    Ok((socket, peer)) if !gate.is_proxy(peer.ip()) => {
+                        enter(&mut tasks, socket, peer);
+                    }
+                    Ok((socket, proxy)) => {
+                        let config = config.get();
+                        if headers.len() < config.admission.startups as usize {
+                            let time = config.handshake.min(VERSION_TIME);
+                            headers.spawn(read_header(socket, proxy, time));
+                        } else {
+                            let sentence = gate.refuse_early(Refusal::Startups, proxy.ip());
+                            tell(&mut tasks, socket, sentence);
+                        }
+                    }
                     Err(error) => {
                         logging::fault("accept", error);
                         sleep(ACCEPT_RETRY_INTERVAL).await;
@@ -103,7 +129,7 @@ impl Server {
                 },
             }
         }
-        drop(listener);
+        drop((listener, headers));
         let drain = config.get().drain;
         logging::draining(drain.as_secs());
         let until_end = drain + LAST_WORDS.min(drain);
@@ -118,6 +144,27 @@ impl Server {
         }
         tasks.shutdown().await;
         gate.end_second();
+    }
+}
+
+/// A connection from a proxy whose header was read: the socket, the proxy, and the visitor's address.
+type Headed = (TcpStream, SocketAddr, Result<SocketAddr, Outcome>);
+
+/// Reads the header of a connection from `proxy`.
+async fn read_header(mut socket: TcpStream, proxy: SocketAddr, time: Duration) -> Headed {
+    let visitor = match timeout(time, proxy_header::read(&mut socket)).await {
+        Ok(Ok(visitor)) => Ok(visitor.unwrap_or(proxy)),
+        Ok(Err(error)) if error.kind() == io::ErrorKind::InvalidData => Err(Outcome::BrokeProtocol),
+        Ok(Err(_)) => Err(Outcome::LeftEarly),
+        Err(_) => Err(Outcome::TimedOut),
+    };
+    (socket, proxy, visitor)
+}
+
+/// Closes a refused connection, after the sentence for its client if there is one.
+fn tell(tasks: &mut JoinSet<()>, socket: TcpStream, sentence: Option<String>) {
+    if let Some(sentence) = sentence {
+        tasks.spawn(explain(socket, sentence));
     }
 }
 

@@ -9,7 +9,7 @@ use tokio::runtime::Runtime;
 
 use super::house::House;
 
-struct Anyone;
+pub(crate) struct Anyone;
 
 impl Handler for Anyone {
     type Error = Error;

@@ -7,6 +7,7 @@ mod echo;
 mod floods;
 mod host_key;
 mod house;
+mod proxies;
 mod raw;
 
 pub(crate) use house::{TIMEOUT, folder, wait_until};
