@@ -92,6 +92,11 @@ pub struct Config {
     pub watchers: u32,
     /// The time after which a room without members is closed.
     pub empty_room: Duration,
+    /// How long a member of a room may press no key before returning to the lobby. A session keeps the limit that it
+    /// begins with.
+    pub idle_room: Duration,
+    /// How long other visitors may press no key before the session ends.
+    pub idle_lobby: Duration,
     /// The most frames that a session receives in a second.
     pub frames_per_second: u32,
     /// The most bytes that pictures for a session take on the wire in a second; 0 for no limit. A session keeps the
@@ -127,6 +132,8 @@ impl Default for Config {
             rooms: 200,
             watchers: 32,
             empty_room: Duration::from_mins(1),
+            idle_room: Duration::from_mins(5),
+            idle_lobby: Duration::from_mins(15),
             frames_per_second: 30,
             player_bytes_per_second: 60_000,
             // One room to walk around in, and one to play in.
@@ -451,7 +458,7 @@ const TEXTS: [Setting<Config>; 6] = [
 ];
 
 /// The number settings, in the order of a file. They follow the texts.
-const NUMBERS: [Setting<Config>; 22] = [
+const NUMBERS: [Setting<Config>; 24] = [
     Setting {
         key: "connections",
         about: "the limit of visitors who have logged in",
@@ -556,6 +563,17 @@ const NUMBERS: [Setting<Config>; 22] = [
         value: &Number(0..=86_400, NumberField::Seconds(|it| &mut it.empty_room)),
     },
     Setting {
+        key: "idle-room-minutes",
+        about: "the time after which a player who presses no key returns to the lobby, after a warning\n\
+                one minute before; for sessions that begin after a reload",
+        value: &Number(2..=1440, NumberField::Minutes(|it| &mut it.idle_room)),
+    },
+    Setting {
+        key: "idle-lobby-minutes",
+        about: "the time after which a visitor elsewhere who presses no key is disconnected, as above",
+        value: &Number(2..=1440, NumberField::Minutes(|it| &mut it.idle_lobby)),
+    },
+    Setting {
         key: "frames-per-second",
         about: "the limit of frames for each visitor in a second; fewer if the processor is busy",
         value: &Number(5..=60, NumberField::U32(|it| &mut it.frames_per_second)),
@@ -612,6 +630,7 @@ enum NumberField {
     U16(fn(&mut Config) -> &mut u16),
     U32(fn(&mut Config) -> &mut u32),
     Seconds(fn(&mut Config) -> &mut Duration),
+    Minutes(fn(&mut Config) -> &mut Duration),
 }
 
 impl Number {
@@ -621,6 +640,9 @@ impl Number {
             NumberField::U16(at) => u32::from(*at(&mut of)),
             NumberField::U32(at) => *at(&mut of),
             NumberField::Seconds(at) => u32::try_from(at(&mut of).as_secs()).unwrap_or(u32::MAX),
+            NumberField::Minutes(at) => {
+                u32::try_from(at(&mut of).as_secs() / 60).unwrap_or(u32::MAX)
+            }
         }
     }
 
@@ -629,6 +651,7 @@ impl Number {
             NumberField::U16(at) => *at(of) = value as u16,
             NumberField::U32(at) => *at(of) = value,
             NumberField::Seconds(at) => *at(of) = Duration::from_secs(u64::from(value)),
+            NumberField::Minutes(at) => *at(of) = Duration::from_mins(u64::from(value)),
         }
     }
 }

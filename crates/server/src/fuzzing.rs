@@ -12,6 +12,7 @@ use tokio::sync::Notify;
 use crate::accounts::{AccountKey, AccountSettings};
 use crate::admin::RoomRow;
 pub use crate::cluster::fuzzing::SharedRoom;
+use crate::config::Config;
 use crate::line::Line;
 use crate::operator::{Operator, socket};
 use crate::rooms::replayed::replayed;
@@ -19,7 +20,9 @@ use crate::rooms::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::session::{HostFacts, Profile, Request, Session, SessionEvent, Way};
+use crate::sessions::session::{
+    HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
+};
 pub use crate::ssh::fuzzing::serve;
 use crate::visitors::{Presence, Visitors};
 use cellcaster::app::Configuration;
@@ -104,6 +107,7 @@ impl Hall {
             ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
             frame_time: Duration::from_millis(33),
+            idle: IdleLimits::of(&Config::default()),
         };
         let session = Session::new(identity, options, size, host, self.now);
         self.visitors.push(FuzzedVisitor { session, member: None, is_inside: false, name });

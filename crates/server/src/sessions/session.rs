@@ -36,6 +36,7 @@ mod ui;
 use std::num::NonZero;
 use std::time::Duration;
 
+pub(crate) use self::endings::IdleLimits;
 use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent, Way};
 use self::ui::Ui;

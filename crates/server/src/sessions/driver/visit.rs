@@ -29,7 +29,9 @@ use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::session::{HostFacts, Profile, Request, Session, SessionEvent, Way};
+use crate::sessions::session::{
+    HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
+};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
@@ -143,6 +145,7 @@ impl Driver {
             ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
             frame_time: shared.load.rate().frame_time,
+            idle: IdleLimits::of(&config),
         };
         let now = shared.now();
         let mut session = Session::new(identity, options, visitor.size, host, now);

@@ -62,7 +62,8 @@ impl Ui {
             _ => self.draw_lobby(canvas, picture, status),
         }
         if self.idle.is_warned() {
-            let end = if self.stay.is_some() { "you leave the room" } else { "this session ends" };
+            let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
+            let end = if is_member { "you leave the room" } else { "this session ends" };
             notice(canvas, picture, &format!("Still there? Press a key, or {end} soon."));
         }
     }

@@ -2,11 +2,18 @@
 
 use std::time::Duration;
 
-/// How long a member of a room may be idle before returning to the lobby.
-pub(crate) const IN_ROOM: Duration = Duration::from_mins(5);
-/// How long other visitors may be idle before the session ends.
-pub(crate) const ELSEWHERE: Duration = Duration::from_mins(15);
-/// How long before that they get a warning.
+use crate::config::Config;
+
+/// The limits on the time without a key. A session keeps the limits that it begins with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct IdleLimits {
+    /// How long a member of a room may be idle before returning to the lobby.
+    pub(crate) in_room: Duration,
+    /// How long other visitors may be idle before the session ends.
+    pub(crate) elsewhere: Duration,
+}
+
+/// How long before a limit visitors get a warning.
 const WARNING: Duration = Duration::from_mins(1);
 
 /// The time since the last key.
@@ -23,6 +30,12 @@ pub(crate) enum IdleAction {
     Warn,
     /// The visitor leaves the room, or the session ends.
     End,
+}
+
+impl IdleLimits {
+    pub(crate) fn of(config: &Config) -> Self {
+        Self { in_room: config.idle_room, elsewhere: config.idle_lobby }
+    }
 }
 
 impl Idle {
@@ -96,7 +109,7 @@ mod tests {
     fn a_warning_comes_before_the_end() {
         let at = Duration::from_secs;
         let mut idle = Idle::default();
-        let step = |idle: &mut Idle, seconds| idle.step(IN_ROOM, at(seconds));
+        let step = |idle: &mut Idle, seconds| idle.step(at(300), at(seconds));
         assert_eq!(step(&mut idle, 239), None);
         assert_eq!(step(&mut idle, 240), Some(IdleAction::Warn));
         assert_eq!(step(&mut idle, 299), None);

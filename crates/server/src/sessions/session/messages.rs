@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::endings::IdleLimits;
 use crate::accounts::AccountSettings;
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
@@ -43,6 +44,7 @@ pub(crate) struct HostFacts {
     pub(crate) catalog: Arc<Catalog>,
     /// The initial interval between frames.
     pub(crate) frame_time: Duration,
+    pub(crate) idle: IdleLimits,
 }
 
 /// A way into a room.

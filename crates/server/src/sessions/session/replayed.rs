@@ -6,8 +6,10 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
+use super::endings::IdleLimits;
 use super::messages::{HostFacts, Profile, SessionEvent};
 use super::ui::Ui;
+use crate::config::Config;
 use crate::line::Line;
 use crate::rooms::room::{Catalog, MemberId, RoomView};
 use crate::rooms::summary::RoomId;
@@ -38,6 +40,7 @@ impl ReplayedScreen {
             ascii_locale: None,
             catalog,
             frame_time: Duration::ZERO,
+            idle: IdleLimits::of(&Config::default()),
         };
         let mut ui = Ui::new(identity, host, false, Duration::ZERO);
         ui.notify(SessionEvent::Entered { room: RoomId(0), member: Some(member) });

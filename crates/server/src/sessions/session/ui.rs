@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::endings::{Draining, ELSEWHERE, IN_ROOM, Idle, IdleAction};
+use super::endings::{Draining, Idle, IdleAction};
 use super::line_entry::LineEntry;
 use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
 use super::pages::{Choice, Page};
@@ -237,8 +237,8 @@ impl Ui {
 
     fn idle_limit(&self) -> Duration {
         match &self.stay {
-            Some(stay) if stay.member.is_some() => IN_ROOM,
-            _ => ELSEWHERE,
+            Some(stay) if stay.member.is_some() => self.host.idle.in_room,
+            _ => self.host.idle.elsewhere,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The path from the name into a room, and back.
 
 use super::*;
+use crate::config::Config;
 use crate::rooms::summary::RoomId;
 use crate::sessions::session::pages::Page;
 use crate::sessions::session::pages::RoomTarget;
@@ -103,6 +104,23 @@ fn an_idle_visitor_is_warned_and_disconnected() {
     rig.pump(14 * 60_000);
     assert!(rig.text(one).contains("this session ends"), "{}", rig.text(one));
     rig.pump(60_000);
+    assert!(rig.is_over(one));
+}
+
+#[test]
+fn the_operator_sets_how_long_a_visitor_may_be_idle() {
+    let mut rig = Rig::new(Mode::Roam);
+    let early = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let (idle_room, idle_lobby) = (Duration::from_mins(30), Duration::from_mins(2));
+    rig.live.replace(Config { idle_room, idle_lobby, ..Config::clone(&rig.live.get()) });
+    let one = rig.member("Noor", (80, 24), Speaks::Kitty);
+    rig.pump(29 * 60_000 - 1000);
+    assert_eq!(rig.page(one), Page::Room);
+    assert!(!rig.text(one).contains("Still there?"), "{}", rig.text(one));
+    assert!(rig.is_over(early), "a session keeps the limits that it begins with");
+    rig.pump(61_000);
+    assert!(rig.text(one).contains("You pressed no key for 30 minutes."), "{}", rig.text(one));
+    rig.pump(2 * 60_000);
     assert!(rig.is_over(one));
 }
 
