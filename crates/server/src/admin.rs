@@ -80,7 +80,7 @@ pub enum AdminReply {
     Fault(String),
 }
 
-/// A visitor.
+/// A visitor. `cellcaster-server admin who --format json` prints the fields, so their names must stay.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisitorRow {
     /// The session; empty if the host's version has no sessions.
@@ -97,11 +97,11 @@ pub struct VisitorRow {
     /// How long the visitor has been connected, in seconds.
     pub seconds: u64,
     /// The visitor's host, in a cluster.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub host: Option<String>,
 }
 
-/// A host of a cluster.
+/// A host of a cluster. The names of the fields must stay, too.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HostInfo {
     /// The name of the machine, and the port.
@@ -122,7 +122,7 @@ pub struct HostInfo {
     pub maps: Option<Vec<String>>,
 }
 
-/// A room.
+/// A room. The names of the fields must stay, too.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RoomRow {
     /// The number.

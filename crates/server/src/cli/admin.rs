@@ -8,9 +8,10 @@ use std::path::Path;
 use std::time::Duration;
 use std::{env, iter};
 
+use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use super::arguments::{Admin, AdminAction};
+use super::arguments::{Admin, AdminAction, ListFormat, ListOptions};
 use super::host_store::{StoreLocation, failed};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
@@ -33,9 +34,9 @@ pub(crate) fn run(options: Admin) -> Result<(), Error> {
 fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<String, Error> {
     let mut host = RunningHost { folder, remarks: Vec::new() };
     let text = match action {
-        AdminAction::Who => host.lists(&AdminRequest::Who),
-        AdminAction::Rooms => host.lists(&AdminRequest::Rooms),
-        AdminAction::Hosts => host.lists(&AdminRequest::Hosts),
+        AdminAction::Who(list) => host.lists(&AdminRequest::Who, &list),
+        AdminAction::Rooms(list) => host.lists(&AdminRequest::Rooms, &list),
+        AdminAction::Hosts(list) => host.lists(&AdminRequest::Hosts, &list),
         AdminAction::Say { text } => {
             let count = host.counts(&AdminRequest::Say { text });
             count.map(|count| format!("said to {}\n", visitors(count)))
@@ -51,7 +52,7 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
             ban(&mut host, database, &player.target(None), time, &reason)
         }
         AdminAction::Unban { player } => unban(database, &player.target(None)),
-        AdminAction::Bans => bans(database),
+        AdminAction::Bans(list) => bans(database, &list),
     };
     for remark in host.remarks {
         Error::machine(remark.replace(char::is_control, "?")).warn();
@@ -80,9 +81,13 @@ impl RunningHost<'_> {
         }
     }
 
-    /// Requests a list, and returns it as a table.
-    fn lists(&mut self, request: &AdminRequest) -> Result<String, Error> {
+    /// Requests a list, and returns it in the format of `options`.
+    fn lists(&mut self, request: &AdminRequest, options: &ListOptions) -> Result<String, Error> {
+        let is_json = matches!(options.format, ListFormat::Json);
         Ok(match self.answers(request)? {
+            AdminReply::Visitors(rows) if is_json => document(&json!(rows)),
+            AdminReply::Rooms(rows) if is_json => document(&json!(rows)),
+            AdminReply::Hosts(rows) if is_json => document(&json!(rows)),
             AdminReply::Visitors(rows) if rows.is_empty() => "nobody is online\n".to_owned(),
             AdminReply::Visitors(rows) => {
                 let is_cluster = rows.iter().any(|row| row.host.is_some());
@@ -222,10 +227,13 @@ fn unban(database: &StoreLocation, target: &Target) -> Result<String, Error> {
 }
 
 /// Lists the bans in force.
-fn bans(database: &StoreLocation) -> Result<String, Error> {
+fn bans(database: &StoreLocation, options: &ListOptions) -> Result<String, Error> {
     let mut store = database.open_to_read()?;
     let now = UnixTime::now();
     let bans = store.bans(now).map_err(failed)?;
+    if let ListFormat::Json = options.format {
+        return Ok(document(&bans.iter().map(ban_object).collect()));
+    }
     if bans.is_empty() {
         return Ok("nobody is banned\n".to_owned());
     }
@@ -241,6 +249,31 @@ fn bans(database: &StoreLocation) -> Result<String, Error> {
             vec![ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
         }),
     ))
+}
+
+/// A ban with Unix times in seconds; `null` for no end.
+fn ban_object(ban: &Ban) -> Value {
+    let kind = match ban.target {
+        BanTarget::Key(_) => "key",
+        BanTarget::Name(_) => "name",
+        BanTarget::Addresses(_) => "address",
+    };
+    json!({
+        "kind": kind,
+        "banned": ban.target.to_string(),
+        "until": ban.until.map(UnixTime::seconds),
+        "made": ban.made_at.seconds(),
+        "by": ban.by,
+        "reason": ban.reason,
+    })
+}
+
+/// JSON as one line. Control characters, which can occur only in strings, are escaped.
+fn document(json: &Value) -> String {
+    let escaped = |char: char| {
+        if char.is_control() { format!("\\u{:04x}", u32::from(char)) } else { char.to_string() }
+    };
+    json.to_string().chars().map(escaped).collect::<String>() + "\n"
 }
 
 /// The target of a ban, and for a name also the key of the account with that name.
@@ -356,6 +389,15 @@ mod tests {
     fn columns_are_as_wide_as_their_contents() {
         let rows = [["漢字", "1"], ["A\u{1b}", "22"]].map(|row| row.map(str::to_owned).to_vec());
         assert_eq!(table(&["name", "n"], rows.into_iter()), "name  n\n漢字  1\nA?    22\n");
+    }
+
+    #[test]
+    fn a_document_is_one_line_without_control_characters() {
+        let reason = "\u{1b}[31m\n\u{9b}0m\u{7f}\"";
+        let text = document(&json!([reason]));
+        let (line, end) = text.split_at(text.len() - 1);
+        assert!(!line.contains(char::is_control) && end == "\n", "{text:?}");
+        assert_eq!(serde_json::from_str::<Value>(line).unwrap(), json!([reason]));
     }
 
     #[test]

@@ -120,11 +120,11 @@ pub(crate) struct Admin {
 #[derive(Debug, Subcommand)]
 pub(crate) enum AdminAction {
     /// List the visitors
-    Who,
+    Who(ListOptions),
     /// List the open rooms
-    Rooms,
+    Rooms(ListOptions),
     /// List the hosts of the cluster
-    Hosts,
+    Hosts(ListOptions),
     /// End the sessions of a player, or one session
     Kick {
         #[command(flatten)]
@@ -153,7 +153,7 @@ pub(crate) enum AdminAction {
         player: PlayerSelector,
     },
     /// List the bans in force
-    Bans,
+    Bans(ListOptions),
     /// Show a line to all visitors
     Say {
         /// The text of the line
@@ -161,6 +161,13 @@ pub(crate) enum AdminAction {
     },
     /// End the server, as SIGTERM does
     Drain,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ListOptions {
+    /// The format of the list
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ListFormat,
 }
 
 /// The player that an action affects, named in one of three ways.
@@ -211,12 +218,12 @@ pub(crate) struct Scores {
     pub(crate) difficulty: Option<Difficulty>,
     /// The format of the boards
     #[arg(long, value_enum, default_value_t)]
-    pub(crate) format: ScoresFormat,
+    pub(crate) format: ListFormat,
 }
 
-/// The format of the boards.
+/// The format of a list.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub(crate) enum ScoresFormat {
+pub(crate) enum ListFormat {
     #[default]
     Table,
     Json,

@@ -10,7 +10,7 @@ use cellcaster::game::STEPS_PER_SECOND;
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use super::arguments::{Scores, ScoresFormat};
+use super::arguments::{ListFormat, Scores};
 use super::host_store::{StoreLocation, failed};
 use crate::accounts::{HostStore, LevelBoard, LevelScore, Name, StoreFailure};
 
@@ -29,9 +29,9 @@ pub(crate) fn run(options: &Scores) -> Result<(), Error> {
         })?;
     let boards = boards(&mut database.open_to_read()?, options).map_err(failed)?;
     let text = match options.format {
-        ScoresFormat::Table if boards.is_empty() => "no results\n".to_owned(),
-        ScoresFormat::Table => boards.iter().map(table).collect::<Vec<_>>().join("\n"),
-        ScoresFormat::Json => format!("{}\n", boards.iter().map(object).collect::<Value>()),
+        ListFormat::Table if boards.is_empty() => "no results\n".to_owned(),
+        ListFormat::Table => boards.iter().map(table).collect::<Vec<_>>().join("\n"),
+        ListFormat::Json => format!("{}\n", boards.iter().map(object).collect::<Value>()),
     };
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::Output;
 
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime};
+use serde_json::{Value, json};
 
 use super::running::Running;
 use crate::support::server;
@@ -34,6 +35,11 @@ fn complaint(folder: &Path, arguments: &[&str]) -> String {
     error
 }
 
+/// A document of JSON with a list.
+fn list(text: &str) -> Vec<Value> {
+    serde_json::from_str(text).unwrap()
+}
+
 #[test]
 fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
     let running = Running::start("", "text");
@@ -43,6 +49,13 @@ fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
     running.wait_for_visitors(1);
     let who = running.admin_says(&["who"]);
     assert!(who.contains("127.0.0.1") && who.contains("guest"), "{who}");
+    let who = list(&running.admin_says(&["who", "--format", "json"]));
+    let keys = ["address", "host", "key", "name", "room", "seconds", "session"];
+    assert_eq!(who[0].as_object().unwrap().keys().collect::<Vec<_>>(), keys);
+    assert_eq!((&who[0]["address"], &who[0]["key"]), (&json!("127.0.0.1"), &Value::Null));
+    let rooms = list(&running.admin_says(&["rooms", "--format", "json"]));
+    let keys = ["difficulty", "level", "members", "mode", "most", "room", "watchers"];
+    assert_eq!(rooms[0].as_object().unwrap().keys().collect::<Vec<_>>(), keys);
     assert_eq!(running.admin_says(&["say", "closing \u{1b}[31msoon"]), "said to 1 visitor\n");
     visitor.wait_for("closing [31msoon");
     let kick = ["kick", "--address", "127.0.0.0/8", "--reason", "repairs"];
@@ -102,6 +115,7 @@ fn bans_work_while_no_server_runs() {
     store.create_account(None, &key, &Name::new("Ada").unwrap(), now).unwrap();
     drop(store);
     assert_eq!(written(&folder, &["bans"]), "nobody is banned\n");
+    assert_eq!(written(&folder, &["bans", "--format", "json"]), "[]\n");
     // A ban on a name includes the key of its account.
     let said = written(&folder, &["ban", "ADA", "--reason", "'; DROP TABLE bans; --"]);
     assert_eq!(said, format!("banned ADA and {key} for ever; no server runs\n"));
@@ -109,6 +123,11 @@ fn bans_work_while_no_server_runs() {
     let bans = written(&folder, &["bans"]);
     assert_eq!(bans.lines().count(), 4, "{bans}");
     assert!(bans.contains("'; DROP TABLE bans; --"), "{bans}");
+    let bans = list(&written(&folder, &["bans", "--format", "json"]));
+    let of = |kind: &str| bans.iter().find(|ban| ban["kind"] == kind).unwrap();
+    assert_eq!((&of("name")["banned"], &of("name")["until"]), (&json!("ADA"), &Value::Null));
+    assert_eq!(of("name")["reason"], "'; DROP TABLE bans; --");
+    assert!(of("key")["made"].as_u64() > Some(1_700_000_000), "{bans:?}");
     let said = written(&folder, &["unban", "ada"]);
     assert_eq!(said, format!("ada and {key} may come back\n"));
     assert!(complaint(&folder, &["unban", "ada"]).contains("there is no such ban"));
