@@ -22,6 +22,7 @@
 mod account;
 mod ban;
 mod failure;
+pub(crate) mod known;
 mod lease;
 mod name;
 mod postgres;
@@ -41,8 +42,10 @@ pub(crate) mod worker;
 pub use rusqlite::types::Value as ColumnValue;
 
 pub use account::{Account, AccountId, AccountKey, AccountSettings, UnixTime};
+pub(crate) use ban::applying;
 pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{AccountRefusal, StoreFailure};
+pub use known::KnownPlayers;
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
 pub use presence::{HostNotice, HostRow, Visit, VisitId};

@@ -152,6 +152,11 @@ impl PostgresDatabase {
         Ok(Self { address, is_to_read, runtime: Some(runtime), session: None, refused: None })
     }
 
+    /// The server and the database, without a password.
+    pub(crate) fn shown(&self) -> &str {
+        &self.address.shown
+    }
+
     /// Runs statements, and runs them again after a conflict or the loss of the connection.
     pub(crate) fn run<T, E: From<StoreFailure>>(
         &mut self,

@@ -133,6 +133,16 @@ impl HostStore {
         Ok(server.map(|server| Self { database: Database::Server(Box::new(server)) }))
     }
 
+    /// The name of the server and the database, without a password; `None` for a file.
+    pub(crate) fn database(&self) -> Option<&str> {
+        match &self.database {
+            Database::Server(server) => Some(server.shown()),
+            Database::File(_) => None,
+            #[cfg(test)]
+            Database::Failing(_) => None,
+        }
+    }
+
     /// Copies the write-ahead log of a file into the file, for the time while no host runs.
     ///
     /// # Errors
@@ -155,6 +165,18 @@ impl HostStore {
     /// If the store can't be read. All methods share this error.
     pub fn account(&mut self, key: &AccountKey) -> Result<Option<Account>, StoreFailure> {
         self.database.once(|it| account_of_key(it, key))
+    }
+
+    /// The number of a key's account. A number from another time may be another account's, because the database may have
+    /// been replaced since.
+    ///
+    /// # Errors
+    /// If there is no such account; also see [`account`](Self::account).
+    pub(crate) fn of_key(&mut self, key: &AccountKey) -> Result<AccountId, StoreFailure> {
+        let account = self.account(key)?;
+        account
+            .map(|account| account.id)
+            .ok_or_else(|| StoreFailure::new("the account does not exist"))
     }
 
     /// The account with `name`, or with a name that looks like it.
@@ -508,7 +530,7 @@ fn bans(it: &dyn Statements) -> Result<Vec<(i64, Ban)>, StoreFailure> {
 
 impl BanTarget {
     /// The kind and the text of a target, as the store keeps them.
-    fn parts(&self) -> (&'static str, String) {
+    pub(super) fn parts(&self) -> (&'static str, String) {
         match self {
             Self::Key(key) => ("key", key.to_string()),
             Self::Name(name) => ("name", name.to_string()),
@@ -516,7 +538,7 @@ impl BanTarget {
         }
     }
 
-    fn of_parts(kind: &str, text: &str) -> Option<Self> {
+    pub(super) fn of_parts(kind: &str, text: &str) -> Option<Self> {
         match kind {
             "key" => AccountKey::parse(text).map(Self::Key),
             "name" => Some(Self::Name(Name::kept(text))),

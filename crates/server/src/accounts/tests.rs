@@ -3,6 +3,7 @@
 #[cfg(all(unix, feature = "system-tests"))]
 mod alike;
 mod file;
+mod known;
 mod lease;
 #[cfg(all(unix, feature = "system-tests"))]
 mod postgres;

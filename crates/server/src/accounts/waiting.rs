@@ -169,12 +169,7 @@ impl WaitingResults {
                 _ => Ok(()),
             };
         }
-        let new = self.file.with_extension("new");
-        let written = private::create_file(&new)
-            .and_then(|()| SystemFiles.write(&new, self.content().as_bytes()))
-            .and_then(|()| SystemFiles.rename(&new, &self.file));
-        // A partial file would take up room on a full disk.
-        written.inspect_err(|_| _ = SystemFiles.remove(&new))
+        replace(&self.file, self.content().as_bytes())
     }
 
     /// The text of the file.
@@ -240,6 +235,16 @@ impl WaitingResult {
     }
 }
 
-fn failure(file: &Path, error: &io::Error) -> StoreFailure {
+/// Replaces a file, which only its owner can read. The file is complete or unchanged.
+pub(super) fn replace(file: &Path, content: &[u8]) -> io::Result<()> {
+    let new = file.with_extension("new");
+    let written = private::create_file(&new)
+        .and_then(|()| SystemFiles.write(&new, content))
+        .and_then(|()| SystemFiles.rename(&new, file));
+    // A partial file would take up room on a full disk.
+    written.inspect_err(|_| _ = SystemFiles.remove(&new))
+}
+
+pub(super) fn failure(file: &Path, error: &io::Error) -> StoreFailure {
     StoreFailure::new(format!("{} can't be used: {error}", printable_path(file)))
 }

@@ -12,7 +12,7 @@ use tokio::task::JoinSet;
 
 use super::arguments::Serve;
 use super::host_store::{StoreLocation, failed};
-use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
+use crate::accounts::{HostNotice, HostStore, KnownPlayers, StoreFailure, WaitingResults};
 use crate::cluster::Cluster;
 use crate::config::{Config, LiveConfig};
 use crate::logging::{self, Logging};
@@ -44,6 +44,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let cluster = cluster(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
+    let known = store.database().map(|database| warned(KnownPlayers::open(&folder, database)));
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
     let ended = runtime.block_on(async {
         let no_signals = |error| Error::machine(format!("signals can't be caught: {error}"));
@@ -69,6 +70,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         let mut host = host.map_err(|error| no_thread(&error))?;
         host.catalog = Catalog::with(&configuration.maps);
         host.waiting = Some(waiting);
+        host.known = known;
         if let Some((cluster, [leases, presence])) = cluster {
             let cluster = Cluster::join(&cluster, leases, presence, notice(address)).await;
             host.cluster = Some(cluster.map_err(Error::mistake)?);

@@ -33,7 +33,7 @@ use self::results::Recorder;
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::visit::Driver;
 use crate::accounts::worker::StoreWorker;
-use crate::accounts::{HostStore, WaitingResults};
+use crate::accounts::{HostStore, KnownPlayers, WaitingResults};
 use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
 use crate::config::{Config, LiveConfig};
@@ -64,6 +64,8 @@ struct Shared {
     cluster: Option<SharedRooms>,
     store: StoreWorker,
     recorder: Recorder,
+    /// The players that the host remembers while the database is away; `None` if the store is a file.
+    known: Option<Arc<Mutex<KnownPlayers>>>,
     /// A cache of the best runs on the boards. Only the store's thread uses it.
     runs: Arc<Mutex<KeptRuns>>,
     load: Arc<Load>,
@@ -76,6 +78,9 @@ struct Shared {
 const GOVERNED: Duration = Duration::from_millis(250);
 /// The maximum number of queued calls to the store.
 const MAX_CALLS: usize = 256;
+/// Shown to a player that the host remembers while the database is away.
+const AWAY: &str =
+    "The host's database is away: results are recorded later, and changed settings are lost.";
 /// How long the store may take to shut down.
 const STORE_END: Duration = Duration::from_secs(10);
 
@@ -90,6 +95,8 @@ pub struct HostParts {
     pub(crate) store: StoreWorker,
     /// Results that wait for the store. New results are added here while the store is unreachable.
     pub(crate) waiting: Option<WaitingResults>,
+    /// The players that the host lets in while the database is away.
+    pub(crate) known: Option<KnownPlayers>,
     /// The seed for all chance in rooms.
     pub(crate) seed: u64,
     /// The cluster with which the host shares its rooms.
@@ -115,6 +122,7 @@ impl HostParts {
             load: Load::new(Arc::clone(&metrics)),
             store: StoreWorker::start("store", MAX_CALLS, store)?,
             waiting: None,
+            known: None,
             // If the system had no random numbers, the server would have no keys either.
             seed: getrandom::u64().unwrap_or_default(),
             metrics,
@@ -158,6 +166,7 @@ impl GameHost {
             cluster,
             store: parts.store,
             recorder,
+            known: parts.known.map(|known| Arc::new(Mutex::new(known))),
             runs: Arc::default(),
             load,
             large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
@@ -169,6 +178,9 @@ impl GameHost {
             shared.rooms.clone(),
             shared.cluster.clone(),
         ));
+        if let Some(known) = shared.known.clone() {
+            tokio::spawn(login::remember_all(Arc::downgrade(&shared), known));
+        }
         if shared.recorder.waiting.is_some() {
             tokio::spawn(results::record_all(Arc::downgrade(&shared)));
         }
@@ -184,8 +196,13 @@ impl GameHost {
                 rooms.end().await;
             }
             shared.rooms.end().await;
-            let recorder = shared.recorder.clone();
-            let ended = shared.store.call(move |store| recorder.end(store));
+            let (recorder, known) = (shared.recorder.clone(), shared.known.clone());
+            let ended = shared.store.call(move |store| {
+                if let Some(known) = &known {
+                    login::save(known);
+                }
+                recorder.end(store);
+            });
             _ = timeout(STORE_END, ended).await;
         }
     }
@@ -226,12 +243,16 @@ impl Host for GameHost {
             Ok(known) => known,
             Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
         };
-        let _counted = match shared.begin_visit(&visitor, known.key).await {
+        let _counted = match shared.begin_visit(&visitor, known.key, known.is_remembered).await {
             Ok(counted) => counted,
             Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
         };
         let options = login::terminal_options(&visitor);
+        let is_remembered = known.is_remembered;
         let mut driver = Driver::new(shared, &visitor, known, options);
+        if is_remembered {
+            driver.tell(AWAY);
+        }
         driver.look_for_place();
         Departure { status: driver.run(&mut link).await, refusal: None }
     }

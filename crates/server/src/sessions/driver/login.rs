@@ -1,14 +1,24 @@
 //! The start of a visit: the account, bans, names, cluster-wide limits, and the terminal.
+//!
+//! While the database is away, a host lets in the players that it [remembers](KnownPlayers), unless a remembered ban
+//! applies to them. In a cluster, their visits then count on their host alone.
 
+use std::net::IpAddr;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, Weak};
+use std::time::Duration;
+
+use tokio::time::sleep;
 
 use super::Shared;
+use crate::accounts::known::KnownPlayer;
 use crate::accounts::{
-    Account, AccountId, AccountKey, AccountRefusal, AccountSettings, Ban, BanTarget, HostStore,
-    Identity, Name, Origin, StoreFailure, UnixTime,
+    Account, AccountKey, AccountRefusal, AccountSettings, Ban, BanTarget, HostStore, Identity,
+    KnownPlayers, Name, Origin, StoreFailure, UnixTime, applying,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
+use crate::lock::locked;
 use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
 use crate::ssh::{Departure, Visitor};
@@ -24,6 +34,8 @@ pub(crate) struct AccountData {
     pub(crate) settings: AccountSettings,
     /// The name offered to the visitor.
     pub(crate) offer: Name,
+    /// Whether the database was away, and the host remembers the player.
+    pub(crate) is_remembered: bool,
 }
 
 /// Shown to a visitor while the store or the cluster cannot be reached.
@@ -40,29 +52,23 @@ impl Shared {
     ) -> Result<AccountData, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
-        let answer = self.store.call(move |store| {
-            let now = UnixTime::now();
-            let account = key.map(|key| store.account(&key)).transpose()?.flatten();
-            let name = account.as_ref().map(|account| &account.name);
-            let identity = Identity { address: Some(address), key: key.as_ref(), name };
-            let ban = store.ban_of(&identity, now)?;
-            let settings = match &account {
-                Some(account) => {
-                    store.note_visit(account.id, now)?;
-                    store.settings(account.id)?
-                }
-                None => AccountSettings::default(),
-            };
-            Ok::<_, StoreFailure>((ban, account, settings))
-        });
-        let (ban, account, settings) = match answer.await {
-            Ok(Ok(known)) => known,
-            failed => {
-                self.metrics.store_errors.inc();
-                logging::store_failed(format!("{failed:?}"));
+        let known = self.known.clone();
+        let answer = self.store.call(move |store| look_up(store, known.as_deref(), address, key));
+        let failed = |failure: String| {
+            self.metrics.store_errors.inc();
+            logging::store_failed(failure);
+        };
+        let LookedUp { ban, account, settings, failure } = match answer.await {
+            Ok(Ok(found)) => found,
+            answer => {
+                failed(format!("{answer:?}"));
                 return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
             }
         };
+        let is_remembered = failure.is_some();
+        if let Some(failure) = failure {
+            failed(failure.to_string());
+        }
         if let Some(ban) = ban {
             logging::banned_visitor(address, &ban.target);
             return Err((banned(&ban), Departure::REFUSED));
@@ -71,7 +77,7 @@ impl Shared {
             Some(account) => account.name.clone(),
             None => self.offer(&visitor.user),
         };
-        Ok(AccountData { key, account, settings, offer })
+        Ok(AccountData { key, account, settings, offer, is_remembered })
     }
 
     /// A name to offer to a new visitor: their user name, if it is valid and free, or else a guest name.
@@ -81,18 +87,113 @@ impl Shared {
     }
 }
 
+/// The result of looking a visitor up.
+#[derive(Debug)]
+struct LookedUp {
+    ban: Option<Ban>,
+    account: Option<Account>,
+    settings: AccountSettings,
+    /// The failure of the database, if the host remembers the player.
+    failure: Option<StoreFailure>,
+}
+
+/// Looks a visitor up in the store or, while it is away, among the players in `known`.
+fn look_up(
+    store: &mut HostStore,
+    known: Option<&Mutex<KnownPlayers>>,
+    address: IpAddr,
+    key: Option<AccountKey>,
+) -> Result<LookedUp, StoreFailure> {
+    let now = UnixTime::now();
+    let (bans, found, failure) = match (look_up_in(store, key, now), known, key) {
+        (Ok((bans, found)), known, _) => {
+            if let Some(known) = known {
+                locked(known, |known| {
+                    known.note_bans(&bans);
+                    match (&found, &key) {
+                        (Some((account, settings)), _) => known.note(account, settings, now),
+                        (None, Some(key)) => known.forget(key),
+                        (None, None) => {}
+                    }
+                });
+            }
+            (bans, found, None)
+        }
+        (Err(failure @ StoreFailure::Away(_)), Some(known), Some(key)) => {
+            let Some((player, bans)) = locked(known, |known| known.find(&key, now)) else {
+                return Err(failure);
+            };
+            let KnownPlayer { account, settings, .. } = player;
+            (bans, Some((account, settings)), Some(failure))
+        }
+        (Err(failure), ..) => return Err(failure),
+    };
+    let name = found.as_ref().map(|(account, _)| &account.name);
+    let identity = Identity { address: Some(address), key: key.as_ref(), name };
+    let ban = applying(bans, &identity);
+    let (account, settings) = found.unzip();
+    Ok(LookedUp { ban, account, settings: settings.unwrap_or_default(), failure })
+}
+
+/// The bans in force, and the account of a key with its settings.
+type Found = (Vec<Ban>, Option<(Account, AccountSettings)>);
+
+fn look_up_in(
+    store: &mut HostStore,
+    key: Option<AccountKey>,
+    now: UnixTime,
+) -> Result<Found, StoreFailure> {
+    let bans = store.bans(now)?;
+    let account = key.map(|key| store.account(&key)).transpose()?.flatten();
+    let found = account.map(|account| {
+        store.note_visit(account.id, now)?;
+        let settings = store.settings(account.id)?;
+        Ok::<_, StoreFailure>((account, settings))
+    });
+    Ok((bans, found.transpose()?))
+}
+
+/// The interval between two times at which the host learns of new bans and saves the known players.
+const REMEMBER_INTERVAL: Duration = Duration::from_mins(1);
+
+/// Keeps the known players and the bans up to date for as long as the host exists.
+pub(crate) async fn remember_all(shared: Weak<Shared>, known: Arc<Mutex<KnownPlayers>>) {
+    loop {
+        sleep(REMEMBER_INTERVAL).await;
+        let Some(shared) = shared.upgrade() else { return };
+        let known = Arc::clone(&known);
+        shared.store.run(move |store| {
+            if let Ok(bans) = store.bans(UnixTime::now()) {
+                locked(&known, |known| known.note_bans(&bans));
+            }
+            save(&known);
+        });
+    }
+}
+
+/// Saves the known players.
+pub(crate) fn save(known: &Mutex<KnownPlayers>) {
+    if let Err(failure) = locked(known, KnownPlayers::save) {
+        logging::store_failed(failure);
+    }
+}
+
 /// Assigns the requested name to a visitor.
 pub(crate) fn choose_name(
     store: &mut HostStore,
     origin: &Origin,
     key: Option<AccountKey>,
-    account: Option<AccountId>,
+    account: Option<Account>,
     name: &Name,
 ) -> Result<Option<Account>, String> {
     let now = UnixTime::now();
     let sentence = |refusal: AccountRefusal| refusal.to_string();
     match (key, account) {
-        (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
+        (_, Some(account)) => {
+            let renamed = store.of_key(&account.key).map_err(AccountRefusal::Failed);
+            let renamed = renamed.and_then(|id| store.rename(id, name, now));
+            renamed.map(Some).map_err(sentence)
+        }
         (Some(key), None) => {
             let account = store.create_account(Some(origin), &key, name, now);
             account.map(Some).map_err(sentence)
@@ -136,6 +237,7 @@ impl Shared {
         &self,
         visitor: &Visitor,
         key: Option<AccountKey>,
+        is_remembered: bool,
     ) -> Result<Option<CountedVisit>, (String, Departure)> {
         let Some(rooms) = &self.cluster else { return Ok(None) };
         let limits = self.config.get().admission;
@@ -145,17 +247,19 @@ impl Shared {
             address: visitor.peer.ip(),
             per_address: limits.per_address,
         };
-        rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
-            VisitRefusal::TooMany(reason) => {
+        match rooms.visits().begin(new_visit).await {
+            Ok(visit) => Ok(Some(visit)),
+            Err(VisitRefusal::TooMany(reason)) => {
                 let refusal = Some(reason);
-                (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
+                Err((reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED }))
             }
-            VisitRefusal::NotNow(failure) => {
+            Err(VisitRefusal::NotNow(failure)) => {
                 self.metrics.store_errors.inc();
                 logging::store_failed(failure);
-                (NOT_KNOWN.to_owned(), Departure::FAILED)
+                let failed = || (NOT_KNOWN.to_owned(), Departure::FAILED);
+                is_remembered.then_some(None).ok_or_else(failed)
             }
-        })
+        }
     }
 }
 

@@ -59,7 +59,7 @@ impl Recorder {
         };
         self.metrics.results(true).inc();
         let now = UnixTime::now();
-        match store.record(account.id, &run, now) {
+        match store.of_key(&account.key).and_then(|id| store.record(id, &run, now)) {
             Ok(improved) => self.placed(store, account, &run, improved),
             Err(failure) => {
                 self.failed(&failure);

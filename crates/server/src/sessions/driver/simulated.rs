@@ -68,6 +68,7 @@ impl Simulated {
             metrics,
             store,
             waiting: None,
+            known: None,
             seed: setup.seed,
             cluster: None,
         });

@@ -18,7 +18,7 @@ use tokio::time::sleep_until;
 
 use super::login::{self, AccountData};
 use super::{Shared, results};
-use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin};
+use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin, UnixTime};
 use crate::cluster::Entrant;
 use crate::line::Line;
 #[cfg(test)]
@@ -121,7 +121,7 @@ impl Driver {
         known: AccountData,
         options: SessionOptions,
     ) -> Self {
-        let AccountData { key, account, settings, offer } = known;
+        let AccountData { key, account, settings, offer, .. } = known;
         let identity = Profile {
             has_account: key.is_some(),
             name: login::line(&offer),
@@ -404,6 +404,11 @@ impl Driver {
         }
     }
 
+    /// Shows a sentence to the visitor.
+    pub(crate) fn tell(&mut self, sentence: &str) {
+        self.notify(SessionEvent::Result(sentence.to_owned()));
+    }
+
     fn notify(&mut self, event: SessionEvent) {
         let now = self.shared.now();
         self.session.notify(event, now);
@@ -419,10 +424,14 @@ impl Driver {
         if self.name.as_ref() == Some(&name) {
             return self.notify(SessionEvent::Named(Ok(login::line(&name))));
         }
-        let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
+        let (key, account) = (self.key, self.account.clone());
         let origin = Origin::new(self.address, self.shared.config.get().accounts);
+        let known = self.shared.known.clone();
         let is_accepted = self.call_store(move |store| {
             let result = login::choose_name(store, &origin, key, account, &name);
+            if let (Some(known), Ok(Some(account))) = (known, &result) {
+                locked(&known, |known| known.note_name(account, UnixTime::now()));
+            }
             Some(Reply::Named(name, result))
         });
         if !is_accepted {
@@ -479,10 +488,16 @@ impl Driver {
     }
 
     fn save(&mut self, settings: AccountSettings) {
-        let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
+        let Some(key) = self.account.as_ref().map(|account| account.key) else { return };
+        let known = self.shared.known.clone();
         self.shared.store.run(move |store| {
-            if let Err(failure) = store.set_settings(account, &settings) {
-                logging::store_failed(failure);
+            match store.of_key(&key).and_then(|id| store.set_settings(id, &settings)) {
+                Ok(()) => {
+                    if let Some(known) = known {
+                        locked(&known, |known| known.note_settings(&key, &settings));
+                    }
+                }
+                Err(failure) => logging::store_failed(failure),
             }
         });
     }

@@ -1,5 +1,7 @@
-//! Results of runs that end while the database is unreachable.
+//! Logins, and results of runs that end, while the database is unreachable.
 
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -135,4 +137,42 @@ fn a_player_who_is_still_connected_sees_the_result_recorded() {
     let time = format!("The moss hall, 0:{:02}.{}", steps / 60, steps * 10 / 60 % 10);
     assert!(mara.text().contains(&time), "{time} is not in\n{}", mara.text());
     assert_eq!((results.len(), host.waiting()), (1, 0.0));
+}
+
+#[test]
+fn known_players_can_log_in_during_an_outage() {
+    const AWAY: &str = "The host's database is away";
+    let mut host = Host::start();
+    let [mara, jon, stranger] = [(); 3].map(|()| key());
+    for (key, name) in [(&mara, "Mara"), (&jon, "Jon")] {
+        choose(&host.running.player(Some(key)), name, "\x1b");
+    }
+    host.running.admin_says(&["ban", "jon", "--reason", "insults", "--store", &host.store]);
+    // The host learns of the ban with the next login.
+    host.running.player(Some(&mara)).wait_for("> Mara");
+    host.running.signal(Signal::TERM);
+    assert_eq!(host.running.wait_for_end(), Some(0));
+    let file = fs::metadata(host.running.folder.join("known_players")).unwrap();
+    assert_eq!(file.permissions().mode() & 0o777, 0o600);
+    host.running.restart();
+
+    host.postgres.crash();
+    let player = host.running.player(Some(&mara));
+    player.wait_for(AWAY);
+    host.running.player(Some(&jon)).wait_for("banned from this server: insults");
+    host.running.player(Some(&stranger)).wait_for("The host can't look you up now");
+    player.send("\r");
+    player.wait_for("Alone, for the board");
+    player.send("4");
+    go_in(&player);
+    win(&player, KEPT);
+
+    host.postgres.restart();
+    player.wait_for("has been recorded.");
+    assert_eq!(host.results()[0].0, "Mara");
+    wait_until("a login as usual", || {
+        let player = host.running.player(Some(&mara));
+        player.wait_for("> Mara");
+        !player.text().contains(AWAY)
+    });
 }
