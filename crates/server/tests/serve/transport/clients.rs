@@ -65,6 +65,17 @@ fn a_visitor_with_an_rsa_key_is_a_guest_and_is_told_why() {
     house.assert_answers();
 }
 
+/// OpenSSH's client of version 9.5 or newer sends a stream of false keys to servers that offer this extension. Each
+/// would count against the limits, and real keys would wait for the next one.
+#[test]
+fn the_server_does_not_offer_pings_with_which_clients_hide_keys() {
+    let house = House::open();
+    let (_, error, _) = house.run(&["-vvv"], &["-T", "ann@127.0.0.1"]);
+    assert!(error.contains("server-sig-algs"), "{error}");
+    assert!(!error.contains("ping@openssh.com"), "{error}");
+    house.assert_answers();
+}
+
 #[test]
 fn passwords_are_refused() {
     let house = House::open();
