@@ -139,17 +139,13 @@ impl Minimap<'_> {
             }),
         }
         // Pointers to the east, south, west and north, and for the player also between these.
-        let (mark_pointers, ghost_pointers, arrows) = if self.glyphs.has_blocks() {
-            let arrows = ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'];
-            (['▸', '▾', '◂', '▴'], ['▹', '▿', '◃', '▵'], arrows)
+        let (mark_pointers, ghost_pointers) = if self.glyphs.has_blocks() {
+            (['▸', '▾', '◂', '▴'], ['▹', '▿', '◃', '▵'])
         } else {
-            ([')', 'u', '(', 'n'], ['g'; 4], ['>', '\\', 'v', '/', '<', '\\', '^', '/'])
+            ([')', 'u', '(', 'n'], ['g'; 4])
         };
         let mut draw = |mark: &MapMark, pointers: &[char], colors: [Color; 2]| {
-            let Some((x, y)) = window.cell(mark.position) else { return };
-            let turns = mark.heading.degrees() / 360.0 * pointers.len() as f64;
-            let pointer = pointers[turns.round() as usize % pointers.len()];
-            canvas.draw_character(area.x + x, area.y + y, pointer, colors);
+            window.draw(canvas, area, mark, pointers, colors);
         };
         if let Some(ghost) = &self.ghost {
             // The ghost is hollow, or a letter, and pale, because it cannot see the player.
@@ -160,7 +156,25 @@ impl Minimap<'_> {
             draw(mark, &mark_pointers, colors);
         }
         let player = MapMark { position: self.camera.position(), heading: self.camera.heading };
-        draw(&player, &arrows, self.colors([Rgb::BLACK, PLAYER], [0, 11]));
+        draw(&player, self.arrows(), self.colors([Rgb::BLACK, PLAYER], [0, 11]));
+    }
+
+    /// Draws an arrow for another player on the same `area`, wherever that player is on the map, on a `ground`.
+    pub fn paint_arrow(&self, area: Rect, canvas: &mut impl Canvas, mark: &MapMark, ground: Rgb) {
+        let area = area.intersection(canvas.bounds());
+        if !area.is_empty() {
+            let colors = [Rgb::BLACK, ground].map(|color| color_at(self.depth, color));
+            self.window(area).draw(canvas, area, mark, self.arrows(), colors);
+        }
+    }
+
+    /// Arrows to the east, south-east, south and so on.
+    fn arrows(&self) -> &'static [char] {
+        if self.glyphs.has_blocks() {
+            &['→', '↘', '↓', '↙', '←', '↖', '↑', '↗']
+        } else {
+            &['>', '\\', 'v', '/', '<', '\\', '^', '/']
+        }
     }
 
     /// The size of the part of `room` that the map fills. The rest would be blank.
@@ -297,6 +311,21 @@ impl MapViewport {
     /// The distance of the centres of a row of pixels from the map's northern edge.
     fn y_of(&self, row: u32) -> f64 {
         (f64::from(row) + 0.5 + self.corner.y) / self.scale.y
+    }
+
+    /// Draws the pointer for a mark, which the first of `pointers` shows looking east.
+    fn draw(
+        &self,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        mark: &MapMark,
+        pointers: &[char],
+        colors: [Color; 2],
+    ) {
+        let Some((x, y)) = self.cell(mark.position) else { return };
+        let turns = mark.heading.degrees() / 360.0 * pointers.len() as f64;
+        let pointer = pointers[turns.round() as usize % pointers.len()];
+        canvas.draw_character(area.x + x, area.y + y, pointer, colors);
     }
 
     /// The cell of the area that shows `point`.

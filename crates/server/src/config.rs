@@ -35,7 +35,7 @@ use toml::de::{DeTable, DeValue};
 use crate::accounts::{AccountRate, AddressPrefix};
 use crate::admission::Limits;
 use crate::logging::LogFilter;
-use crate::rooms::directory::RoomLimits;
+use crate::rooms::directory::{RecordingBounds, RoomLimits};
 use crate::rooms::room::Mode;
 use crate::rooms::summary::RoomWish;
 use cellcaster::app::parts::{Field, Setting, Value as _, reject_range, toml_string};
@@ -104,6 +104,10 @@ pub struct Config {
     pub player_bytes_per_second: u32,
     /// The rooms that always exist.
     pub standing: Vec<RoomWish>,
+    /// The most mebibytes of recordings.
+    pub recordings_megabytes: u32,
+    /// The days after which a finished recording is removed.
+    pub recordings_days: u32,
     /// The folder for recordings of rooms; `None` if rooms are not recorded.
     pub recordings: Option<PathBuf>,
 }
@@ -138,6 +142,8 @@ impl Default for Config {
             player_bytes_per_second: 60_000,
             // One room to walk around in, and one to play in.
             standing: [Mode::Roam, Mode::Tag].map(in_mode).into(),
+            recordings_megabytes: 256,
+            recordings_days: 30,
             recordings: None,
         }
     }
@@ -183,6 +189,16 @@ impl Config {
             most_watchers: self.watchers as usize,
             closes_after: self.empty_room,
             standing: self.standing.clone(),
+        }
+    }
+
+    /// The limits of recordings.
+    pub(crate) fn recording_bounds(&self) -> RecordingBounds {
+        let age = Duration::from_hours(24 * u64::from(self.recordings_days));
+        RecordingBounds {
+            bytes: u64::from(self.recordings_megabytes) << 20,
+            age,
+            ..RecordingBounds::default()
         }
     }
 
@@ -262,12 +278,18 @@ impl LiveConfig {
         self.0.subscribe()
     }
 
-    /// Replaces the configuration, except for the addresses at which the server listens and the folder of
-    /// maps. Returns the names of the settings that `wanted` would change but that stay until the next
+    /// Replaces the configuration, except for the addresses at which the server listens, the folder of maps
+    /// and the limits of recordings. Returns the names of the settings that `wanted` would change but that stay until the next
     /// start.
     pub fn replace(&self, mut wanted: Config) -> Vec<&'static str> {
         let now = self.get();
-        let fixed = [("listen", LISTEN), ("metrics.listen", METRICS_LISTEN), ("maps", MAPS)];
+        let fixed = [
+            ("listen", LISTEN),
+            ("metrics.listen", METRICS_LISTEN),
+            ("maps", MAPS),
+            (RECORDINGS_MEGABYTES.key, RECORDINGS_MEGABYTES),
+            (RECORDINGS_DAYS.key, RECORDINGS_DAYS),
+        ];
         let fixed = fixed.into_iter().filter_map(|(name, Setting { value, .. })| {
             let differs = value.differs(&wanted, &now);
             value.copy(&now, &mut wanted);
@@ -418,6 +440,19 @@ const MAPS: Setting<Config> = Setting {
     },
 };
 
+const RECORDINGS_MEGABYTES: Setting<Config> = Setting {
+    key: "recordings-megabytes",
+    about: "the size and the age up to which recordings of rooms are kept, if rooms are recorded; the\n\
+            oldest are removed first",
+    value: &Number(1..=1 << 20, NumberField::U32(|it| &mut it.recordings_megabytes)),
+};
+
+const RECORDINGS_DAYS: Setting<Config> = Setting {
+    key: "recordings-days",
+    about: "",
+    value: &Number(1..=3650, NumberField::U32(|it| &mut it.recordings_days)),
+};
+
 /// The only setting in the table `[metrics]`. Writes an empty string if there is no value.
 const METRICS_LISTEN: Setting<Config> = Setting {
     key: "listen",
@@ -458,7 +493,7 @@ const TEXTS: [Setting<Config>; 6] = [
 ];
 
 /// The number settings, in the order of a file. They follow the texts.
-const NUMBERS: [Setting<Config>; 24] = [
+const NUMBERS: [Setting<Config>; 26] = [
     Setting {
         key: "connections",
         about: "the limit of visitors who have logged in",
@@ -584,6 +619,8 @@ const NUMBERS: [Setting<Config>; 24] = [
                 coarser or fewer, and pictures at rest become exact; 0 for no limit",
         value: &Number(0..=1 << 30, NumberField::U32(|it| &mut it.player_bytes_per_second)),
     },
+    RECORDINGS_MEGABYTES,
+    RECORDINGS_DAYS,
 ];
 
 /// A setting with functions of its own to read and write the value.

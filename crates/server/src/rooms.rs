@@ -1,5 +1,6 @@
 //! Rooms: multiplayer games as deterministic state machines.
 
+pub(crate) mod cast;
 pub mod directory;
 pub mod ghost;
 pub mod maps;

@@ -73,8 +73,8 @@ pub(crate) struct Serve {
     /// The format of the log
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) log: LogFormat,
-    /// Record each room into this folder, which holds at most 256 MiB and 30 days; the oldest recordings are removed
-    /// first [default: rooms are not recorded]
+    /// Record each room into this folder, within the settings `recordings-megabytes` and `recordings-days` [default:
+    /// rooms are not recorded]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) record_room: Option<PathBuf>,
 }

@@ -10,12 +10,14 @@ use std::time::Duration;
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::animation::{Frames, TooManyFrames};
 use cellcaster::cli::{Error, ROOM_RECORDING};
+use cellcaster::fault::printable_path;
 use cellcaster::game::{STEP, STEPS_PER_SECOND};
 
 use super::arguments::Replay;
+use crate::rooms::directory::CAST;
 use crate::rooms::maps::HostMaps;
 use crate::rooms::replayed::{MAX_RECORDED_BYTES, replayed};
-use crate::rooms::room::{Catalog, MemberId, MemberView, Room, RoomView};
+use crate::rooms::room::{Catalog, MemberId, MemberView, Room, RoomView, is_of_other_version};
 use crate::sessions::session::replayed::ReplayedScreen;
 
 /// Prints each round of the recording with its standings and its checksum. Draws the animated PNG in `options`.
@@ -34,6 +36,9 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
     if !text.starts_with(ROOM_RECORDING) {
         return Err(cannot(&"it is not a recording of a room"));
+    }
+    if is_of_other_version(&text) {
+        return Err(cannot(&other_version(&options.file)));
     }
     let maps = options.maps.as_deref().map(HostMaps::read).transpose();
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
@@ -57,6 +62,18 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         _ = writeln!(lines, "  state {:016x}", round.checksum);
     }
     io::stdout().write_all(lines.as_bytes()).map_err(|error| Error::of_output(&error))
+}
+
+/// The reason why a recording of another version is not replayed, and what shows it nevertheless.
+fn other_version(file: &Path) -> String {
+    let cast = file.with_extension(CAST);
+    let what = "it was recorded by another version of Cellcaster: replay it with that version";
+    if cast.is_file() {
+        let cast = printable_path(&cast);
+        format!("{what}, or watch the room from above with \"asciinema play {cast}\"")
+    } else {
+        what.to_owned()
+    }
 }
 
 /// The animated PNG of what one member saw.

@@ -168,7 +168,7 @@ impl SimulatedHost {
         };
         let metrics = Arc::<Metrics>::default();
         let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
-        let recordings = Recordings::in_folder(None);
+        let recordings = Recordings::new(|_| None);
         let rooms = Rooms::new(limits, Arc::clone(catalog), recordings, Arc::clone(&load), seed);
         let (bus, leases) = (world.bus(index), world.leases(index));
         let (notice, visits) = (notice(index), world.visits(index));

@@ -123,7 +123,9 @@ fn a_running_server_keeps_fixed_settings() {
     wanted.rows = 100;
     wanted.empty_room = Duration::ZERO;
     wanted.maps = Some("/srv/maps".into());
-    assert_eq!(live.replace(wanted), ["listen", "metrics.listen", "maps"]);
+    wanted.recordings_days = 7;
+    let fixed = ["listen", "metrics.listen", "maps", "recordings-days"];
+    assert_eq!(live.replace(wanted), fixed);
     let config = live.get();
     assert_eq!((config.rows, config.listen), (100, Config::default().listen));
     assert_eq!((config.metrics, config.maps.as_ref()), (None, None));

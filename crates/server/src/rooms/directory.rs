@@ -18,7 +18,7 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tokio::time::timeout;
 
-pub(crate) use self::recording::Recordings;
+pub(crate) use self::recording::{CAST, RecordingBounds, Recordings};
 use crate::line::Line;
 use crate::load::Load;
 use crate::lock::locked;

@@ -39,10 +39,7 @@ pub(crate) fn replayed(
     look: &mut dyn FnMut(&Room) -> Result<(), String>,
 ) -> Result<Vec<RoundReport>, String> {
     if is_of_other_version(text) {
-        return Err(
-            "it was recorded by another version of Cellcaster: replay it with that version"
-                .to_owned(),
-        );
+        return Err("it was recorded by another version of Cellcaster".to_owned());
     }
     let rounds = parse_log(text).ok_or("a line is neither part of a header nor an entry")?;
     let last = rounds.len().saturating_sub(1);

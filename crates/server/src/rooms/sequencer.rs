@@ -30,6 +30,7 @@ use crate::load::Load;
 #[cfg(test)]
 use crate::load::Work;
 use crate::lock::locked;
+use crate::rooms::cast;
 use crate::rooms::room::{Command, Entry, Header, MemberId, Mode, Room, RoomView};
 use cellcaster::game::{
     self, Intents, LevelName, Outcome, PlayerColor, Rules, STEPS_PER_SECOND, ScriptWriter, Stretch,
@@ -237,6 +238,14 @@ pub(crate) trait Recording: Send {
     /// If the entry cannot be written.
     fn append(&mut self, entry: &Entry) -> io::Result<()>;
 
+    /// Draws the room for the cast, every [`cast::INTERVAL`] steps.
+    ///
+    /// # Errors
+    /// If the picture cannot be written.
+    fn look(&mut self, _: &RoomView) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Writes out the entries that are buffered in memory.
     ///
     /// # Errors
@@ -320,6 +329,9 @@ impl RoundLog {
         changes.entries = entries.len() as u64;
         let phase = room.phase();
         room.advance();
+        if room.step().is_multiple_of(cast::INTERVAL) {
+            self.record(|recording| recording.look(&room.view()));
+        }
         changes.summary |= phase != room.phase() || count != room.len();
         if room.header().mode == Mode::Alone {
             changes.finished = self.run.step(room);

@@ -115,10 +115,11 @@ impl HostParts {
         visitors: Visitors,
         store: HostStore,
     ) -> io::Result<Self> {
+        let config = live.get();
         Ok(Self {
             visitors,
             catalog: Catalog::builtin(),
-            recordings: Recordings::in_folder(live.get().recordings.clone()),
+            recordings: Recordings::in_folder(config.recordings.clone(), config.recording_bounds()),
             load: Load::new(Arc::clone(&metrics)),
             store: StoreWorker::start("store", MAX_CALLS, store)?,
             waiting: None,

@@ -2,13 +2,15 @@
 //!
 //! # Rules
 //!
-//! - The folder holds at most [`Bounds::bytes`], counted in whole blocks per file, and no recording that was
-//!   finished longer than [`Bounds::age`] ago. The oldest finished recordings are removed first. A file that
+//! - The folder holds at most [`RecordingBounds::bytes`], counted in whole blocks per file, and no recording that was
+//!   finished longer than [`RecordingBounds::age`] ago. The oldest finished recordings are removed first. A file that
 //!   is still being written stays.
 //! - A recording ends, with a whole entry, when the folder is full of files that are still being written, or
 //!   when the recording reaches [`MAX_RECORDED_BYTES`]. Its room goes on, and the next round is recorded
 //!   again.
-//! - A round begins a new file if the last one has reached [`Bounds::file`], so that long recordings age, too.
+//! - A round begins a new file if the last one has reached [`RecordingBounds::file`], so that long recordings age, too.
+//! - Beside each recording is its [cast](Cast), with the same name and the ending `.cast`. It is a recording of its own
+//!   for the limits, and begins and ends with the log. If there is no room for it, the log goes on.
 //!
 //! Entries are few and short. They are buffered for at most a second, see
 //! [`RoundLog`](crate::rooms::sequencer::RoundLog), so a killed server loses no more than that. Each write
@@ -26,8 +28,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 use crate::lock::locked;
+use crate::rooms::cast::Cast;
 use crate::rooms::replayed::MAX_RECORDED_BYTES;
-use crate::rooms::room::{Entry, Header};
+use crate::rooms::room::{Entry, Header, RoomView};
 use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
 use cellcaster::app::store::private;
@@ -44,11 +47,11 @@ impl Recordings {
     }
 
     /// Recordings in a folder; no recordings if there is no folder.
-    pub(crate) fn in_folder(folder: Option<PathBuf>) -> Self {
-        let folder = folder.map(|path| Arc::new(RecordingFolder::open(path, Bounds::default())));
+    pub(crate) fn in_folder(folder: Option<PathBuf>, bounds: RecordingBounds) -> Self {
+        let folder = folder.map(|path| Arc::new(RecordingFolder::open(path, bounds)));
         Self::new(move |room| {
             let folder = Arc::clone(folder.as_ref()?);
-            Some(Box::new(RecordedRoom { folder, room, file: None }))
+            Some(Box::new(RecordedRoom::new(folder, room)))
         })
     }
 
@@ -70,6 +73,16 @@ struct RecordedRoom {
     room: RoomId,
     /// `None` if the recording ended before this round.
     file: Option<RecordedFile>,
+    cast: RecordedCast,
+}
+
+/// The cast beside a file.
+enum RecordedCast {
+    /// It begins with the next picture.
+    Awaited,
+    Drawn(Box<Cast>, RecordedFile),
+    /// There is none until the next file, because it could not be written.
+    Ended,
 }
 
 /// A recording that is being written.
@@ -81,17 +94,17 @@ struct RecordedFile {
 }
 
 /// The limits of a folder of recordings.
-struct Bounds {
-    bytes: u64,
-    age: Duration,
+pub(crate) struct RecordingBounds {
+    pub(crate) bytes: u64,
+    pub(crate) age: Duration,
     /// The size of a file after which the next round begins a new one.
-    file: u64,
+    pub(crate) file: u64,
 }
 
 /// A folder of recordings.
 struct RecordingFolder {
     path: PathBuf,
-    bounds: Bounds,
+    bounds: RecordingBounds,
     held: Mutex<Held>,
 }
 
@@ -104,10 +117,13 @@ struct Held {
     blocks: u64,
 }
 
+/// The endings of the names of logs and casts.
+const LOG: &str = "log";
+pub(crate) const CAST: &str = "cast";
 /// The least disk space that a file takes, including its directory entry.
 const BLOCK: u64 = 4 << 10;
 
-impl Default for Bounds {
+impl Default for RecordingBounds {
     fn default() -> Self {
         Self { bytes: 256 << 20, age: Duration::from_hours(30 * 24), file: 16 << 20 }
     }
@@ -116,10 +132,13 @@ impl Default for Bounds {
 impl Recording for RecordedRoom {
     fn begin(&mut self, header: &Header) -> io::Result<()> {
         let most = self.folder.bounds.file;
-        if self.file.as_ref().is_none_or(|file| file.bytes >= most) {
-            // Finish the previous file first, so that it can be removed to make room for the new one.
+        let is_long = |file: &RecordedFile| file.bytes >= most;
+        let has_long_cast = matches!(&self.cast, RecordedCast::Drawn(_, file) if is_long(file));
+        if self.file.as_ref().is_none_or(is_long) || has_long_cast {
+            // Finish the previous files first, so that they can be removed to make room for the new one.
             self.file = None;
-            self.file = RecordedFile::create(&self.folder, self.room)
+            self.cast = RecordedCast::Awaited;
+            self.file = RecordedFile::create(&self.folder, |folder| new_file(folder, self.room))
                 .inspect_err(|error| {
                     tracing::error!(%error, room = %self.room, "a room cannot be recorded");
                 })
@@ -133,36 +152,77 @@ impl Recording for RecordedRoom {
         self.write(&format!("{entry}\n"))
     }
 
+    fn look(&mut self, room: &RoomView) -> io::Result<()> {
+        let drawn = self.draw(room);
+        if drawn.is_err() {
+            self.cast = RecordedCast::Ended;
+        }
+        drawn
+    }
+
     fn flush(&mut self) -> io::Result<()> {
-        self.file.as_mut().map_or(Ok(()), |file| file.output.flush())
+        let log = self.file.as_mut().map_or(Ok(()), |file| file.output.flush());
+        let cast = match &mut self.cast {
+            RecordedCast::Drawn(_, file) => file.output.flush(),
+            RecordedCast::Awaited | RecordedCast::Ended => Ok(()),
+        };
+        log.and(cast)
     }
 }
 
 impl RecordedRoom {
+    fn new(folder: Arc<RecordingFolder>, room: RoomId) -> Self {
+        Self { folder, room, file: None, cast: RecordedCast::Awaited }
+    }
+
     /// Writes all of `text` or nothing. Discards it if the recording has ended.
     fn write(&mut self, text: &str) -> io::Result<()> {
         let Some(file) = &mut self.file else { return Ok(()) };
-        if file.has_room_for(text.len() as u64) {
-            file.output.write_all(text.as_bytes())
-        } else {
+        let written = file.write(text);
+        if written.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::QuotaExceeded) {
             self.file = None;
-            let reason = "it ends here, because the recordings have reached their limit of bytes";
-            Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason))
+            self.cast = RecordedCast::Ended;
         }
+        written
+    }
+
+    /// Draws the next picture of the cast, which begins with the first one.
+    fn draw(&mut self, room: &RoomView) -> io::Result<()> {
+        if let (RecordedCast::Awaited, Some(log)) = (&self.cast, &self.file) {
+            let path = log.path.with_extension(CAST);
+            let mut file =
+                RecordedFile::create(&self.folder, |_| create(&path).map(|it| (path.clone(), it)))?;
+            file.write(&Cast::header())?;
+            self.cast = RecordedCast::Drawn(Box::new(Cast::new()), file);
+        }
+        let RecordedCast::Drawn(cast, file) = &mut self.cast else { return Ok(()) };
+        cast.line(room).map_or(Ok(()), |line| file.write(&line))
     }
 }
 
 impl RecordedFile {
-    /// Creates a new file in the folder.
-    fn create(folder: &Arc<RecordingFolder>, room: RoomId) -> io::Result<Self> {
+    /// Creates a new file in the folder with `create`, which receives the folder.
+    fn create(
+        folder: &Arc<RecordingFolder>,
+        create: impl FnOnce(&Path) -> io::Result<(PathBuf, File)>,
+    ) -> io::Result<Self> {
         private::create_folder(&folder.path)?;
         if !folder.take(1) {
             return Err(io::ErrorKind::QuotaExceeded.into());
         }
-        let created = new_file(&folder.path, room);
+        let created = create(&folder.path);
         let (path, file) =
             created.inspect_err(|_| locked(&folder.held, |held| held.blocks -= 1))?;
         Ok(Self { folder: Arc::clone(folder), path, output: BufWriter::new(file), bytes: 0 })
+    }
+
+    /// Writes all of `text` or, with the error `QuotaExceeded`, nothing.
+    fn write(&mut self, text: &str) -> io::Result<()> {
+        if self.has_room_for(text.len() as u64) {
+            return self.output.write_all(text.as_bytes());
+        }
+        let reason = "it ends here, because the recordings have reached their limit of bytes";
+        Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason))
     }
 
     /// Reserves space in the folder for `more` bytes; returns false if there is not enough.
@@ -188,7 +248,7 @@ impl Drop for RecordedFile {
 
 impl RecordingFolder {
     /// Opens a folder and counts the recordings in it.
-    fn open(path: PathBuf, bounds: Bounds) -> Self {
+    fn open(path: PathBuf, bounds: RecordingBounds) -> Self {
         let mut held = Held::default();
         for (key, bytes) in recordings(&path) {
             held.blocks += blocks(bytes);
@@ -238,9 +298,11 @@ fn recordings(folder: &Path) -> impl Iterator<Item = ((SystemTime, PathBuf), u64
     })
 }
 
-/// Returns true for the name of a recording, such as `room-7.log` or `room-7-2.log`.
+/// Returns true for the name of a recording or a cast, such as `room-7.log` or `room-7-2.cast`.
 fn is_name(name: &OsStr) -> bool {
-    let numbers = name.to_str().and_then(|name| name.strip_prefix("room-")?.strip_suffix(".log"));
+    let is_kind = |kind: &str| [LOG, CAST].contains(&kind);
+    let parts = name.to_str().and_then(|name| name.strip_prefix("room-")?.split_once('.'));
+    let numbers = parts.filter(|(_, kind)| is_kind(kind)).map(|(numbers, _)| numbers);
     numbers.is_some_and(|text| text.split('-').all(|number| number.parse::<u32>().is_ok()))
 }
 
@@ -253,14 +315,22 @@ fn remove(path: &Path) {
     }
 }
 
+/// Creates a file. It contains the players' chat, so only its owner can read it.
+fn create(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    private::restrict_file(&mut options);
+    options.write(true).create_new(true).open(path)
+}
+
 fn new_file(folder: &Path, room: RoomId) -> io::Result<(PathBuf, File)> {
     for number in 0.. {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };
-        let path = folder.join(format!("room-{room}{suffix}.log"));
-        let mut options = OpenOptions::new();
-        // The file contains the players' chat.
-        private::restrict_file(&mut options);
-        match options.write(true).create_new(true).open(&path) {
+        let path = folder.join(format!("room-{room}{suffix}.{LOG}"));
+        // A cast may be older than its log by one write, and therefore stay longer.
+        if path.with_extension(CAST).exists() {
+            continue;
+        }
+        match create(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             opened => return opened.map(|file| (path, file)),
         }
@@ -270,11 +340,17 @@ fn new_file(folder: &Path, room: RoomId) -> io::Result<(PathBuf, File)> {
 
 #[cfg(test)]
 mod tests {
+    use std::num::NonZero;
     use std::{env, process};
 
     use super::*;
     use crate::line::Line;
-    use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, parse_log};
+    use serde_json::{Value, json};
+
+    use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, Room, parse_log};
+    use crate::rooms::sequencer::RoundLog;
+    use crate::simulation::{HALL, catalog};
+    use cellcaster::game::{Intent, PlayerColor};
     use cellcaster::world::Difficulty;
 
     const DAY: Duration = Duration::from_hours(24);
@@ -291,7 +367,7 @@ mod tests {
         }
 
         fn open(&self, bytes: u64) -> Arc<RecordingFolder> {
-            let bounds = Bounds { bytes, file: 3 * BLOCK, ..Bounds::default() };
+            let bounds = RecordingBounds { bytes, file: 3 * BLOCK, ..RecordingBounds::default() };
             Arc::new(RecordingFolder::open(self.0.clone(), bounds))
         }
 
@@ -331,7 +407,7 @@ mod tests {
 
     /// The log of a room in its first round.
     fn begun(folder: &Arc<RecordingFolder>, room: u32) -> RecordedRoom {
-        let mut log = RecordedRoom { folder: folder.clone(), room: RoomId(room), file: None };
+        let mut log = RecordedRoom::new(folder.clone(), RoomId(room));
         log.begin(&header()).unwrap();
         log
     }
@@ -428,5 +504,61 @@ mod tests {
         say(&mut log, 400).unwrap();
         log.begin(&header()).unwrap();
         assert_eq!(place.names(), ["room-7-1.log", "room-7.log"]);
+    }
+
+    /// Plays in the hall for some steps: two members, the first of which walks while the second speaks.
+    fn play(recording: RecordedRoom, steps: u64) {
+        let (mara, jon) = (MemberId(1), MemberId(2));
+        let line = |text| Line::of(text, CHAT_COLUMNS).unwrap();
+        let join = |name, color| Command::Join { color, name: line(name) };
+        let mut room = Room::new(&Arc::new(catalog(HALL)), header()).unwrap();
+        let mut log = RoundLog::new(Some(Box::new(recording)), &room);
+        for step in 0..steps {
+            log.step(&mut room, |pass| match step {
+                0 => {
+                    pass(mara, join("Mara", PlayerColor::Red));
+                    pass(jon, join("Jon", PlayerColor::Blue));
+                }
+                10 => pass(jon, Command::Say(line("behind you"))),
+                20 => {
+                    let intents = [Intent::Forward].into_iter().collect();
+                    pass(mara, Command::Intents { seen: 1, intents });
+                }
+                _ => {}
+            });
+        }
+    }
+
+    #[test]
+    fn a_cast_beside_the_log_shows_the_room_from_above() {
+        let place = TemporaryFolder::new("cast");
+        play(RecordedRoom::new(place.open(1 << 20), RoomId(7)), 300);
+        assert_eq!(place.names(), ["room-7.cast", "room-7.log"]);
+        let cast = fs::read_to_string(place.0.join("room-7.cast")).unwrap();
+        let mut lines = cast.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let header = lines.next().unwrap();
+        assert_eq!((&header["version"], &header["width"]), (&json!(2), &json!(80)));
+        let [rows, columns] = [24, 80].map(|length| NonZero::new(length).unwrap());
+        let mut terminal = vt100::Parser::new(rows, columns, 0);
+        let mut last = 0.0;
+        for event in lines {
+            let time = event[0].as_f64().unwrap();
+            assert!(time >= last && event[1] == "o", "{event}");
+            last = time;
+            terminal.process(event[2].as_str().unwrap().as_bytes());
+        }
+        assert!((4.0..5.0).contains(&last), "{last}");
+        insta::assert_snapshot!(terminal.screen().contents());
+    }
+
+    #[test]
+    fn casts_count_for_the_limit_of_the_folder() {
+        let place = TemporaryFolder::new("casts");
+        let folder = place.open(6 * BLOCK);
+        for room in 1..=4 {
+            play(RecordedRoom::new(folder.clone(), RoomId(room)), 2000);
+            assert!(place.bytes() <= 6 * BLOCK, "{} bytes", place.bytes());
+        }
+        assert!(place.names().contains(&"room-4.log".to_owned()), "{:?}", place.names());
     }
 }

@@ -138,6 +138,20 @@ fn a_run_in_a_host_map_ranks_and_its_recording_replays() {
     // A map with different text counts as another map.
     fs::write(maps.join("moss.toml"), HALL.replace("#@....>.#", "#@...>..#")).unwrap();
     assert_eq!(replay(&[&recording, &maps]).status.code(), Some(2));
+    // Another version names the cast, which shows what happened.
+    let cast = recording.with_extension("cast");
+    assert!(fs::read_to_string(&cast).unwrap().contains("The moss hall"));
+    let text = fs::read_to_string(&recording).unwrap();
+    let (first, rest) = text.split_once('\n').unwrap();
+    fs::write(&recording, format!("{first}99\n{rest}")).unwrap();
+    let error = String::from_utf8(replay(&[&recording]).stderr).unwrap();
+    assert!(error.contains(&format!("\"asciinema play {}\"", cast.display())), "{error}");
+    fs::remove_file(&cast).unwrap();
+    let error = String::from_utf8(replay(&[&recording]).stderr).unwrap();
+    assert!(
+        error.contains("replay it with that version") && !error.contains("asciinema"),
+        "{error}"
+    );
 }
 
 #[test]
