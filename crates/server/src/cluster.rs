@@ -109,6 +109,7 @@ impl Cluster {
             visits,
             notice,
             catalog: Arc::clone(rooms.catalog()),
+            recordings: rooms.recordings().clone(),
             load,
             visitors,
             chance: Mutex::new(SplitMix64::new(seed)),

@@ -23,7 +23,7 @@ use tokio::time::{Instant, sleep};
 
 pub(crate) use self::client::{Conditions, SimulatedClient, guest};
 pub(crate) use self::emulator::Speaks;
-pub(crate) use self::tapes::Tapes;
+pub(crate) use self::tapes::{Tapes, replayed};
 use crate::accounts::HostStore;
 use crate::config::{Config, LiveConfig};
 use crate::line::Line;

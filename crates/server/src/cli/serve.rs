@@ -137,11 +137,6 @@ fn cluster(
              \"--store postgres://USER@HOST/DATABASE\"",
         ));
     };
-    if options.record_room.is_some() {
-        return Err(Error::mistake(
-            "rooms of a cluster can't be recorded: leave out --record-room",
-        ));
-    }
     let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
     Ok(Some((address, [open()?, open()?])))
 }

@@ -13,6 +13,7 @@ use super::visits::Visits;
 use crate::accounts::HostNotice;
 use crate::load::Load;
 use crate::lock::locked;
+use crate::rooms::directory::Recordings;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::{RoomId, RoomRefusal};
 use crate::visitors::Visitors;
@@ -27,6 +28,7 @@ pub(crate) struct HostContext {
     pub(crate) visits: Visits,
     pub(crate) notice: HostNotice,
     pub(crate) catalog: Arc<Catalog>,
+    pub(crate) recordings: Recordings,
     pub(crate) load: Arc<Load>,
     pub(crate) visitors: Visitors,
     pub(crate) chance: Mutex<SplitMix64>,
@@ -40,7 +42,8 @@ impl HostContext {
         locked(&self.chance, SplitMix64::bits)
     }
 
-    /// Loads a room's record, and its state from the newest checkpoint.
+    /// Loads a room's record, and its state from the newest checkpoint. If this host records rooms, it records this one
+    /// from now on, beginning with a whole round.
     pub(crate) async fn load_state(&self, id: RoomId) -> Result<(RoomState, Record), RoomRefusal> {
         let record = self.bus.get(Key::Room(id)).await.map_err(|_| RoomRefusal::NotNow)?;
         let record =
@@ -56,7 +59,9 @@ impl HostContext {
                 }
             },
         };
-        Ok((state.ok_or(RoomRefusal::NoLevel)?, record))
+        let mut state = state.ok_or(RoomRefusal::NoLevel)?;
+        state.record(self.recordings.open(id));
+        Ok((state, record))
     }
 }
 

@@ -14,7 +14,7 @@ use flate2::write::ZlibEncoder;
 
 use super::message::{Check, LogMessage, reader, to_bytes};
 use crate::rooms::room::{Catalog, Entry, Header, Room};
-use crate::rooms::sequencer::{Changes, RoundLog};
+use crate::rooms::sequencer::{Changes, Recording, RoundLog};
 use cellcaster::game::STEPS_PER_SECOND;
 use cellcaster::game::stored::{MAX_BYTES, Unrestorable};
 
@@ -59,6 +59,15 @@ impl RoomState {
     fn with(room: Room, (number, tick, epoch): (u64, u64, u64)) -> Self {
         let log = RoundLog::new(None, &room);
         Self { room, log, number, tick, epoch, sums: VecDeque::new() }
+    }
+
+    /// Records the room from now on, or from the next round if the present one has begun.
+    pub(crate) fn record(&mut self, recording: Option<Box<dyn Recording>>) {
+        self.log = if self.tick == 0 {
+            RoundLog::new(recording, &self.room)
+        } else {
+            RoundLog::of_next_round(recording)
+        };
     }
 
     /// The newest checksum.
@@ -141,7 +150,9 @@ impl RoomState {
 mod tests {
     use super::*;
     use crate::line::Line;
-    use crate::rooms::room::{Command, MemberId, Mode};
+    use crate::rooms::room::{Command, MemberId, Mode, parse_log};
+    use crate::rooms::summary::RoomId;
+    use crate::simulation::{Tapes, replayed};
     use cellcaster::game::PlayerColor;
     use cellcaster::game::stored::MAX_COUNT;
     use cellcaster::world::Difficulty;
@@ -203,6 +214,39 @@ mod tests {
         assert_eq!(again.room.checksum(), state.room.checksum());
         for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", &to_bytes(&(1_u64, 2_u64))] {
             assert!(RoomState::restore(&catalog, damaged).is_err());
+        }
+    }
+
+    #[test]
+    fn a_recorded_replica_replays_with_kept_seats() {
+        let catalog = Arc::new(Catalog::builtin());
+        let [whole, part] = [Tapes::default(), Tapes::default()];
+        let mut state = state();
+        state.record(whole.recordings().open(RoomId(7)));
+        let apply = |state: &mut RoomState, commands: Vec<Command>| {
+            let (last, tick) = (state.number, state.tick);
+            let entry = |command| Entry { step: 0, member: MemberId(1), command };
+            let entries = commands.into_iter().map(entry).collect();
+            let message = LogMessage { epoch: 1, last, tick, steps: 90, check: None, entries };
+            state.apply(Some(last + 1), &message);
+        };
+        let join =
+            Command::Join { color: PlayerColor::ALL[0], name: Line::of("Mara", 16).unwrap() };
+        apply(&mut state, vec![join, Command::Keep]);
+        // A host that comes later records the next round.
+        let mut later = RoomState::restore(&catalog, &state.checkpoint()).unwrap();
+        later.record(part.recordings().open(RoomId(7)));
+        for commands in [vec![Command::Again], vec![Command::Return { token: 9 }], vec![]] {
+            apply(&mut state, commands.clone());
+            apply(&mut later, commands);
+        }
+        assert_eq!(state.room.header().round, 2);
+        for (tapes, rounds) in [(whole, 2), (part, 1)] {
+            let text = tapes.text(RoomId(7));
+            assert!(text.contains("member 1 ") && text.contains("kept 1 0\n"), "{text}");
+            assert_eq!(parse_log(&text).unwrap().len(), rounds);
+            let room = replayed(&text, &catalog, state.room.step());
+            assert_eq!(room.checksum(), state.room.checksum());
         }
     }
 

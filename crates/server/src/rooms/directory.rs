@@ -111,6 +111,11 @@ impl Rooms {
         &self.0.catalog
     }
 
+    /// The recordings of rooms.
+    pub(crate) fn recordings(&self) -> &Recordings {
+        &self.0.recordings
+    }
+
     /// The list of rooms that lobbies show.
     pub(crate) fn summaries(&self) -> watch::Receiver<Arc<[RoomSummary]>> {
         self.0.summaries.subscribe()

@@ -257,6 +257,8 @@ pub(crate) trait Recording: Send {
 /// written before they change the room.
 pub(crate) struct RoundLog {
     recording: Option<Box<dyn Recording>>,
+    /// The recording that begins with the next round.
+    next: Option<Box<dyn Recording>>,
     /// Whether a write error was reported. A full disk is reported only once.
     has_failed: bool,
     run: SoloRun,
@@ -295,9 +297,14 @@ const FLUSHED: u64 = STEPS_PER_SECOND as u64;
 impl RoundLog {
     /// Begins the log of the current round of `room`.
     pub(crate) fn new(recording: Option<Box<dyn Recording>>, room: &Room) -> Self {
-        let mut log = Self { recording, has_failed: false, run: SoloRun::default() };
+        let mut log = Self::of_next_round(recording);
         log.begin(room);
         log
+    }
+
+    /// A log that is recorded from the next round on.
+    pub(crate) fn of_next_round(recording: Option<Box<dyn Recording>>) -> Self {
+        Self { recording: None, next: recording, has_failed: false, run: SoloRun::default() }
     }
 
     /// Takes a step: turns the commands from `take` into entries, applies them to the room, and advances it.
@@ -346,6 +353,7 @@ impl RoundLog {
 
     fn begin(&mut self, room: &Room) {
         self.run = SoloRun::default();
+        self.recording = self.next.take().or(self.recording.take());
         self.record(|recording| recording.begin(room.header()));
     }
 

@@ -36,14 +36,15 @@ use crate::rooms::summary::RoomId;
 use cellcaster::app::store::private;
 
 /// Opens the recordings of rooms.
-pub(crate) struct Recordings(Box<dyn Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync>);
+#[derive(Clone)]
+pub(crate) struct Recordings(Arc<dyn Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync>);
 
 impl Recordings {
     /// Recordings opened by `open`.
     pub(crate) fn new(
         open: impl Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync + 'static,
     ) -> Self {
-        Self(Box::new(open))
+        Self(Arc::new(open))
     }
 
     /// Recordings in a folder; no recordings if there is no folder.

@@ -21,8 +21,9 @@
 //! 95 join 2 green Jon
 //! ```
 //!
-//! A `member` line contains a member's number, colour, points and name. Kept seats exist only in clusters,
-//! whose rooms are not recorded.
+//! A `member` line contains a member's number, colour, points and name. In clusters, a line such as `kept 1 1f 300`
+//! follows for each member with an account: the number, the token of the latest return, and for a member who is away
+//! the steps until they leave.
 //!
 //! An entry begins with the step before which it takes effect, then a verb and the member's number. In
 //! `want`, the next number is the step of the frame that the member saw. The angles of `want` apply in one
@@ -153,7 +154,15 @@ impl Header {
         let seed = value("seed")?.parse().ok()?;
         let round = value("round")?.parse().ok()?;
         let next_member = value("next")?.parse().ok()?;
-        let members = lines.map(Seat::parse).collect::<Option<_>>()?;
+        let mut members: Vec<Seat> = Vec::new();
+        for line in lines {
+            if let Some(kept) = line.strip_prefix("kept ") {
+                let (id, place) = kept_place(kept)?;
+                members.iter_mut().find(|seat| seat.id == id)?.kept = Some(place);
+            } else {
+                members.push(Seat::parse(line)?);
+            }
+        }
         let header = Self { level, mode, difficulty, seed, round, next_member, members };
         header.is_possible().then_some(header)
     }
@@ -176,8 +185,24 @@ impl fmt::Display for Header {
         writeln!(f, "{ROOM_RECORDING}{VERSION}\nlevel {}\nmode {}", self.level, self.mode.name())?;
         writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
         writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
-        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))
+        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))?;
+        let mut kept = self.members.iter().filter_map(|seat| Some((seat.id, seat.kept?)));
+        kept.try_for_each(|(id, KeptPlace { token, away })| {
+            write!(f, "kept {id} {token:x}")?;
+            away.map_or(Ok(()), |steps| write!(f, " {steps}"))?;
+            writeln!(f)
+        })
     }
+}
+
+/// Parses the rest of a `kept` line.
+fn kept_place(rest: &str) -> Option<(MemberId, KeptPlace)> {
+    let mut words = rest.split(' ');
+    let id = MemberId::parse(words.next()?)?;
+    let token = u64::from_str_radix(words.next()?, 16).ok()?;
+    let away = words.next().map(|steps| steps.parse().ok());
+    let away = away.map_or(Some(None), |steps: Option<u64>| steps.map(Some))?;
+    words.next().is_none().then_some((id, KeptPlace { token, away }))
 }
 
 impl Seat {
@@ -365,7 +390,9 @@ mod tests {
             }
         };
         let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
-        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c")];
+        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c"), seat(8, 0, "Jon")];
+        header.members[0].kept = Some(KeptPlace { token: u64::MAX, away: Some(300) });
+        header.members[2].kept = Some(KeptPlace::default());
         header.next_member = 9;
         let text = header.to_string();
         assert_eq!(Header::parse(text.lines()), Some(header));
@@ -383,6 +410,9 @@ mod tests {
         assert!(read("2147483648", "member 2147483647 red 0 Mara").is_some());
         assert_eq!(read("2147483649", ""), None);
         assert_eq!(read("7", "member 7 red 0 Mara"), None);
+        for kept in ["", " ", "1", "1 x", "1 7 x", "1 7 0", "1 7 99999999", "1 7 8 9", "2 7"] {
+            assert_eq!(read("7", &format!("member 1 red 0 Mara\nkept {kept}")), None, "{kept}");
+        }
         assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
         let many: Vec<String> = (1..=99).map(|id| format!("member {id} red 0 Mara")).collect();
         assert_eq!(read("100", &many.join("\n")), None);

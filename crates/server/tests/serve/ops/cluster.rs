@@ -5,6 +5,7 @@ mod limits;
 mod maps;
 mod network;
 mod operators;
+mod recordings;
 mod returning;
 
 use std::collections::BTreeMap;
@@ -243,10 +244,6 @@ fn cluster_requirements_are_explained() {
         (vec!["--cluster", nobody], "a cluster needs a database that all hosts share"),
         (vec!["--cluster", nobody, "--store", &postgres], "NATS at 127.0.0.1:1"),
         (vec!["--cluster", "localhost"], "a NATS address"),
-        (
-            vec!["--cluster", nobody, "--store", &postgres, "--record-room", "x"],
-            "rooms of a cluster can't be recorded",
-        ),
     ] {
         let output = serve(&options);
         let error = String::from_utf8(output.stderr).unwrap();
