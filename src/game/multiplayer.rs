@@ -68,6 +68,8 @@ pub(crate) struct Members {
     /// Indexed by colour.
     #[serde(skip)]
     sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
+    #[serde(skip)]
+    marked: Option<SpriteId>,
     /// The blows of the last step, each as the slots of the attacker and the victim.
     blows: Vec<(usize, usize)>,
     /// Reused memory for targets, for the positions of players in the way, and for figures.
@@ -218,8 +220,8 @@ impl Members {
 
 impl OfLevel for Members {
     fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
-        let Self { rules, keys, sprites, .. } = start;
-        Ok(Self { rules, keys, sprites, ..self })
+        let Self { rules, keys, sprites, marked, .. } = start;
+        Ok(Self { rules, keys, sprites, marked, ..self })
     }
 }
 
@@ -232,6 +234,7 @@ impl Game {
         let mut game = Self::with_rules(world, rules);
         let sprites = PlayerColor::ALL
             .map(|color| builtin::player(color).map(|sprite| game.world.add_sprite(sprite)));
+        let marked = builtin::marked_player().map(|sprite| game.world.add_sprite(sprite));
         game.checkpoint = Checkpoint::default();
         game.members = Some(Box::new(Members {
             rules: multiplayer,
@@ -240,6 +243,7 @@ impl Game {
             treasure_of_the_gone: 0,
             keys,
             sprites,
+            marked,
             blows: Vec::new(),
             targets: Scratch::default(),
             in_the_way: Scratch::default(),
@@ -581,6 +585,12 @@ impl Game {
     /// The sprite of players with that colour; `None` in a single-player game.
     pub fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
         self.members.as_ref()?.sprites[color as usize]
+    }
+
+    /// The sprite of a player who glows and has a mark above the head, in place of their colour;
+    /// `None` in a single-player game. The game itself never shows it.
+    pub fn sprite_of_marked_players(&self) -> Option<SpriteId> {
+        self.members.as_ref()?.marked
     }
 }
 

@@ -132,9 +132,10 @@ impl Billboard {
         let pose = Pose::Fixed { frame: usize::from(frame), heading };
         let light = world.light_on(figure);
         let billboard = Self::new(scene, image, sprite, pose, (position, base), light)?;
+        let lighting = billboard.lighting.filter(|_| !sprite.glows);
         let (row, column) = figure.cell().map_or((0, 0), |cell| (cell.row, cell.column));
         let order = (row, column, figure.sprite.0, number);
-        Some(Self { sprite: Some(figure.sprite), opacity, order, ..billboard })
+        Some(Self { sprite: Some(figure.sprite), opacity, lighting, order, ..billboard })
     }
 
     /// The billboard of the player in an image, drawn as `figure`.

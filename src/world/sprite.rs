@@ -33,6 +33,8 @@ pub struct Sprite {
     pub blocks: bool,
     /// Its light, if it is a lamp.
     pub lamp: Option<Lamp>,
+    /// `true` if neither darkness nor fog dims its figures.
+    pub glows: bool,
 }
 
 /// A sprite: an index into the world's list of sprites.
@@ -138,6 +140,7 @@ impl Sprite {
             height: SpriteHeight::FULL,
             blocks: false,
             lamp: None,
+            glows: false,
         })
     }
 

@@ -12,7 +12,7 @@ use crate::world::art::{Art, art};
 use crate::world::{Lamp, Light, Reach};
 pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, PlayerFrame, SpikesFrame};
 pub use player::PlayerColor;
-pub(crate) use player::player;
+pub(crate) use player::{marked_player, player};
 
 /// The names that maps may use for ornaments. Games also use the sprites of guards, items and
 /// projectiles, which [`named`] knows.

@@ -2,14 +2,20 @@
 //!
 //! One sheet shows all of them. Its cloth is painted with a dye, which each colour replaces. The
 //! pictures are made once for a process, because a host starts games all the time.
+//!
+//! A marked player, such as the seeker in a game of hide and seek, glows in every light: white-hot
+//! from head to foot, with an arrow above the head. White is no player's colour, and brightness and
+//! shape also show without colours. Rejected: red-hot. From afar it looked like a red player.
 
+use std::num::NonZeroU32;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
 use super::TRAVELLER;
 use crate::color::Rgb;
-use crate::world::Sprite;
+use crate::world::sprite::SpriteHeight;
+use crate::world::{Sprite, Texture};
 
 /// The colour of a player's hat, cape and tunic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -86,6 +92,54 @@ pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
         PlayerColor::ALL.map(|color| TRAVELLER.recolored(move |texel| dyed(texel, color)))
     });
     sprites[color as usize].clone()
+}
+
+/// The colours of the arrow: its outline and its inside.
+const ARROW: [Rgb; 2] = [Rgb::new(0xc0, 0x10, 0x10), Rgb::new(0xff, 0xf8, 0x90)];
+
+/// The sprite of a marked player.
+pub(crate) fn marked_player() -> Option<Sprite> {
+    static SPRITE: OnceLock<Option<Sprite>> = OnceLock::new();
+    let sprite = SPRITE.get_or_init(|| {
+        let plain = TRAVELLER.recolored(white_hot)?;
+        let rows = plain.pictures[0].height();
+        // With the arrow, the figure is a little lower than a room.
+        let above = rows * 2 / 7;
+        let stretch = f64::from(rows + above) / f64::from(rows);
+        let marked = |picture: &Texture| {
+            let [width, rows] = [picture.width(), rows + above].map(NonZeroU32::new);
+            let picture = picture.clone();
+            Some(Texture::on_demand(width?, rows?, true, move || {
+                let picture = picture.clone();
+                move |x, y| match y.checked_sub(above) {
+                    Some(y) => picture.texel(x, y),
+                    None => arrow(x.abs_diff(picture.width() / 2), y, above),
+                }
+            }))
+        };
+        let pictures: Option<Vec<Texture>> = plain.pictures.iter().map(marked).collect();
+        let height = SpriteHeight::new(plain.height.cells() * stretch)?;
+        Some(Sprite { glows: true, height, pictures: pictures?.into(), ..plain })
+    });
+    sprite.clone()
+}
+
+/// Replaces a colour of the sheet by a colour of white-hot iron: red where the sheet is dark, and white
+/// where it is as bright as cloth.
+fn white_hot(texel: Rgb) -> Rgb {
+    let share = |cooler: u32| (u32::from(texel.luma()) * 4).saturating_sub(cooler).min(255) as u8;
+    Rgb::new(u8::MAX, share(40), share(56))
+}
+
+/// A texel of an arrow that points down and has `rows` rows, `aside` texels from its middle.
+fn arrow(aside: u32, y: u32, rows: u32) -> (Rgb, u8) {
+    let half = rows - y;
+    let [outline, inside] = ARROW;
+    match aside {
+        _ if aside > half => (outline, 0),
+        _ if aside == half || y == 0 => (outline, u8::MAX),
+        _ => (inside, u8::MAX),
+    }
 }
 
 /// The red and the blue value of dyed cloth in full light. Every other colour of the sheet has some

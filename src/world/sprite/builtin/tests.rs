@@ -52,6 +52,7 @@ fn every_texel_is_as_painted() {
     };
     let named = DESIGNS.iter().map(|it| (it.art.name, named(it.art.name)));
     let players = PlayerColor::ALL.map(|color| (color.name(), player(color)));
+    let players = players.into_iter().chain([("marked", marked_player())]);
     let mut list = String::new();
     for (name, sprite) in named.chain(players) {
         let print = hash(0, sprite.unwrap().pictures.iter().map(print_of_picture));
