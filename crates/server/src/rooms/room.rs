@@ -15,11 +15,14 @@
 mod catalog;
 mod checkpoint;
 mod log;
+pub(crate) mod looks;
 mod member;
 mod mode;
+mod replay;
 mod round;
 #[cfg(test)]
 mod tests;
+mod ways;
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -30,15 +33,20 @@ pub(crate) use self::catalog::{Catalog, no_level};
 pub(crate) use self::log::{
     CHAT_COLUMNS, Command, Emote, Entry, Header, Seat, is_of_other_version, parse_log,
 };
+use self::looks::FigureLook;
 use self::member::{AWAY, Member, looking_only};
 pub(crate) use self::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 pub use self::mode::Mode;
-use self::mode::SECOND;
-use self::round::{Field, Round};
-pub(crate) use self::round::{Finish, Phase, Role, Standing};
+pub(crate) use self::mode::SECOND;
+use self::replay::Recorder;
+pub(crate) use self::replay::{Moment, Replay};
+use self::round::{Field, Round, STANDINGS};
+pub(crate) use self::round::{Finish, Phase, Role, Standing, ordinal};
+use self::ways::ExitWays;
 use crate::line::Line;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
+use cellcaster::world::{FieldOfView, Figure};
 
 /// How long an emote is shown, in steps.
 const EMOTE: u64 = 3 * SECOND;
@@ -61,6 +69,10 @@ pub(crate) struct Room {
     said_count: u64,
     inputs: Vec<Input>,
     standings: Arc<[Standing]>,
+    /// The ways to the exit; `None` unless the mode is a race.
+    ways: Option<Arc<ExitWays>>,
+    recorder: Recorder,
+    replay: Option<Arc<Replay>>,
 }
 
 /// An immutable snapshot of a room. It shares the game with the room, which copies the game only if a
@@ -83,6 +95,8 @@ pub(crate) struct RoomView {
     pub(crate) acted: Vec<Intents>,
     /// The standings of the round, winner first; empty until the round ends.
     pub(crate) standings: Arc<[Standing]>,
+    /// The winner's last seconds; `None` until the round ends, or if nobody won.
+    pub(crate) replay: Option<Arc<Replay>>,
     /// The latest chat lines, oldest first.
     pub(crate) said: Arc<[Said]>,
 }
@@ -96,6 +110,10 @@ pub(crate) struct MemberView {
     /// The member's player in the game; `None` if the game had no free slot.
     pub(crate) player: Option<PlayerId>,
     pub(crate) role: Role,
+    pub(crate) look: FigureLook,
+    /// The place in a race, from 1: by time for members at the exit, and then by the way to the exit. `None` if
+    /// no race is on.
+    pub(crate) place: Option<usize>,
     /// The finish, if the member has reached the exit.
     pub(crate) finish: Option<Finish>,
     pub(crate) points: u32,
@@ -147,6 +165,9 @@ impl Room {
             said_count: 0,
             inputs: Vec::new(),
             standings: Arc::from([]),
+            ways: (header.mode == Mode::Race).then(|| catalog.exit_ways(&header.level)).flatten(),
+            recorder: Recorder::default(),
+            replay: None,
             header: Arc::new(header),
         })
     }
@@ -282,27 +303,80 @@ impl Room {
             Some(Input { player: member.player?, intents, seen: member.seen })
         }));
         Arc::make_mut(game).step_all(inputs);
+        let is_open = round.is_open();
         round.step(Field { game, members, step: *step });
         emotes.retain(|(_, _, until)| *until > *step);
         let finished: Vec<MemberId> = round.finished_in(*step).collect();
         *step += 1;
+        self.record(is_open);
         for id in finished {
             self.announce_finish(id);
         }
         if self.standings.len() != self.round.standings.len() {
             self.standings = self.round.standings.as_slice().into();
+            self.replay = self.replay_of_best().map(Arc::new);
         }
+    }
+
+    /// Records the step that has ended, if the round `is_open`.
+    fn record(&mut self, is_open: bool) {
+        if !is_open {
+            if matches!(self.round.phase, Phase::Countdown { .. }) {
+                self.recorder = Recorder::default();
+            }
+        } else if Recorder::is_due(self.step) && self.header.mode != Mode::Roam {
+            let Self { recorder, members, game, round, step, .. } = self;
+            let looks = members.iter().filter_map(|it| Some((it.player?, look(round, it, *step))));
+            let figures = looks::figures(game, looks);
+            let cameras = members.iter().filter_map(|member| {
+                let player = game.seen_by(member.player?)?;
+                Some((member.id, player.camera(FieldOfView::default())))
+            });
+            recorder.record(cameras, figures.as_deref().unwrap_or(game.world().figures()));
+        }
+    }
+
+    fn replay_of_best(&mut self) -> Option<Replay> {
+        let best = self.round.best()?;
+        let name = self.member(best)?.name.clone();
+        self.recorder.replay(best, name)
+    }
+
+    /// The lengths of the members' ways to the exit, in quarters of a cell; `u32::MAX` if there is no way.
+    fn ways_to_exit(&self) -> Vec<(MemberId, u32)> {
+        let is_played = matches!(self.round.phase, Phase::Playing { .. });
+        let Some(ways) = self.ways.as_deref().filter(|_| is_played) else { return Vec::new() };
+        let way = |member: &Member| {
+            let camera = self.game.seen_by(member.player?)?.camera(FieldOfView::default());
+            Some((ways.from(camera.position())? * 4.0).round() as u32)
+        };
+        self.members.iter().map(|member| (member.id, way(member).unwrap_or(u32::MAX))).collect()
+    }
+
+    /// The place of a member in a race, from the lengths of all `ways`. Members who are less than a quarter of
+    /// a cell apart share a place.
+    fn place(&self, id: MemberId, ways: &[(MemberId, u32)]) -> Option<usize> {
+        if let Some(finish) = self.round.finish(id) {
+            return (self.header.mode == Mode::Race).then_some(finish.place);
+        }
+        let own = ways.iter().find(|it| it.0 == id)?.1;
+        let is_ahead =
+            |&&(other, way): &&(MemberId, u32)| way < own && self.round.finish(other).is_none();
+        Some(self.round.finished() + ways.iter().filter(is_ahead).count() + 1)
     }
 
     /// A snapshot of the room.
     pub(crate) fn view(&self) -> RoomView {
         let emote = |id| self.emotes.iter().find(|it| it.0 == id).map(|it| it.1);
+        let ways = self.ways_to_exit();
         let member = |member: &Member| MemberView {
             id: member.id,
             name: member.name.clone(),
             color: member.color,
             player: member.player,
             role: self.round.role(member.id),
+            look: look(&self.round, member, self.step),
+            place: self.place(member.id, &ways),
             finish: self.round.finish(member.id),
             points: member.points,
             is_blind: self.round.is_blind(member.id),
@@ -318,6 +392,7 @@ impl Room {
             members: self.members.iter().map(member).collect(),
             acted: self.members.iter().map(|member| member.acted).collect(),
             standings: Arc::clone(&self.standings),
+            replay: self.replay.clone(),
             said: self.said.iter().cloned().collect(),
         }
     }
@@ -437,11 +512,11 @@ impl Room {
     fn announce_finish(&mut self, id: MemberId) {
         let Some((finish, member)) = self.round.finish(id).zip(self.member(id)) else { return };
         match self.header.mode {
-            Mode::Race => self.announce(format!("{} finished {finish}.", member.name)),
             Mode::Together => {
                 self.announce(format!("{} is out after {}.", member.name, finish.time()));
             }
-            Mode::Roam | Mode::Alone | Mode::Tag | Mode::Hide => {}
+            // The picture says it.
+            Mode::Race | Mode::Roam | Mode::Alone | Mode::Tag | Mode::Hide => {}
         }
     }
 
@@ -472,8 +547,35 @@ impl RoomView {
         self.member(first?.member)
     }
 
+    /// The moment of the replay to show, and the name of the member through whose eyes; `None` if there is no
+    /// replay.
+    pub(crate) fn replayed(&self) -> Option<(&Line, &Moment)> {
+        let Phase::Over { ends } = self.phase else { return None };
+        let replay = self.replay.as_deref()?;
+        let since = self.step.saturating_add(STANDINGS).saturating_sub(ends);
+        Some((&replay.name, replay.moment(since)))
+    }
+
+    /// The number of steps since the play began; `None` unless the round is being played.
+    pub(crate) fn played(&self) -> Option<u64> {
+        let Phase::Playing { ends } = self.phase else { return None };
+        let begun = self.begun.unwrap_or_else(|| ends.saturating_sub(self.header.mode.longest()));
+        Some(self.step.saturating_sub(begun))
+    }
+
+    /// The figures with the members' looks; `None` if all look as usual.
+    pub(crate) fn figures(&self) -> Option<Vec<Figure>> {
+        let looks = self.members.iter().filter_map(|member| Some((member.player?, member.look)));
+        looks::figures(&self.game, looks)
+    }
+
     /// The member who controls `player`.
     pub(crate) fn member_of(&self, player: PlayerId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.player == Some(player))
     }
+}
+
+/// The look of a member's figure.
+fn look(round: &Round, member: &Member, step: u64) -> FigureLook {
+    if member.is_away() { FigureLook::Pale } else { round.look(member.id, step) }
 }

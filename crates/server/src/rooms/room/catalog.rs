@@ -1,9 +1,10 @@
 //! The levels that rooms can use: the built-in ones, then the host's own.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::Mode;
+use super::ways::ExitWays;
 use crate::rooms::maps::HostMaps;
 use cellcaster::app::store::name_in_map_key;
 use cellcaster::map::builtin;
@@ -22,6 +23,8 @@ struct Listed {
     short: String,
     world: Arc<World>,
     has_exit: bool,
+    /// Found when they are first needed.
+    ways: OnceLock<Arc<ExitWays>>,
 }
 
 impl Catalog {
@@ -59,6 +62,12 @@ impl Catalog {
     /// The level with this name.
     pub(crate) fn world(&self, name: &str) -> Option<&Arc<World>> {
         self.levels.get(name).map(|level| &level.world)
+    }
+
+    /// The ways to the exit of a level; `None` if there is no such level.
+    pub(crate) fn exit_ways(&self, name: &str) -> Option<Arc<ExitWays>> {
+        let level = self.levels.get(name)?;
+        Some(Arc::clone(level.ways.get_or_init(|| Arc::new(ExitWays::of(&level.world)))))
     }
 
     /// The name of a level as shown to people: the name of its file.
@@ -100,7 +109,8 @@ impl Catalog {
 
     fn list(&mut self, name: &str, short: &str, world: Arc<World>) {
         let has_exit = world.has_exit();
-        let listed = Listed { short: short.to_owned(), world, has_exit };
+        let ways = OnceLock::new();
+        let listed = Listed { short: short.to_owned(), world, has_exit, ways };
         if self.levels.insert(name.to_owned(), listed).is_none() {
             self.names.push(name.to_owned());
         }

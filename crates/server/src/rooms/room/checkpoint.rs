@@ -76,6 +76,11 @@ impl Room {
             inputs: _,
             // A copy of the round's standings.
             standings: _,
+            // From the catalog.
+            ways: _,
+            // Shown only.
+            recorder: _,
+            replay: _,
         } = self;
         (step, next_member, round, members, again, emotes)
     }

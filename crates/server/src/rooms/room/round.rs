@@ -12,6 +12,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::looks::FigureLook;
 use super::member::{Member, MemberId};
 use super::mode::{Mode, SECOND};
 use cellcaster::app::parts::of_steps;
@@ -20,7 +21,7 @@ use cellcaster::game::{Game, Outcome, PlayerId};
 use cellcaster::rng::SplitMix64;
 
 /// How long the standings are shown, in steps.
-const STANDINGS: u64 = 10 * SECOND;
+pub(super) const STANDINGS: u64 = 10 * SECOND;
 /// Hide and seek: the number of members per seeker at the start.
 const MEMBERS_A_SEEKER: usize = 4;
 /// Tag: how long the new "it" stands still, so that the others can get away.
@@ -155,9 +156,37 @@ impl Round {
         }
     }
 
+    /// The look of a member's figure before `step`.
+    pub(crate) fn look(&self, member: MemberId, step: u64) -> FigureLook {
+        match &self.play {
+            _ if self.role(member) == Role::Seeker => FigureLook::Marked,
+            Play::Tag(tag) if tag.spares(member, step) => FigureLook::Pale,
+            _ => FigureLook::Usual,
+        }
+    }
+
+    /// Returns true while the round is played and nobody has reached the exit.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self.phase, Phase::Playing { .. }) && self.finished() == 0
+    }
+
+    /// The member with the best result: the first at the exit or, in modes without an exit, the first in the
+    /// standings.
+    pub(crate) fn best(&self) -> Option<MemberId> {
+        match self.finishes() {
+            Some(finishes) => Some(*finishes.times.iter().min_by_key(|it| it.1)?.0),
+            None => Some(self.standings.first().filter(|it| it.steps.is_some())?.member),
+        }
+    }
+
     /// A member's finish, if they have reached the exit.
     pub(crate) fn finish(&self, member: MemberId) -> Option<Finish> {
         self.finishes()?.of(member)
+    }
+
+    /// The number of members who have reached the exit, including members who have left since.
+    pub(crate) fn finished(&self) -> usize {
+        self.finishes().map_or(0, |finishes| finishes.times.len())
     }
 
     /// The members who finished in `step`.
@@ -342,22 +371,27 @@ impl Finishes {
 }
 
 impl Finish {
-    /// The place as an ordinal: 1st, 2nd and so on.
+    /// The place as an ordinal.
     pub(crate) fn ordinal(self) -> String {
-        let ending = match (self.place % 10, self.place % 100) {
-            (_, 11..=13) => "th",
-            (1, _) => "st",
-            (2, _) => "nd",
-            (3, _) => "rd",
-            _ => "th",
-        };
-        format!("{}{ending}", self.place)
+        ordinal(self.place)
     }
 
     /// The time to the exit, formatted for display.
     pub(crate) fn time(self) -> String {
         of_steps(self.steps)
     }
+}
+
+/// A place as an ordinal: 1st, 2nd and so on.
+pub(crate) fn ordinal(place: usize) -> String {
+    let ending = match (place % 10, place % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{place}{ending}")
 }
 
 impl fmt::Display for Finish {
@@ -395,6 +429,11 @@ impl Tag {
         self.it == Some(member) && step < self.since + PAUSE
     }
 
+    /// Returns true while a member cannot be touched because they have just been "it".
+    fn spares(&self, member: MemberId, step: u64) -> bool {
+        self.before == Some(member) && self.it != Some(member) && step < self.since + SPARED
+    }
+
     fn step(&mut self, field: Field) {
         let Some(it) = self.it.filter(|&it| field.member(it).is_some()) else {
             // The member who was "it" has left. The member with the longest time follows, so that nobody gains by it.
@@ -405,8 +444,8 @@ impl Tag {
         if self.holds(it, field.step) {
             return;
         }
-        let is_spared = |id| self.before == Some(id) && field.step < self.since + SPARED;
-        let touched = field.ids().find(|&id| id != it && !is_spared(id) && field.touches(it, id));
+        let can_be_touched = |id| id != it && !self.spares(id, field.step);
+        let touched = field.ids().find(|&id| can_be_touched(id) && field.touches(it, id));
         if touched.is_some() {
             self.become_it(touched, field.step);
         }

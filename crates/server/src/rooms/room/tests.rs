@@ -95,7 +95,7 @@ fn said(room: &Room) -> Vec<String> {
 }
 
 #[test]
-fn a_finish_and_the_remaining_time_are_announced() {
+fn a_finish_gives_place_and_time_and_limits_the_race() {
     let mut room = room(Mode::Race);
     let [one, other, third] = ["Mara", "Jon", "Kim"].map(|name| join(&mut room, name));
     advance(&mut room, 3 * SECOND + 1);
@@ -107,18 +107,118 @@ fn a_finish_and_the_remaining_time_are_announced() {
     want(&mut room, one, &[Intent::Forward, Intent::Run]);
     advance(&mut room, 3 * SECOND);
     assert!((58 * SECOND..60 * SECOND).contains(&left(&room)), "{}", left(&room));
-    let finished = said(&room).pop().unwrap();
-    assert!(finished.starts_with("Mara finished 1st, 0:01."), "{finished}");
+    let finish = |room: &Room, id| room.view().member(id).unwrap().finish.unwrap().to_string();
+    assert!(finish(&room, one).starts_with("1st, 0:01."), "{}", finish(&room, one));
     want(&mut room, other, &[Intent::Forward, Intent::Run]);
     advance(&mut room, 4 * SECOND);
-    let finished = said(&room).pop().unwrap();
-    assert!(finished.starts_with("Jon finished 2nd, 0:0"), "{finished}");
+    assert!(finish(&room, other).starts_with("2nd, 0:0"), "{}", finish(&room, other));
     // A second finish does not extend the round.
     assert!(left(&room) < 55 * SECOND);
     advance(&mut room, 55 * SECOND);
     assert!(matches!(room.phase(), Phase::Over { .. }));
     let last = *room.view().standings.last().unwrap();
     assert_eq!((last.member, last.steps), (third, None));
+}
+
+#[test]
+fn racers_are_placed_by_their_way_to_the_exit() {
+    let mut room = room(Mode::Race);
+    let ids = ["Mara", "Jon", "Kim"].map(|name| join(&mut room, name));
+    let places = |room: &Room| {
+        let view = room.view();
+        ids.map(|id| view.member(id).unwrap().place)
+    };
+    assert_eq!(places(&room), [None; 3], "nobody has a place before the start");
+    advance(&mut room, 3 * SECOND + 1);
+    assert_eq!(
+        places(&room),
+        [Some(2), Some(1), Some(3)],
+        "Jon begins ahead of Mara, Kim beside her"
+    );
+    want(&mut room, ids[0], &[Intent::StrafeRight]);
+    advance(&mut room, SECOND);
+    assert_eq!(places(&room), [Some(3), Some(1), Some(2)], "Mara goes off the way");
+    want(&mut room, ids[0], &[]);
+    want(&mut room, ids[1], &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 3 * SECOND);
+    assert_eq!(places(&room), [Some(3), Some(1), Some(2)]);
+    assert_eq!(room.view().member(ids[1]).unwrap().role, Role::Done);
+    do_now(&mut room, ids[1], Command::Leave);
+    let left = [0, 2].map(|index| room.view().member(ids[index]).unwrap().place);
+    assert_eq!(left, [Some(3), Some(2)], "a finisher who has left counts");
+}
+
+#[test]
+fn a_round_ends_with_the_winners_last_seconds() {
+    let mut room = room(Mode::Race);
+    let [one, other] = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    advance(&mut room, 3 * SECOND + 1);
+    want(&mut room, one, &[Intent::Forward]);
+    advance(&mut room, SECOND);
+    let (before, of_other) = (position(&room, one), position(&room, other));
+    // Restored from a checkpoint here, a room has only the moments after it.
+    let mut restored = Room::restore(&catalog(), &room.checkpoint()).unwrap();
+    for room in [&mut room, &mut restored] {
+        advance(room, 7 * SECOND);
+        assert!(room.view().replayed().is_none(), "the round goes on");
+        want(room, other, &[Intent::Back]);
+        advance(room, 60 * SECOND);
+        assert!(matches!(room.phase(), Phase::Over { .. }));
+    }
+    assert_eq!(room.checksum(), restored.checksum());
+    let moments = |room: &mut Room| -> Vec<Moment> {
+        let moment = |_| {
+            let moment = room.view().replayed().map(|(name, moment)| {
+                assert_eq!(name.as_str(), "Mara");
+                moment.clone()
+            });
+            room.advance();
+            moment
+        };
+        (0..5 * SECOND).filter_map(moment).collect()
+    };
+    let (all, later) = (moments(&mut room), moments(&mut restored));
+    assert_eq!(all.len() as u64, 5 * SECOND);
+    let x = |moment: &Moment| moment.camera.position().x;
+    let [first, last] = [all.iter(), later.iter()].map(|it| it.map(x).reduce(f64::min).unwrap());
+    assert!(first < before.x && last > before.x, "{first} {before} {last}");
+    let reached = all.iter().map(x).reduce(f64::max).unwrap();
+    assert!((8.5..10.0).contains(&reached), "the exit is in column 9: {reached}");
+    let shows_other = |it: &Moment| it.figures.iter().any(|figure| figure.position == of_other);
+    assert!(all.iter().all(shows_other), "the other stood still at that time");
+}
+
+#[test]
+fn it_is_marked_and_the_previous_it_is_pale() {
+    let mut room = room(Mode::Tag);
+    let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    want(&mut room, ids[1], &[Intent::Back]);
+    advance(&mut room, 3 * SECOND + 1);
+    for id in ids {
+        want(&mut room, id, &[]);
+    }
+    let seeker = |room: &Room| {
+        let view = room.view();
+        view.members.iter().find(|it| it.role == Role::Seeker).unwrap().id
+    };
+    let first = seeker(&room);
+    while seeker(&room) == first {
+        advance(&mut room, 1);
+    }
+    let marked_and_pale = |room: &Room| {
+        let view = room.view();
+        let sprite = view.game.sprite_of_marked_players();
+        let figures = view.figures().unwrap();
+        let is_of = |figure: &&Figure| figure.position == position(room, seeker(room));
+        assert_eq!(figures.iter().find(is_of).map(|it| it.sprite), sprite);
+        let count = |is_it: &dyn Fn(&Figure) -> bool| figures.iter().filter(|it| is_it(it)).count();
+        (count(&|it| Some(it.sprite) == sprite), count(&|it| it.opacity < u8::MAX))
+    };
+    assert_eq!(marked_and_pale(&room), (1, 1), "nobody can touch the previous \"it\"");
+    let out_of_reach = seeker(&room);
+    want(&mut room, first, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 4 * SECOND);
+    assert_eq!((seeker(&room), marked_and_pale(&room)), (out_of_reach, (1, 0)));
 }
 
 #[test]
