@@ -17,6 +17,7 @@
 //! Keys pressed faster than anybody types are dropped. Some open a page or change a setting, which takes a
 //! hundred times as long as decoding them.
 
+mod ceremony;
 mod draw;
 mod endings;
 mod frames;
@@ -201,7 +202,7 @@ impl Session {
         let Self { protocol, ui, .. } = self;
         if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
             ui.requests.extend(stay.look_at(room, now));
-            if stay.watch.take_ring() && ui.identity.preferences.bell {
+            if stay.take_ring() && ui.identity.preferences.bell {
                 protocol.ring_bell();
             }
         }

@@ -1,5 +1,6 @@
 //! Drawing a visitor's screen.
 
+mod ceremony;
 mod members;
 pub(crate) mod overhead;
 mod room_status;
@@ -12,6 +13,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
+use super::ceremony::finishers;
 use super::pages::Page;
 use super::stay::{SeenGhost, seconds_left};
 use super::talk;
@@ -29,9 +31,10 @@ use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings cannot change.
-const ROOM_KEYS: [&str; 2] = [
+const ROOM_KEYS: [&str; 3] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emote,",
     "Tab lists the members, or watches the next one.",
+    "Who is \"it\" or seeks glows. A red edge: it is you.",
 ];
 /// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
@@ -133,9 +136,22 @@ impl Ui {
         let depth = options.depth;
         let preferences = self.identity.preferences;
         let Some(stay) = &mut self.stay else { return };
+        let shows_standings =
+            matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat);
         let seen_through = stay.seen_through(room);
-        if seen_through.is_some_and(|(member, _)| member.is_blind) {
+        if let Some((name, moment)) = room.replayed() {
+            let place = if shows_standings { members::beside_standings(area) } else { area };
+            let mut world = room.game.world().clone();
+            world.set_figures(moment.figures.iter().copied());
+            let (camera, seconds) = (stay.camera(room, options.field_of_view), room.game.elapsed());
+            let mut view = VIEW.take().unwrap_or_default();
+            options.draw(&world, &camera, seconds, canvas, place, &mut view);
+            stay.next_change = view.next_change();
+            VIEW.set(Some(view));
+            notice(canvas, place, &format!("the last seconds of {name}"));
+        } else if seen_through.is_some_and(|(member, _)| member.is_blind) {
             draw_darkness(canvas, area, room, depth);
+            ceremony::draw_edge(canvas, area, stay.edge(room), depth);
         } else {
             let camera = stay.camera(room, options.field_of_view);
             let flash = seen_through.and_then(|(_, player)| player.flash());
@@ -144,10 +160,11 @@ impl Ui {
             let (game, seconds) = (&room.game, room.game.elapsed());
             let own = stay.own_color(room);
             let ghosts: Vec<SeenGhost> = stay.ghosts.seen(room, own, preferences.ghost).collect();
-            let world = with_ghosts(game.world(), &ghosts);
+            let world = with_figures(game.world(), room.figures(), &ghosts);
             let mut view = VIEW.take().unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
             stay.next_change = view.next_change();
+            ceremony::draw_edge(canvas, area, stay.edge(room), depth);
             if let Some((_, player)) = seen_through {
                 overhead::draw(canvas, area, &options, &player, room, &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
@@ -158,7 +175,13 @@ impl Ui {
             }
             VIEW.set(Some(view));
         }
-        if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
+        if page == Page::Room || page == Page::Chat {
+            ceremony::draw_finishers(canvas, area, &finishers(room), depth);
+            if let Some(text) = stay.large(room) {
+                ceremony::draw_large(canvas, area, &text, depth);
+            }
+        }
+        if shows_standings {
             members::draw_standings(canvas, area, room, depth);
         } else if stay.shows_members && page == Page::Room {
             members::draw_members(canvas, area, room, &self.host.catalog, depth);
@@ -202,13 +225,17 @@ impl Ui {
     }
 }
 
-/// The world with the figures of `ghosts`. The world is copied if there are any, because the room and other
-/// sessions share it.
-fn with_ghosts<'w>(world: &'w World, ghosts: &[SeenGhost]) -> Cow<'w, World> {
+/// The world with `figures` in place of its own, if there are any, and the figures of `ghosts`. The world is
+/// copied then, because the room and other sessions share it.
+fn with_figures<'w>(
+    world: &'w World,
+    figures: Option<Vec<Figure>>,
+    ghosts: &[SeenGhost],
+) -> Cow<'w, World> {
     let mut world = Cow::Borrowed(world);
-    if !ghosts.is_empty() {
-        let figures = world.figures().iter().copied().chain(ghosts.iter().map(|it| it.figure));
-        let figures: Vec<Figure> = figures.collect();
+    if figures.is_some() || !ghosts.is_empty() {
+        let mut figures = figures.unwrap_or_else(|| world.figures().to_vec());
+        figures.extend(ghosts.iter().map(|ghost| ghost.figure));
         world.to_mut().set_figures(figures.into_iter());
     }
     world

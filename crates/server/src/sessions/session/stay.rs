@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::ceremony::{Ceremony, Edge, Pass, edge, finishers};
 use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
 use super::messages::Request;
@@ -32,6 +33,9 @@ pub(crate) struct Stay {
     /// The game time at which the last picture changes by itself.
     pub(crate) next_change: Option<f64>,
     pub(crate) ghosts: Ghosts,
+    pub(crate) ceremony: Ceremony,
+    /// Whether the play has begun since the last picture, which rings the bell.
+    begins_play: bool,
     pub(crate) shows_members: bool,
     /// Whether the player is airborne in the last picture.
     pub(crate) is_airborne: bool,
@@ -56,6 +60,10 @@ struct Shown {
     members: Vec<MemberView>,
     ghosts: Vec<Figure>,
     standings: usize,
+    passed: Option<Pass>,
+    large: Option<String>,
+    edge: Edge,
+    finishers: usize,
     /// The game time at which the picture next changes by itself.
     animates_at: Option<f64>,
 }
@@ -73,6 +81,8 @@ impl Stay {
             watch: Watch::default(),
             next_change: None,
             ghosts: Ghosts::default(),
+            ceremony: Ceremony::default(),
+            begins_play: false,
             shows_members: false,
             is_airborne: false,
             dead_since: None,
@@ -98,6 +108,7 @@ impl Stay {
             }
             self.watch.look_at(&room.game, player);
         }
+        self.begins_play |= self.ceremony.look_at(room, self.member);
         // The blank view contains no part of the level that could change.
         self.next_change = None;
         let playing = room.members.iter().filter(|member| member.finish.is_none());
@@ -122,6 +133,21 @@ impl Stay {
     pub(crate) fn has_acted(&self, room: &RoomView) -> bool {
         let acted = self.member.and_then(|id| room.acted(id));
         acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
+    }
+
+    /// Returns true if the bell rings, for the last picture or since then.
+    pub(crate) fn take_ring(&mut self) -> bool {
+        std::mem::take(&mut self.begins_play) | self.watch.take_ring()
+    }
+
+    /// The text in large letters over the picture.
+    pub(crate) fn large(&self, room: &RoomView) -> Option<String> {
+        self.ceremony.large(room, self.member.and_then(|id| room.member(id)))
+    }
+
+    /// The edge of the picture.
+    pub(crate) fn edge(&self, room: &RoomView) -> Edge {
+        self.seen_through(room).map_or(Edge::Plain, |(member, _)| edge(room, member))
     }
 
     /// The colour of the visitor's own figure and ghost.
@@ -156,6 +182,11 @@ impl Stay {
 
     /// The camera of the picture.
     pub(crate) fn camera(&self, room: &RoomView, view: FieldOfView) -> Camera {
+        if let Some((_, moment)) = room.replayed() {
+            let mut camera = moment.camera;
+            camera.field_of_view = view;
+            return camera;
+        }
         let start = || room.game.world().start_camera(view);
         self.seen_through(room).map_or_else(start, |(_, player)| player.camera(view))
     }
@@ -186,6 +217,10 @@ impl Stay {
             || shown.members != room.members
             || !self.ghosts(room, shows_ghosts).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
+            || shown.passed.as_ref() != self.ceremony.passed(room)
+            || shown.large != self.large(room)
+            || shown.edge != self.edge(room)
+            || shown.finishers != finishers(room).len()
             || self.talk.is_behind(&room.said)
             || shown.animates_at.is_some_and(|time| time <= elapsed)
             || !Arc::ptr_eq(&shown.header, &room.header)
@@ -202,6 +237,10 @@ impl Stay {
             members: room.members.clone(),
             ghosts: self.ghosts(room, shows_ghosts).collect(),
             standings: room.standings.len(),
+            passed: self.ceremony.passed(room).cloned(),
+            large: self.large(room),
+            edge: self.edge(room),
+            finishers: finishers(room).len(),
             animates_at: self.next_change,
         });
     }

@@ -6,6 +6,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::Span;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
+use crate::rooms::room::looks::FigureLook;
 use crate::rooms::room::{MemberView, Mode, Role, RoomView};
 use crate::sessions::session::stay::SeenGhost;
 use cellcaster::app::parts::DrawOptions;
@@ -19,8 +20,10 @@ use cellcaster::world::Figure;
 
 /// The distance up to which labels are shown, in cells.
 const NEAR: f64 = 8.0;
-/// The height of a head above the feet, in cells: of a standing player, and of a player lying down.
+/// The height of a head above the feet, in cells: of a standing player, of a marked player with the arrow, and of a
+/// player lying down.
 const HEAD: f64 = 0.7;
+const HEAD_MARKED: f64 = 0.95;
 const HEAD_DOWN: f64 = 0.3;
 
 /// A label above a head.
@@ -71,9 +74,14 @@ pub(crate) fn draw(
 impl Overhead {
     fn of_member(other: &OtherPlayer, room: &RoomView) -> Option<Self> {
         let member = room.member_of(other.id)?;
+        let head = match member.look {
+            FigureLook::Marked => HEAD_MARKED,
+            _ if other.is_down => HEAD_DOWN,
+            _ => HEAD,
+        };
         Some(Self {
             position: other.position,
-            head: other.feet + if other.is_down { HEAD_DOWN } else { HEAD },
+            head: other.feet + head,
             text: label(member, room.header.mode),
             color: member.color,
         })

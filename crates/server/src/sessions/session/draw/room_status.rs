@@ -4,7 +4,8 @@ use std::fmt;
 
 use ratatui::layout::Rect;
 
-use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView};
+use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView, ordinal};
+use crate::sessions::session::ceremony::Pass;
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};
 use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
@@ -98,7 +99,26 @@ fn write_notice(
             line.both(Part::Notice, format_args!("{}", player.message().unwrap_or_default()))
         }
         Outcome::Won => line.both(Part::Notice, format_args!("{}", own_finish.unwrap_or_default())),
-        Outcome::Playing => line.both(Part::Notice, format_args!("{}", task(room, member))),
+        Outcome::Playing => {
+            let [short, long] = line.forms(Part::Notice);
+            *long = task(room, member);
+            short.clone_from(long);
+            if let Some(place) = place(room, member) {
+                let more = stay.ceremony.passed(room).map_or_else(
+                    || long.clone(),
+                    |pass| {
+                        let Pass { name, gains } = pass;
+                        if *gains {
+                            format!("you passed {name}")
+                        } else {
+                            format!("{name} passed you")
+                        }
+                    },
+                );
+                (*short, *long) = (place.clone(), format!("{place} · {more}"));
+            }
+            Ok(())
+        }
     }
 }
 
@@ -109,6 +129,12 @@ fn finish(member: &MemberView, mode: Mode) -> Option<String> {
         Mode::Race => finish.to_string(),
         _ => format!("out, {}", finish.time()),
     })
+}
+
+/// The place of a racer among several who has not finished.
+fn place(room: &RoomView, member: &MemberView) -> Option<String> {
+    let place = member.place.filter(|_| room.members.len() > 1)?;
+    Some(format!("{} of {}", ordinal(place), room.members.len().max(place)))
 }
 
 /// The text of a member's current task.

@@ -234,3 +234,19 @@ fn frames_start_exact_on_compressed_connections() {
     assert_eq!(first(Some(Fidelity::EXACT)), Fidelity::EXACT);
     assert_eq!(first(None), Fidelity::LOW);
 }
+
+#[test]
+fn the_bell_rings_when_a_race_begins() {
+    let rings = [false, true].map(|bell| {
+        let mut rig = Rig::new(Mode::Race);
+        let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+        rig.session(one, move |session, _| session.ui.identity.preferences.bell = bell);
+        for _ in 0..3 {
+            rig.press(one, ENTER);
+        }
+        assert_eq!(bells(&rig, one), 0);
+        rig.pump(5_000);
+        bells(&rig, one)
+    });
+    assert_eq!(rings, [0, 1]);
+}

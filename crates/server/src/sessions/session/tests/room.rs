@@ -259,13 +259,13 @@ fn a_finisher_sees_place_and_time_and_watches_the_others() {
         rig.press(watcher, key);
     }
     rig.pump(3_000);
-    assert!(rig.text(other).contains("be first at the exit"), "{}", rig.text(other));
+    assert!(rig.text(other).contains("of 3 . be first at the exit"), "{}", rig.text(other));
     rig.send(one, "\x1b[119;1:1u");
     rig.pump(4_000);
     rig.send(one, "\x1b[119;1:3u");
     for index in [one, other, watcher] {
         let text = rig.text(index);
-        assert!(text.contains("Mara finished 1st, 0:0"), "{text}");
+        assert!(text.contains("1st: Mara 0:0"), "{text}");
     }
     let text = rig.text(one);
     assert!(text.contains("1st, 0:0") && text.contains("watching Jon"), "{text}");
@@ -280,13 +280,28 @@ fn a_finisher_sees_place_and_time_and_watches_the_others() {
     rig.send(other, "\x1b[119;1:1u");
     rig.pump(4_000);
     let text = rig.text(one);
-    assert!(text.contains("Jon finished 2nd, 0:") && text.contains("watching Kim"), "{text}");
+    assert!(text.contains("2nd: Jon 0:") && text.contains("watching Kim"), "{text}");
     rig.pump(54_000);
     for index in [one, other, third, watcher] {
         let text = rig.text(index);
-        assert_eq!(text.matches("did not finish").count(), 1, "{text}");
+        assert_eq!(text.matches("no time").count(), 1, "{text}");
         assert!(!text.contains("0:00.0"), "{text}");
     }
+}
+
+#[test]
+fn racers_are_told_who_passes() {
+    let mut rig = Rig::new(Mode::Race);
+    let [one, other] = ["Mara", "Jon"].map(|name| rig.member(name, (80, 24), Speaks::Kitty));
+    rig.pump(3_000);
+    assert!(rig.text(one).contains("2nd of 2"), "Jon begins ahead: {}", rig.text(one));
+    // The exit is far ahead on the right.
+    rig.send(one, "\x1b[100;1:1u");
+    rig.pump(1_200);
+    assert!(rig.text(one).contains("1st of 2 . you passed Jon"), "{}", rig.text(one));
+    assert!(rig.text(other).contains("2nd of 2 . Mara passed you"), "{}", rig.text(other));
+    rig.pump(2_500);
+    assert!(!rig.text(other).contains("passed you"), "{}", rig.text(other));
 }
 
 #[test]
