@@ -105,6 +105,7 @@ fn every_texel_is_as_painted() {
     pink       881592cccbabaa94
     orange     4d1fe30d79521b92
     blue       fe1db73333307d6c
+    marked     32b025c140ca988a
     ");
 }
 
@@ -330,4 +331,25 @@ fn no_dye_placeholder_remains() {
         }
         assert_eq!(PlayerColor::named(color.name()), Some(color));
     }
+}
+
+#[test]
+fn a_marked_player_is_brighter_than_others_and_has_an_arrow() {
+    let marked = marked_player().unwrap();
+    let sum = |sprite: &Sprite| -> u32 {
+        let picture = &sprite.pictures[0];
+        let texels = (0..picture.width()).flat_map(|x| (0..picture.height()).map(move |y| (x, y)));
+        let lit = texels.map(|(x, y)| picture.texel(x, y)).filter(|texel| texel.1 > 0);
+        lit.map(|(color, _)| u32::from(color.luma())).sum()
+    };
+    for color in PlayerColor::ALL {
+        let plain = player(color).unwrap();
+        assert!(sum(&marked) > sum(&plain), "{}", color.name());
+        let (with, without) = (marked.pictures[0].height(), plain.pictures[0].height());
+        let texel = marked.height.cells() / f64::from(with);
+        assert!((texel - plain.height.cells() / f64::from(without)).abs() < 1e-12);
+        let is_arrow = |y| marked.pictures[0].texel(marked.pictures[0].width() / 2, y).1 > 0;
+        assert!((0..with - without).all(is_arrow));
+    }
+    assert!(marked.glows && marked.height.cells() < 1.0, "it stands below the ceiling");
 }

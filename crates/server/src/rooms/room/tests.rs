@@ -90,10 +90,6 @@ fn a_race_counts_down_and_is_won_at_the_exit() {
     assert_eq!(next.members.iter().map(|seat| seat.points).collect::<Vec<_>>(), [1, 0]);
 }
 
-fn said(room: &Room) -> Vec<String> {
-    room.view().said.iter().map(|it| it.text.clone()).collect()
-}
-
 #[test]
 fn a_finish_gives_place_and_time_and_limits_the_race() {
     let mut room = room(Mode::Race);

@@ -107,7 +107,7 @@ fn podium(room: &RoomView, depth: ColorDepth) -> Vec<Line<'static>> {
     // The second stands on the left of the first, and the third on the right.
     let steps = [1, 0, 2].map(|index| first.get(index));
     let row = |row: usize| {
-        let cell = |step: &Option<&(usize, &MemberView)>| match *step {
+        let cell = |step: Option<&(usize, &MemberView)>| match step {
             Some((place, member)) if row == *place => label(member, depth),
             Some((place, member)) if row > *place => {
                 let text = if row == place + 1 { place.to_string() } else { String::new() };
@@ -116,7 +116,7 @@ fn podium(room: &RoomView, depth: ColorDepth) -> Vec<Line<'static>> {
             }
             _ => Span::raw(" ".repeat(STEP_COLUMNS)),
         };
-        Line::from_iter(steps.iter().map(cell)).centered()
+        steps.into_iter().map(cell).collect::<Line<'_>>().centered()
     };
     (1..=4).map(row).chain([Line::default()]).collect()
 }
