@@ -1,5 +1,6 @@
 //! Figures show the same pixels as things in their places, seen directly and in mirrors.
 
+use cellcaster::game::{Game, MultiplayerRules, PlayerColor, Rules};
 use cellcaster::map;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, Cell, FieldOfView, Figure, Heading, Pitch, World};
@@ -186,6 +187,30 @@ fn a_figure_never_changes_with_time() {
         frame
     };
     assert!(draw(0.0) == draw(0.3));
+}
+
+#[test]
+fn neither_darkness_nor_fog_dims_a_marked_player() {
+    let body = |light: &str, is_marked: bool| {
+        let text = format!(
+            "{light}\ngrid = '''\n##########\n#@.......#\n##########\n'''\n\
+             [tiles]\n'#' = {{ wall = '#000000' }}\n[things]\n'@' = {{ start = 0 }}\n"
+        );
+        let world = map::parse_str(&text).unwrap();
+        let game = Game::for_players(world, Rules::default(), MultiplayerRules::default());
+        let usual = game.sprite_of_players(PlayerColor::Green);
+        let sprite = if is_marked { game.sprite_of_marked_players() } else { usual };
+        let (sprite, mut world) = (sprite.unwrap(), game.world().clone());
+        let position = DVec2::new(6.5, 1.5);
+        let (heading, opacity) = (Heading::default(), u8::MAX);
+        let figure = Figure { sprite, position, base: 0.0, heading, frame: 0, opacity };
+        world.set_figures([figure].into_iter());
+        let frame = frame_of(&world, &camera_at(1.5, 1.5, 0.0), Filter::Nearest);
+        (24..28).map(|y| frame.pixel(36, y)).collect::<Vec<_>>()
+    };
+    let lights = ["light = 1.0", "light = 0.1\nfog = { color = '#404858', distance = 2 }"];
+    assert_eq!(body(lights[0], true), body(lights[1], true));
+    assert_ne!(body(lights[0], false), body(lights[1], false), "others are dimmed");
 }
 
 #[test]
