@@ -1,7 +1,7 @@
 //! The replay of a round's last seconds through the winner's eyes.
 //!
 //! While a round is played, the room records the members' cameras and the figures 20 times a second, for the
-//! last five seconds: about 13 kB for each member. The replay draws the level as it is now from those cameras
+//! last five seconds: about 12 kB for each member. The replay draws the level as it is now from those cameras
 //! with those figures, so doors that have moved since are shown as they are now. Rejected: a second game that
 //! replays the log. It would step another game for each room whose round has ended.
 //!

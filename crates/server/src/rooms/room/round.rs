@@ -431,7 +431,9 @@ impl Tag {
 
     /// Returns true while a member cannot be touched because they have just been "it".
     fn spares(&self, member: MemberId, step: u64) -> bool {
-        self.before == Some(member) && self.it != Some(member) && step < self.since + SPARED
+        self.before == Some(member)
+            && self.it != Some(member)
+            && step < self.since.saturating_add(SPARED)
     }
 
     fn step(&mut self, field: Field) {

@@ -4,16 +4,13 @@
 //! walks from cell to cell and climbs no higher than a jump. A higher floor that is not a wall may still be
 //! reached by a lift or a flight, so that step counts as a detour.
 //!
-//! The map of a level is found once and shared by all its races: two bytes for each cell, and about 10 ms for
-//! the largest map of a host. Rejected: the straight line to the exit. In a maze, the racer who is ahead may
-//! be the farthest away.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! The map of a level is found once and shared by all its races: two bytes for each cell, and less than 0.1 s
+//! for 500×500 cells. Rejected: the straight line to the exit. In a maze, the racer who is ahead may be the
+//! farthest away. Rejected: a heap of cells in place of buckets. It took eight times as long.
 
 use glam::DVec2;
 
-use cellcaster::world::{Cell, ThingKind, Tile, TileKind, World};
+use cellcaster::world::{Cell, ThingKind, TileId, TileKind, World};
 
 /// The height that a player can jump onto, in cells.
 const MAX_CLIMB: f64 = 0.66;
@@ -35,25 +32,32 @@ impl ExitWays {
         let (columns, rows) = (world.grid().width(), world.grid().height());
         let count = columns as usize * rows as usize;
         let mut ways = Self { columns, lengths: vec![u16::MAX; count].into() };
+        let tiles: Vec<TileWay> = (0..=u8::MAX)
+            .map(TileId)
+            .take(world.tiles().len())
+            .map(|tile| TileWay::of(world, tile))
+            .collect();
+        let tile = |cell| tiles.get(usize::from(world.grid().tile_in(cell)?.0));
         let exits = world.things().iter().filter(|thing| thing.kind == ThingKind::Exit);
-        let mut waiting: BinaryHeap<_> =
-            exits.map(|thing| Reverse((0, thing.cell.row, thing.cell.column))).collect();
-        while let Some(Reverse((length, row, column))) = waiting.pop() {
-            let cell = Cell { column, row };
-            let Some(known) = ways.index(cell).map(|index| &mut ways.lengths[index]) else {
-                continue;
-            };
-            if *known <= length {
-                continue;
-            }
-            *known = length;
-            for before in beside(cell) {
-                if ways.length(before).is_none()
-                    && let Some(cost) = cost(world, before, cell)
-                {
-                    waiting.push(Reverse((length.saturating_add(cost), before.row, before.column)));
+        // The cells to visit at each length, from the current one to the longest after one more step.
+        let mut waiting = [const { Vec::new() }; DETOUR as usize + 1];
+        waiting[0].extend(exits.map(|thing| thing.cell));
+        let mut length = 0;
+        while length < u16::MAX && waiting.iter().any(|cells| !cells.is_empty()) {
+            let bucket = |length: u16| usize::from(length) % (usize::from(DETOUR) + 1);
+            for cell in std::mem::take(&mut waiting[bucket(length)]) {
+                let Some(index) = ways.index(cell).filter(|&it| ways.lengths[it] > length) else {
+                    continue;
+                };
+                ways.lengths[index] = length;
+                for before in beside(cell).filter(|&before| ways.length(before).is_none()) {
+                    let cost = tile(before).zip(tile(cell)).and_then(|(from, to)| from.cost(to));
+                    if let Some(cost) = cost {
+                        waiting[bucket(length.saturating_add(cost))].push(before);
+                    }
                 }
             }
+            length += 1;
         }
         ways
     }
@@ -79,25 +83,37 @@ impl ExitWays {
     }
 }
 
-/// The cost of a step from one cell to the next; `None` if nobody can go there.
-fn cost(world: &World, from: Cell, to: Cell) -> Option<u16> {
-    let [from, to] = [from, to].map(|cell| world.grid().tile_in(cell));
-    let moves = |tile| world.moving_tiles().iter().any(|moving| moving.states.contains(&tile));
-    if from.is_some_and(moves) || moves(to?) {
-        return Some(1);
+/// The part of a tile that a way depends on.
+struct TileWay {
+    moves: bool,
+    is_wall: bool,
+    /// The height of the lowest floor on which a player can stand; `None` if there is none.
+    floor: Option<f64>,
+}
+
+impl TileWay {
+    fn of(world: &World, id: TileId) -> Self {
+        let tile = world.tile(id);
+        let is_closed = matches!(tile.kind, TileKind::Mask(_) | TileKind::Glass(_));
+        let lowest = tile.gaps().find(|gap| gap.height() >= MIN_GAP).filter(|_| !is_closed);
+        Self {
+            moves: world.moving_tiles().iter().any(|moving| moving.states.contains(&id)),
+            is_wall: matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_)),
+            floor: lowest.map(|gap| gap.bottom),
+        }
     }
-    let [from, to] = [world.tile(from?), world.tile(to?)];
-    let floor = |tile: &Tile| Some(tile.gaps().find(|gap| gap.height() >= MIN_GAP)?.bottom);
-    let is_high_wall =
-        matches!(from.kind, TileKind::Wall(_) | TileKind::Mirror(_)) && floor(&from)? > MAX_CLIMB;
-    let climb = floor(&to)? - floor(&from)?;
-    match to.kind {
-        _ if is_high_wall => None,
-        TileKind::Mask(_) | TileKind::Glass(_) => None,
-        _ if climb <= MAX_CLIMB => Some(1),
-        TileKind::Wall(_) | TileKind::Mirror(_) => None,
-        TileKind::Open | TileKind::Doorway(_) | TileKind::Door(_) | TileKind::Shape(_) => {
-            Some(DETOUR)
+
+    /// The cost of a step from this tile onto another; `None` if nobody can go there.
+    fn cost(&self, to: &Self) -> Option<u16> {
+        if self.moves || to.moves {
+            return Some(1);
+        }
+        let (from, onto) = (self.floor?, to.floor?);
+        match onto - from <= MAX_CLIMB {
+            // Nobody gets onto a high wall.
+            _ if self.is_wall && from > MAX_CLIMB => None,
+            true => Some(1),
+            false => (!to.is_wall).then_some(DETOUR),
         }
     }
 }

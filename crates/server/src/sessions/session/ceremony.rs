@@ -83,7 +83,7 @@ impl Ceremony {
             Phase::Playing { .. } => {
                 let played = room.played()?;
                 let finish = own.and_then(|member| member.finish).filter(|_| mode == Mode::Race);
-                let is_new = |since: u64| room.step < since + NEW_ROLE;
+                let is_new = |since: u64| room.step < since.saturating_add(NEW_ROLE);
                 if let Some(finish) =
                     finish.filter(|finish| played < finish.steps.saturating_add(FINISHED))
                 {
@@ -127,7 +127,7 @@ impl Ceremony {
             |other: &&MemberView| other.finish.is_none() && was_ahead(other.id) != is_ahead(other);
         if let Some(other) = others().find(has_changed).filter(|_| before.is_some()) {
             let pass = Pass { name: other.name.clone(), gains: !is_ahead(other) };
-            self.passed = Some((pass, room.step + PASSED));
+            self.passed = Some((pass, room.step.saturating_add(PASSED)));
         }
         let ahead = others().filter(|other| is_ahead(other)).map(|other| other.id).collect();
         self.compared = Some((period, ahead));

@@ -221,6 +221,6 @@ fn a_finish_is_announced_and_the_finisher_watches_the_others() {
         mara.text().contains("watching Jon")
     });
     assert!(mara.text().contains("1st, 0:"), "{}", mara.text());
-    jon.wait_for("Mara finished 1st, 0:");
+    jon.wait_for("1st: Mara 0:");
     jon.wait_for("the race ends in 0:");
 }

@@ -83,8 +83,10 @@ fn write_notice(
     if stay.member != Some(member.id) {
         let own = own_finish.map_or_else(String::new, |finish| format!("{finish} · "));
         let [short, long] = line.forms(Part::Notice);
+        let place = place(room, member).filter(|_| own.is_empty());
+        let place = place.map_or_else(String::new, |place| format!(", {place}"));
         *short = format!("{own}watching {}", member.name);
-        *long = format!("{own}watching {} · Tab: the next member", member.name);
+        *long = format!("{short}{place} · Tab: the next member");
         return Ok(());
     }
     match player.outcome() {
