@@ -610,6 +610,8 @@ const MIN_COLUMNS: u16 = 20;
 const MIN_ROWS: u16 = 6;
 /// The smallest picture with room for a minimap.
 const MIN_SIZE_WITH_MINIMAP: (u16, u16) = (36, 12);
+/// The columns that a narrow minimap has at least.
+const MIN_MINIMAP_COLUMNS: u16 = 13;
 /// The largest minimap. A larger one would hide too much of the picture.
 const MAX_MINIMAP_SIZE: (u16, u16) = (40, 20);
 /// The number of columns or rows that the borders of a panel take.
@@ -636,14 +638,17 @@ pub fn picture_and_status(area: Rect) -> [Rect; 2] {
 }
 
 /// The area of the panel of `map` in the upper right corner of the picture; `None` if there is no
-/// room for it.
-pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
+/// room for it. A narrow panel takes a fifth of the picture's width, or as much as a map needs to be
+/// of use.
+pub(crate) fn minimap(picture: Rect, map: &Minimap, is_narrow: bool) -> Option<Rect> {
     let (least_columns, least_rows) = MIN_SIZE_WITH_MINIMAP;
     if picture.width < least_columns || picture.height < least_rows {
         return None;
     }
+    let width = picture.width / 3;
+    let narrow = (picture.width / 5).saturating_sub(BORDERS).max(MIN_MINIMAP_COLUMNS);
     let room = Size {
-        width: (picture.width / 3).min(MAX_MINIMAP_SIZE.0),
+        width: if is_narrow { narrow.min(width) } else { width }.min(MAX_MINIMAP_SIZE.0),
         height: (picture.height / 2 - BORDERS).min(MAX_MINIMAP_SIZE.1),
     };
     let size = map.size_within(room);
@@ -655,7 +660,7 @@ pub(crate) fn minimap(picture: Rect, map: &Minimap) -> Option<Rect> {
 ///
 /// Rejected: a ratatui block. In each frame it would clear the inside, which a minimap fills
 /// anyway, and allocate a list for its titles.
-pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+pub fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     if area.width < BORDERS || area.height < BORDERS {
         return inside;

@@ -212,7 +212,7 @@ impl<'a> Overlay<'a> {
         let marks: Vec<MapMark> = guards.chain(others).collect();
         let map = panel.minimap(game, camera, view);
         let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(ghost);
-        if let Some(place) = page::minimap(area, &map) {
+        if let Some(place) = page::minimap(area, &map, panel.is_narrow) {
             let inside = framed(canvas, place, "map");
             map.paint(inside, canvas);
             let extent = map.extent_within(inside.as_size());
@@ -525,6 +525,8 @@ pub struct MapPanel {
     /// `true` if the map is shown.
     pub is_shown: bool,
     display: MapDisplay,
+    /// `true` if the panel takes less of the picture's width than at home.
+    is_narrow: bool,
     explored: Explored,
     zoom: i32,
     /// The displacement of the visible part from the player, in cells.
@@ -542,6 +544,12 @@ impl MapPanel {
     /// A panel that displays this content.
     pub fn new(display: MapDisplay) -> Self {
         Self { is_shown: display != MapDisplay::Off, display, ..Self::default() }
+    }
+
+    /// The panel, narrower than at home: other players are in the picture beside it.
+    #[must_use]
+    pub fn narrow(self) -> Self {
+        Self { is_narrow: true, ..self }
     }
 
     /// The content of the map, as the settings page shows it.

@@ -77,7 +77,7 @@ impl Stay {
             talk: Talk::default(),
             intents: IntentQueue::default(),
             frames: ShownSteps::default(),
-            map: MapPanel::new(map),
+            map: MapPanel::new(map).narrow(),
             watch: Watch::default(),
             next_change: None,
             ghosts: Ghosts::default(),

@@ -311,3 +311,13 @@ fn members_see_each_other_on_arrival() {
     // Once in the chat line that announces him, and once above his head.
     assert_eq!(rig.text(one).matches("Jon").count(), 2, "{}", rig.text(one));
 }
+
+#[test]
+fn the_map_covers_at_most_a_fifth_of_a_narrow_window() {
+    let catalog = crate::rooms::room::Catalog::builtin();
+    let mut rig = Rig::with(Wish { catalog, level: "museum", ..Wish::new(Mode::Roam) });
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    let text = rig.text(one);
+    let (_, frame) = text.lines().next().and_then(|row| row.split_once("+map")).expect(&text);
+    assert!((13..=16).contains(&(frame.len() + 4)), "{text}");
+}
