@@ -660,7 +660,7 @@ pub(crate) fn minimap(picture: Rect, map: &Minimap, is_narrow: bool) -> Option<R
 ///
 /// Rejected: a ratatui block. In each frame it would clear the inside, which a minimap fills
 /// anyway, and allocate a list for its titles.
-pub fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     if area.width < BORDERS || area.height < BORDERS {
         return inside;

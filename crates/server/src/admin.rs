@@ -139,6 +139,9 @@ pub struct RoomRow {
     pub most: usize,
     /// The number of watchers.
     pub watchers: usize,
+    /// `true` if only visitors with its code enter the room.
+    #[serde(default)]
+    pub is_private: bool,
 }
 
 impl AdminRequest {

@@ -240,7 +240,7 @@ impl Hall {
             Request::Go(Way::Watch(_)) => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
-                Some(SessionEvent::Entered { room: ROOM, member: None })
+                Some(SessionEvent::Entered { room: ROOM, member: None, code: None })
             }
             Request::Go(_) if self.room.is_full() => {
                 Some(SessionEvent::Refused("The room is full.".to_owned()))
@@ -253,7 +253,7 @@ impl Hall {
                 self.apply(member, Command::Join { color, name });
                 let FuzzedVisitor { member: own, is_inside, .. } = &mut self.visitors[visitor];
                 (*own, *is_inside) = (Some(member), true);
-                Some(SessionEvent::Entered { room: ROOM, member: Some(member) })
+                Some(SessionEvent::Entered { room: ROOM, member: Some(member), code: None })
             }
             Request::Command(command) => {
                 if let Some(member) = self.visitors[visitor].member {

@@ -3,6 +3,7 @@
 pub(crate) mod cast;
 pub mod directory;
 pub mod ghost;
+pub mod invitation;
 pub mod maps;
 pub mod replayed;
 pub mod room;

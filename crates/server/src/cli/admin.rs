@@ -152,6 +152,9 @@ fn of_room(row: &RoomRow) -> Vec<String> {
     if row.watchers > 0 {
         members = format!("{members} (watched by {})", row.watchers);
     }
+    if row.is_private {
+        members = format!("{members} (private)");
+    }
     let room = row.room.to_string();
     vec![room, row.mode.clone(), row.level.clone(), row.difficulty.clone(), members]
 }

@@ -102,10 +102,11 @@ impl SharedRooms {
         shared
     }
 
-    /// Opens a room, and joins it.
+    /// Opens a room, and joins it. Others enter a private room with its code only.
     pub(crate) async fn open(
         &self,
         wish: &RoomWish,
+        is_private: bool,
         visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
         let listed = self.0.rooms.summaries().borrow().len();
@@ -116,7 +117,8 @@ impl SharedRooms {
         let context = &self.0.context;
         let header = self.header(wish).ok_or(RoomRefusal::NoLevel)?;
         let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
-        let record = to_bytes(&Record::new(header, false));
+        let code = is_private.then(|| self.0.rooms.new_code());
+        let record = to_bytes(&Record::new(header, false, code));
         context.bus.create(Key::Room(id), record).await.map_err(not_now)?;
         self.join(id, visitor).await
     }
@@ -250,7 +252,8 @@ impl SharedRooms {
         let loaded = context.load_state(id).await?;
         let (requests, receiver) = mpsc::channel(MAX_REQUESTS);
         let closes_after = self.0.rooms.limits().closes_after;
-        let interface = RoomInterface::new(&loaded.0.room, loaded.1.stands, closes_after);
+        let (state, record) = &loaded;
+        let interface = RoomInterface::new(&state.room, record.stands, closes_after, record.code);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
         let context = Arc::clone(context);
         let replica = Replica::new(context, id, loaded, interface, broadcasts, receiver);
@@ -370,7 +373,7 @@ impl SharedRooms {
         if locked(&self.0.records, |records| records.contains_key(&id)) {
             return Ok(Some(id));
         }
-        match bus.create(Key::Room(id), to_bytes(&Record::new(header, true))).await {
+        match bus.create(Key::Room(id), to_bytes(&Record::new(header, true, None))).await {
             Ok(()) | Err(BusFault::Refused) => Ok(Some(id)),
             Err(fault) => Err(fault),
         }

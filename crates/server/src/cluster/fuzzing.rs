@@ -35,7 +35,7 @@ impl SharedRoom {
     pub fn new(seed: u64) -> Self {
         let mode = Mode::ALL[seed as usize % Mode::ALL.len()];
         let header = Header::new("cellar", mode, Difficulty::Normal, seed);
-        Self::of(Record::new(header, false)).expect("the level is built in")
+        Self::of(Record::new(header, false, None)).expect("the level is built in")
     }
 
     /// The room of a record; `None` if the bytes are not a record, or if its level is unknown.

@@ -12,6 +12,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::line::Line;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{
     Command, Entry, Header, MemberId, NAME_COLUMNS, Phase, Room, line_within,
 };
@@ -20,7 +21,7 @@ use cellcaster::game::stored::{Reader, Unrestorable, appended, bits, check};
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 
 /// The version of the format of messages, records and checkpoints.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 /// The most steps in a message: ten seconds.
 const MAX_STEPS: u64 = 600;
 
@@ -105,6 +106,8 @@ pub(crate) struct Record {
     pub(crate) level: String,
     /// The header at the beginning of the log, while there is no checkpoint.
     pub(crate) header: Header,
+    /// The invitation code of a private room.
+    pub(crate) code: Option<RoomCode>,
 }
 
 impl LogMessage {
@@ -147,10 +150,10 @@ impl PeerMessage {
 
 impl Record {
     /// The record of a room that nobody has entered yet.
-    pub(crate) fn new(header: Header, stands: bool) -> Self {
+    pub(crate) fn new(header: Header, stands: bool, code: Option<RoomCode>) -> Self {
         let level = header.level.clone();
         let (phase, names) = (Phase::Waiting, Vec::new());
-        Self { stands, is_running: !stands, heartbeat: 0, phase, names, level, header }
+        Self { stands, is_running: !stands, heartbeat: 0, phase, names, level, header, code }
     }
 
     /// Parses a record.
@@ -178,6 +181,7 @@ impl Record {
             phase: self.phase,
             members: self.names.as_slice().into(),
             watchers: 0,
+            code: self.code,
         }
     }
 }
@@ -260,13 +264,14 @@ mod tests {
     #[test]
     fn records_round_trip() {
         let header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
-        let new = Record::new(header, true);
+        let new = Record::new(header, true, None);
         let names = ["Mara", "a b"].map(|name| Line::of(name, NAME_COLUMNS).unwrap());
         let used = Record {
             stands: false,
             is_running: true,
             heartbeat: 9,
             phase: Phase::Playing { ends: 99 },
+            code: RoomCode::parse("BCDFGH"),
             names: names.into(),
             ..new.clone()
         };
@@ -275,6 +280,7 @@ mod tests {
             let wide =
                 Record { names: vec![Line::of(&"x".repeat(17), 17).unwrap()], ..record.clone() };
             assert!(Record::parse(&to_bytes(&wide)).is_err());
+            assert_eq!(record.summary(RoomId(1)).code, record.code);
             let beyond = Record { heartbeat: u64::MAX, ..record };
             assert!(Record::parse(&to_bytes(&beyond)).is_err());
         }

@@ -38,7 +38,7 @@ use super::{Cluster, Entrant, SharedRooms};
 use crate::line::Line;
 use crate::load::{Load, Worker};
 use crate::metrics::Metrics;
-use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
+use crate::rooms::directory::{Recordings, RoomLimits, Rooms, Seeds};
 use crate::rooms::room::{Catalog, MemberId, Mode};
 use crate::rooms::summary::{RoomId, RoomWish};
 use crate::simulation::{HALL, catalog};
@@ -169,7 +169,13 @@ impl SimulatedHost {
         let metrics = Arc::<Metrics>::default();
         let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
         let recordings = Recordings::new(|_| None);
-        let rooms = Rooms::new(limits, Arc::clone(catalog), recordings, Arc::clone(&load), seed);
+        let rooms = Rooms::new(
+            limits,
+            Arc::clone(catalog),
+            recordings,
+            Arc::clone(&load),
+            Seeds { rooms: seed, codes: seed },
+        );
         let (bus, leases) = (world.bus(index), world.leases(index));
         let (notice, visits) = (notice(index), world.visits(index));
         let cluster = Cluster { bus, leases, visits, notice, seed };

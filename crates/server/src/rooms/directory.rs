@@ -23,6 +23,7 @@ use crate::line::Line;
 use crate::load::Load;
 use crate::lock::locked;
 use crate::logging;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
 pub(crate) use crate::rooms::summary::RoomRefusal;
@@ -61,6 +62,17 @@ struct Directory {
     summaries: watch::Sender<Arc<[RoomSummary]>>,
     /// The rooms that this host shares with other hosts.
     shared: Mutex<Vec<RoomSummary>>,
+    /// The generator of invitation codes.
+    codes: Mutex<SplitMix64>,
+}
+
+/// The seeds of a host's chance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seeds {
+    /// Determines all chance in the rooms. Recordings reveal it.
+    pub(crate) rooms: u64,
+    /// Determines the invitation codes.
+    pub(crate) codes: u64,
 }
 
 #[derive(Debug)]
@@ -77,22 +89,22 @@ type NewRoom = (RoomId, Room, Arc<RoomInterface>);
 #[derive(Debug)]
 struct OpenRoom {
     interface: Arc<RoomInterface>,
-    /// The summary, without the number of watchers.
+    /// The summary, without the number of watchers and the code.
     summary: RoomSummary,
     /// The standing room for which it was opened, even if that wish has been withdrawn since.
     stood_for: Option<RoomWish>,
 }
 
 impl Rooms {
-    /// Opens the standing rooms on the current runtime. `seed` determines all chance in the rooms.
+    /// Opens the standing rooms on the current runtime.
     pub(crate) fn new(
         limits: RoomLimits,
         catalog: Arc<Catalog>,
         recordings: Recordings,
         load: Arc<Load>,
-        seed: u64,
+        seeds: Seeds,
     ) -> Self {
-        let chance = SplitMix64::new(seed);
+        let chance = SplitMix64::new(seeds.rooms);
         let rooms = Self(Arc::new(Directory {
             limits: Mutex::new(limits),
             catalog,
@@ -101,6 +113,7 @@ impl Rooms {
             open: Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() }),
             summaries: watch::Sender::new(Arc::from([])),
             shared: Mutex::default(),
+            codes: Mutex::new(SplitMix64::new(seeds.codes)),
         }));
         rooms.open_standing();
         rooms
@@ -121,9 +134,14 @@ impl Rooms {
         self.0.summaries.subscribe()
     }
 
-    /// Opens a room and joins it.
-    pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
-        let (id, room, interface) = self.add(wish, false)?;
+    /// Opens a room and joins it. Others enter a private room with its code only.
+    pub(crate) fn open(
+        &self,
+        wish: &RoomWish,
+        is_private: bool,
+        name: &Line,
+    ) -> Result<Place, RoomRefusal> {
+        let (id, room, interface) = self.add(wish, false, is_private.then(|| self.new_code()))?;
         // Join before the room runs: a room for a single member closes as soon as it is empty.
         let member = interface.inbox.join(name)?;
         let place = Place::member(id, member, Arc::clone(&interface));
@@ -165,6 +183,17 @@ impl Rooms {
         } else {
             Err(RoomRefusal::Full)
         }
+    }
+
+    /// A code for a new private room.
+    pub(crate) fn new_code(&self) -> RoomCode {
+        locked(&self.0.codes, RoomCode::random)
+    }
+
+    /// The private room with this code.
+    pub(crate) fn with_code(&self, code: RoomCode) -> Option<RoomId> {
+        let summaries = self.0.summaries.borrow();
+        summaries.iter().find(|room| room.code == Some(code)).map(|room| room.id)
     }
 
     /// The host's limits.
@@ -217,7 +246,7 @@ impl Rooms {
             }
         });
         for wish in missing {
-            match self.add(&wish, true) {
+            match self.add(&wish, true, None) {
                 Ok(room) => self.spawn(room),
                 Err(refusal) => tracing::error!(
                     level = wish.level,
@@ -228,7 +257,12 @@ impl Rooms {
     }
 
     /// Adds a room without running it.
-    fn add(&self, wish: &RoomWish, stands: bool) -> Result<NewRoom, RoomRefusal> {
+    fn add(
+        &self,
+        wish: &RoomWish,
+        stands: bool,
+        code: Option<RoomCode>,
+    ) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
         let (most, closes_after) = locked(limits, |it| (it.most, it.closes_after));
         let (id, seed) = locked(open, |open| {
@@ -238,7 +272,7 @@ impl Rooms {
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
         let header = Header::new(level, wish.mode, wish.difficulty, seed);
         let room = Room::new(catalog, header).ok_or(RoomRefusal::NoLevel)?;
-        let interface = RoomInterface::new(&room, stands, closes_after);
+        let interface = RoomInterface::new(&room, stands, closes_after, code);
         let open_room = OpenRoom {
             interface: Arc::clone(&interface),
             summary: RoomSummary::of(id, &room),
@@ -297,6 +331,7 @@ impl Rooms {
     fn publish(&self) {
         let summary = |room: &OpenRoom| RoomSummary {
             watchers: room.interface.watchers(),
+            code: room.interface.code,
             ..room.summary.clone()
         };
         // Sent under the lock, so that an older list never replaces a newer one.
@@ -358,6 +393,11 @@ impl Place {
             Occupant::Member(member) => Some(member),
             Occupant::Watcher(_) => None,
         }
+    }
+
+    /// The invitation code, if the room is private.
+    pub(crate) fn code(&self) -> Option<RoomCode> {
+        self.interface.code
     }
 
     /// The latest snapshot; `None` after a fault of the room.

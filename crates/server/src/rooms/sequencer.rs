@@ -23,6 +23,7 @@ use std::time::Duration;
 use tokio::sync::{Notify, watch};
 use tokio::time::{Instant, sleep, sleep_until};
 
+use super::invitation::RoomCode;
 use super::summary::RoomRefusal;
 use crate::bucket::Bucket;
 use crate::line::Line;
@@ -59,6 +60,8 @@ pub(crate) struct RoomInterface {
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
     /// The number of watchers.
     watchers: AtomicUsize,
+    /// The invitation code of a private room.
+    pub(crate) code: Option<RoomCode>,
 }
 
 /// A room with its log. Only the sequencer changes them.
@@ -155,8 +158,13 @@ impl Sequencer {
 
 impl RoomInterface {
     /// The interface of `room`, which has no members yet. Unless `is_standing`, the room closes after
-    /// `closes_after` without members.
-    pub(crate) fn new(room: &Room, is_standing: bool, closes_after: Duration) -> Arc<Self> {
+    /// `closes_after` without members. A room with a `code` is private.
+    pub(crate) fn new(
+        room: &Room,
+        is_standing: bool,
+        closes_after: Duration,
+        code: Option<RoomCode>,
+    ) -> Arc<Self> {
         let mode = room.header().mode;
         let closes_after = match mode {
             // Nobody else can continue a game that a member plays alone.
@@ -169,6 +177,7 @@ impl RoomInterface {
             closed: watch::Sender::default(),
             closes_after: watch::Sender::new(closes_after),
             watchers: AtomicUsize::new(0),
+            code,
         })
     }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::line::Line;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Mode, Phase, Room};
 use cellcaster::world::Difficulty;
 
@@ -40,10 +41,12 @@ pub(crate) struct RoomSummary {
     pub(crate) members: Arc<[Line]>,
     /// The number of watchers.
     pub(crate) watchers: usize,
+    /// The code of a private room, which no lobby lists; `None` if the room is open to everybody.
+    pub(crate) code: Option<RoomCode>,
 }
 
 impl RoomSummary {
-    /// The summary of a room without watchers.
+    /// The summary of a room without watchers, open to everybody.
     pub(crate) fn of(id: RoomId, room: &Room) -> Self {
         let header = room.header();
         Self {
@@ -54,6 +57,7 @@ impl RoomSummary {
             phase: room.phase(),
             members: room.names().cloned().collect(),
             watchers: 0,
+            code: None,
         }
     }
 

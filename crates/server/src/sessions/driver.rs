@@ -41,8 +41,9 @@ use crate::line::Line;
 use crate::load::{Governor, Load};
 use crate::metrics::Metrics;
 use crate::operator::Operator;
-use crate::rooms::directory::{Recordings, Rooms};
+use crate::rooms::directory::{Recordings, Rooms, Seeds};
 use crate::rooms::ghost::KeptRuns;
+use crate::rooms::invitation::WrongCodes;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::RoomSummary;
 use crate::ssh::{Departure, Host, Link, Visitor};
@@ -66,6 +67,7 @@ struct Shared {
     recorder: Recorder,
     /// The players that the host remembers while the database is away; `None` if the store is a file.
     known: Option<Arc<Mutex<KnownPlayers>>>,
+    wrong_codes: Mutex<WrongCodes>,
     /// A cache of the best runs on the boards. Only the store's thread uses it.
     runs: Arc<Mutex<KeptRuns>>,
     load: Arc<Load>,
@@ -97,8 +99,7 @@ pub struct HostParts {
     pub(crate) waiting: Option<WaitingResults>,
     /// The players that the host lets in while the database is away.
     pub(crate) known: Option<KnownPlayers>,
-    /// The seed for all chance in rooms.
-    pub(crate) seed: u64,
+    pub(crate) seeds: Seeds,
     /// The cluster with which the host shares its rooms.
     pub(crate) cluster: Option<Cluster>,
 }
@@ -124,8 +125,7 @@ impl HostParts {
             store: StoreWorker::start("store", MAX_CALLS, store)?,
             waiting: None,
             known: None,
-            // If the system had no random numbers, the server would have no keys either.
-            seed: getrandom::u64().unwrap_or_default(),
+            seeds: Seeds { rooms: random(), codes: random() },
             metrics,
             live,
             cluster: None,
@@ -147,7 +147,7 @@ impl GameHost {
             .map(|_| std::mem::take(&mut limits.standing))
             .unwrap_or_default();
         let catalog = Arc::new(parts.catalog);
-        let rooms = Rooms::new(limits, catalog, parts.recordings, Arc::clone(&load), parts.seed);
+        let rooms = Rooms::new(limits, catalog, parts.recordings, Arc::clone(&load), parts.seeds);
         let cluster = parts.cluster.map(|cluster| {
             cluster.rooms(&rooms, shared_standing, Arc::clone(&load), visitors.clone())
         });
@@ -168,6 +168,7 @@ impl GameHost {
             store: parts.store,
             recorder,
             known: parts.known.map(|known| Arc::new(Mutex::new(known))),
+            wrong_codes: Mutex::default(),
             runs: Arc::default(),
             load,
             large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
@@ -231,7 +232,13 @@ fn room_row(room: &RoomSummary, catalog: &Catalog) -> RoomRow {
         members: room.members.iter().map(Line::to_string).collect(),
         most: room.mode.most(),
         watchers: room.watchers,
+        is_private: room.code.is_some(),
     }
+}
+
+/// A random number of the system's. If it had none, the server would have no keys either.
+fn random() -> u64 {
+    getrandom::u64().unwrap_or_default()
 }
 
 impl Host for GameHost {

@@ -97,7 +97,7 @@ impl Traffic {
 const TO_THE_NAME: &[(&str, &str)] = &[("Enter saves it", "")];
 const TO_THE_LOBBY: &[(&str, &str)] = &[("Enter saves it", "\r"), ("Open a room", "")];
 const TO_SETTINGS: &[(&str, &str)] =
-    &[("Enter saves it", "\r"), ("Open a room", "6"), ("Mouse turns", "")];
+    &[("Enter saves it", "\r"), ("Open a room", "7"), ("Mouse turns", "")];
 const TO_A_ROOM: &[(&str, &str)] =
     &[("Enter saves it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("comes in.", "")];
 const TO_THE_CHAT: &[(&str, &str)] = &[
@@ -109,7 +109,7 @@ const TO_THE_CHAT: &[(&str, &str)] = &[
 ];
 const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
     ("Enter saves it", "\r"),
-    ("Open a room", "6"),
+    ("Open a room", "7"),
     ("Mouse turns", "\x1b[B"),
     ("Mouse turns", "\x1b[B"),
     ("Mouse turns", "\r"),

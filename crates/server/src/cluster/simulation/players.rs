@@ -114,7 +114,7 @@ impl ClusterRun {
             }
             let place = match room.filter(|_| !is_own) {
                 Some(room) => shared.enter(room, &entrant).await,
-                None => shared.open(&wish(), &entrant).await,
+                None => shared.open(&wish(), false, &entrant).await,
             };
             place.map(|place| Arrived { place, host, is_return: false })
         }));

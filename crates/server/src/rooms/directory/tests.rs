@@ -56,7 +56,7 @@ fn rooms(broken: &'static [u32]) -> Rooms {
         broken.contains(&id.0).then(|| -> Box<dyn Recording> { Box::new(Broken) })
     });
     let load = Arc::new(Load::new(Arc::<Metrics>::default()));
-    Rooms::new(limits, Arc::new(Catalog::builtin()), recordings, load, 7)
+    Rooms::new(limits, Arc::new(Catalog::builtin()), recordings, load, Seeds { rooms: 7, codes: 8 })
 }
 
 /// Runs `act`; returns the log messages about rooms.
@@ -91,7 +91,7 @@ fn a_panic_ends_only_its_own_room() {
     let text = run(async || {
         let rooms = rooms(&[2]);
         let mut ben = rooms.enter(RoomId(1), &name("Ben")).unwrap();
-        let mut ada = rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap();
+        let mut ada = rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap();
         let mut watcher = rooms.watch(RoomId(2)).unwrap();
         assert!(end_of(&mut ada).await.contains("error in this server"));
         assert!(end_of(&mut watcher).await.contains("error in this server"));
@@ -102,7 +102,7 @@ fn a_panic_ends_only_its_own_room() {
         let before = ben.view().unwrap().step;
         ben.changed().await;
         assert!(ben.view().unwrap().step > before);
-        assert_eq!(rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap().room(), RoomId(3));
+        assert_eq!(rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap().room(), RoomId(3));
     });
     let failed: Vec<&str> = text.lines().filter(|line| line.contains("failed")).collect();
     assert_eq!(failed.len(), 1, "{text}");
@@ -128,9 +128,10 @@ fn empty_rooms_are_closed_and_forgotten() {
     run(async || {
         let rooms = rooms(&[]);
         for _ in 0..20 {
-            let places: Vec<Place> =
-                (0..3).map(|_| rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap()).collect();
-            let full = rooms.open(&wish(Mode::Tag), &name("Ben")).err();
+            let places: Vec<Place> = (0..3)
+                .map(|_| rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap())
+                .collect();
+            let full = rooms.open(&wish(Mode::Tag), false, &name("Ben")).err();
             assert_eq!(full, Some(RoomRefusal::TooMany));
             drop(places);
             listed(&rooms, &[1]).await;
@@ -145,7 +146,7 @@ fn the_end_of_a_round_is_logged() {
         let rooms = rooms(&[]);
         let header = Header::new("museum", Mode::Hide, Difficulty::default(), 7);
         let mut room = Room::new(rooms.catalog(), header).unwrap();
-        let (id, ..) = rooms.add(&wish(Mode::Hide), false).unwrap();
+        let (id, ..) = rooms.add(&wish(Mode::Hide), false, None).unwrap();
         for (member, member_name) in [(1, "Ada"), (2, "Ben")] {
             let command = Command::Join { color: PlayerColor::ALL[0], name: name(member_name) };
             room.apply(&Entry { step: room.step(), member: MemberId(member), command });
@@ -170,7 +171,7 @@ fn a_member_who_returns_on_another_connection_gets_a_new_place() {
     let catalog = Arc::new(simulation::catalog(simulation::HALL));
     let header = Header::new("hall", Mode::Roam, Difficulty::Normal, 7);
     let room = Room::new(&catalog, header).unwrap();
-    let interface = RoomInterface::new(&room, true, Duration::ZERO);
+    let interface = RoomInterface::new(&room, true, Duration::ZERO, None);
     let member = interface.inbox.join(&Line::of("Mara", NAME_COLUMNS).unwrap()).unwrap();
     let place = || Place::member(RoomId(1), member, Arc::clone(&interface));
     let first = place();

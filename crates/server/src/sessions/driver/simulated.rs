@@ -14,7 +14,7 @@ use crate::accounts::worker::StoreWorker;
 use crate::config::LiveConfig;
 use crate::load::{Load, Worker};
 use crate::metrics::Metrics;
-use crate::rooms::directory::{Place, Recordings, Rooms};
+use crate::rooms::directory::{Place, Recordings, Rooms, Seeds};
 use crate::rooms::room::{Catalog, RoomView};
 use crate::sessions::session::Session;
 use crate::ssh::{Link, Visitor};
@@ -69,7 +69,7 @@ impl Simulated {
             store,
             waiting: None,
             known: None,
-            seed: setup.seed,
+            seeds: Seeds { rooms: setup.seed, codes: setup.seed },
             cluster: None,
         });
         Self { host }

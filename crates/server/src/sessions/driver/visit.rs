@@ -19,6 +19,7 @@ use tokio::time::sleep_until;
 use super::login::{self, AccountData};
 use super::{Shared, results};
 use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin, UnixTime};
+use crate::admission::counted_address;
 use crate::cluster::Entrant;
 use crate::line::Line;
 #[cfg(test)]
@@ -26,9 +27,10 @@ use crate::load::Work;
 use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::invitation::{Guesser, RoomCode};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
-use crate::rooms::summary::RoomSummary;
+use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
     HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
 };
@@ -368,6 +370,10 @@ impl Driver {
                 self.notify(SessionEvent::Rooms(rooms));
             }
             Request::Go(way) => self.go(way),
+            Request::Code(code) => match self.room_with_code(&code) {
+                Ok(room) => self.go(Way::Enter(room)),
+                Err(sentence) => self.notify(SessionEvent::Refused(sentence)),
+            },
             Request::Command(command) => self.act(command),
             Request::Leave => self.leave(),
             Request::Board { level, difficulty } => self.show_board(level, difficulty),
@@ -533,7 +539,9 @@ impl Driver {
                 let place = match (&way, &entrant) {
                     (Way::Watch(room), _) => rooms.watch(*room).await,
                     (Way::Enter(room), Some(entrant)) => rooms.enter(*room, entrant).await,
-                    (Way::Open(wish), Some(entrant)) => rooms.open(wish, entrant).await,
+                    (Way::Open { wish, is_private }, Some(entrant)) => {
+                        rooms.open(wish, *is_private, entrant).await
+                    }
                     (_, None) => Err(RoomRefusal::Gone),
                 };
                 // If the visitor has gone, the place is dropped, which leaves the room.
@@ -545,10 +553,29 @@ impl Driver {
         let place = match (way, &name) {
             (Way::Watch(room), _) => rooms.watch(room),
             (Way::Enter(room), Some(name)) => rooms.enter(room, name),
-            (Way::Open(wish), Some(name)) => rooms.open(&wish, name),
+            (Way::Open { wish, is_private }, Some(name)) => rooms.open(&wish, is_private, name),
             (_, None) => Err(RoomRefusal::Gone),
         };
         self.enter(place);
+    }
+
+    /// The private room with a code that the visitor typed, unless they have guessed too often.
+    fn room_with_code(&self, typed: &Line) -> Result<RoomId, String> {
+        let Shared { wrong_codes, rooms, .. } = &*self.shared;
+        let now = self.shared.now();
+        let address = Guesser::Address(counted_address(self.address));
+        let guessers: Vec<Guesser> =
+            [address].into_iter().chain(self.key.map(Guesser::Key)).collect();
+        locked(wrong_codes, |wrong| {
+            if !wrong.may_try(&guessers, now) {
+                return Err("Too many wrong codes: wait a minute.".to_owned());
+            }
+            let room = RoomCode::parse(typed.as_str()).and_then(|code| rooms.with_code(code));
+            room.ok_or_else(|| {
+                wrong.count(&guessers, now);
+                format!("No room has the code {typed}; ask a member for it.")
+            })
+        })
     }
 
     fn enter(&mut self, place: Result<Place, RoomRefusal>) {
@@ -557,7 +584,8 @@ impl Driver {
                 let place = self.kept_while_draining(place);
                 self.in_lobby = false;
                 self.presence.set_room(Some(place.room().place()));
-                let event = SessionEvent::Entered { room: place.room(), member: place.member_id() };
+                let (room, member, code) = (place.room(), place.member_id(), place.code());
+                let event = SessionEvent::Entered { room, member, code };
                 self.place = Some(place);
                 self.notify(event);
             }

@@ -89,6 +89,7 @@ impl Ui {
     fn draw_panel(&mut self, canvas: &mut impl Canvas, area: Rect) {
         match self.page() {
             Page::Name => self.draw_name(canvas, area),
+            Page::Code => self.draw_code(canvas, area),
             Page::Help => {
                 let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
                 let keys = (&room_keys[..], &self.bindings);
@@ -109,10 +110,20 @@ impl Ui {
             (false, _) => "You are a guest. With a key, your results rank.",
         };
         let about = self.host.notice.as_ref().map_or(about, line::Line::as_str);
+        let note = self.note.clone().unwrap_or_else(|| about.to_owned());
+        self.draw_entry(canvas, area, "your name", &note);
+    }
+
+    fn draw_code(&self, canvas: &mut impl Canvas, area: Rect) {
+        let about = "The menu of a private room shows its code.";
+        self.draw_entry(canvas, area, "enter a code", about);
+    }
+
+    /// Draws a panel with the line that is being typed.
+    fn draw_entry(&self, canvas: &mut impl Canvas, area: Rect, title: &str, about: &str) {
         let room = usize::from(area.width.saturating_sub(6));
         let entry = self.entry.shown(room);
-        let note = self.note.clone().unwrap_or_else(|| about.to_owned());
-        let mut menu: Menu<()> = Menu::new("your name").line(note).entry(entry, ());
+        let mut menu: Menu<()> = Menu::new(title).line(about).entry(entry, ());
         menu.draw(canvas, area);
     }
 
@@ -184,7 +195,7 @@ impl Ui {
         if shows_standings {
             members::draw_standings(canvas, area, room, depth);
         } else if stay.shows_members && page == Page::Room {
-            members::draw_members(canvas, area, room, &self.host.catalog, depth);
+            members::draw_members(canvas, area, (room, stay.code), &self.host.catalog, depth);
         }
         talk::draw(canvas, area, stay.talk.shown(), page == Page::Chat, depth);
         if let Some(draining) = self.draining {

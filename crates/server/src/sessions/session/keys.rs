@@ -124,6 +124,7 @@ impl Ui {
 
     fn change_value(&mut self, forward: bool) {
         match (self.page(), self.pages.menu.choice()) {
+            (Page::Card(_), Some(Choice::ChangePrivacy)) => self.change_privacy(),
             (Page::Settings, Some(Choice::Change(row))) => self.change_setting(row, forward),
             (Page::Levels(mode), _) if !mode.has_guards() => {}
             (Page::Levels(_) | Page::Board, _) => {
@@ -169,6 +170,7 @@ impl Ui {
     fn press_while_typing(&mut self, event: KeyEvent) {
         match (self.page(), event.key) {
             (Page::Name, Key::Escape) => self.open(Page::Leaving),
+            (Page::Code, Key::Escape) => self.close(),
             (_, Key::Escape) => self.show(Page::Room),
             (_, Key::Enter) if event.phase == Phase::Press => self.submit(),
             _ => self.is_stale |= self.entry.press(event),
@@ -177,6 +179,13 @@ impl Ui {
 
     /// Submits the typed line.
     fn submit(&mut self) {
+        if self.page() == Page::Code {
+            if let Some(code) = self.entry.line() {
+                self.ask(Request::Code(code));
+                self.open(Page::Entering);
+            }
+            return;
+        }
         if self.page() == Page::Chat {
             if let Some(line) = self.entry.line() {
                 self.ask(Request::Command(Command::Say(line)));

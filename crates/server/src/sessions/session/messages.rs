@@ -7,6 +7,7 @@ use super::endings::IdleLimits;
 use crate::accounts::AccountSettings;
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, MemberId};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use cellcaster::app::Configuration;
@@ -54,8 +55,8 @@ pub(crate) enum Way {
     Watch(RoomId),
     /// Become a member of an existing room.
     Enter(RoomId),
-    /// Open a new room and become its member.
-    Open(RoomWish),
+    /// Open a new room and become its member. Others enter a private room with its code only.
+    Open { wish: RoomWish, is_private: bool },
 }
 
 /// A request from a session to its driver.
@@ -67,6 +68,8 @@ pub(crate) enum Request {
     Rooms,
     /// Enter a room. Answered by [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
     Go(Way),
+    /// Enter the private room with this code. Answered like [`Request::Go`].
+    Code(Line),
     /// Submit a command to the room, other than [`Command::Join`] or [`Command::Leave`].
     Command(Command),
     /// Leave the room. Not answered.
@@ -86,8 +89,8 @@ pub(crate) enum SessionEvent {
     Named(Result<Line, String>),
     /// The rooms for the lobby.
     Rooms(Arc<[RoomSummary]>),
-    /// The visitor has entered a room; `member` is `None` if they watch.
-    Entered { room: RoomId, member: Option<MemberId> },
+    /// The visitor has entered a room; `member` is `None` if they watch. A private room has a `code`.
+    Entered { room: RoomId, member: Option<MemberId>, code: Option<RoomCode> },
     /// The visitor cannot enter the room, for the reason in the sentence.
     Refused(String),
     /// The visitor has left the room, for the reason in the sentence.

@@ -5,6 +5,7 @@
 //! session ends, the visitor is asked to confirm.
 
 use super::draw::COMPRESSION;
+use super::line_entry::LineEntry;
 use super::messages::{Request, Way};
 use super::ui::Ui;
 use crate::line::Line;
@@ -16,6 +17,8 @@ use cellcaster::world::Difficulty;
 
 /// The number of rooms listed in the lobby. If there are more, another page lists all of them.
 const ROOMS_IN_LOBBY: usize = 5;
+/// The widest invitation code that can be typed, with blanks.
+const CODE_COLUMNS: usize = 12;
 /// The level for the first walk.
 const FIRST_LEVEL: &str = "museum";
 
@@ -36,6 +39,8 @@ pub(crate) enum Page {
     /// A choice of the level whose board is shown.
     Boards,
     Board,
+    /// The visitor types the code of a private room.
+    Code,
     /// A description of a room, before the visitor enters it.
     Card(RoomTarget),
     /// The driver has been asked for the room.
@@ -62,6 +67,8 @@ pub(crate) enum Choice {
     Enter { watches: bool },
     /// Shows the board of the level with this index.
     Board(usize),
+    /// Changes whether the new room is private.
+    ChangePrivacy,
     /// Changes the setting in this row of the settings page.
     Change(usize),
     /// Returns to the previous page.
@@ -88,10 +95,12 @@ pub(crate) enum RoomTarget {
 impl parts::Page for Page {
     fn kind(self) -> PageKind {
         match self {
-            Self::Name | Self::Room | Self::Chat => PageKind::Bare,
+            Self::Name | Self::Code | Self::Room | Self::Chat => PageKind::Bare,
             Self::Help => PageKind::Help,
             Self::Leaving => PageKind::Leaving,
-            Self::Settings | Self::Levels(_) | Self::Board => PageKind::Menu { has_values: true },
+            Self::Settings | Self::Levels(_) | Self::Board | Self::Card(RoomTarget::New { .. }) => {
+                PageKind::Menu { has_values: true }
+            }
             _ => PageKind::Menu { has_values: false },
         }
     }
@@ -100,7 +109,7 @@ impl parts::Page for Page {
 impl Page {
     /// Returns true if the visitor types a line on this page.
     pub(crate) fn is_typed_in(self) -> bool {
-        matches!(self, Self::Name | Self::Chat)
+        matches!(self, Self::Name | Self::Code | Self::Chat)
     }
 }
 
@@ -147,13 +156,20 @@ impl Ui {
     pub(crate) fn choose(&mut self) {
         let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
-            Choice::Open(page) => self.open(page),
+            Choice::Open(page) => {
+                self.is_private = false;
+                if page == Page::Code {
+                    self.entry = LineEntry::new(CODE_COLUMNS);
+                }
+                self.open(page);
+            }
             Choice::Enter { watches } => self.enter_room(watches),
             Choice::Board(level) => {
                 self.board.level = level;
                 self.ask_for_board();
                 self.open(Page::Board);
             }
+            Choice::ChangePrivacy => self.change_privacy(),
             Choice::Change(row) => self.change_setting(row, true),
             Choice::Back => self.close(),
             Choice::Emote(emote) => {
@@ -176,11 +192,18 @@ impl Ui {
             RoomTarget::Existing(room) => Way::Enter(room),
             RoomTarget::New { mode, level, difficulty } => {
                 let Some(level) = self.host.catalog.names.get(level).cloned() else { return };
-                Way::Open(RoomWish { level, mode, difficulty })
+                let wish = RoomWish { level, mode, difficulty };
+                Way::Open { wish, is_private: self.is_private }
             }
         };
         self.ask(Request::Go(way));
         self.open(Page::Entering);
+    }
+
+    /// Opens the new room on the card to everybody, or to invited visitors only.
+    pub(crate) fn change_privacy(&mut self) {
+        self.is_private ^= true;
+        self.renew_menu();
     }
 
     /// Requests the board of the chosen level.
@@ -258,6 +281,7 @@ impl Ui {
             .entry("Watch a room", Choice::Open(Page::Rooms { watches: true }))
             .entry(Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone)))
             .entry("Board", Choice::Open(Page::Boards))
+            .entry("Enter a code", Choice::Open(Page::Code))
             .entry("Settings", Choice::Open(Page::Settings))
             .entry("Help", Choice::Open(Page::Help))
             .entry("Leave", Choice::Open(Page::Leaving))
@@ -266,7 +290,8 @@ impl Ui {
     /// The multiplayer rooms whose levels this host has, by number of members in descending order, full rooms last.
     fn rooms_by_life(&self) -> Vec<&RoomSummary> {
         let is_offered = |room: &&RoomSummary| {
-            room.mode != Mode::Alone && self.host.catalog.world(&room.level).is_some()
+            let is_open = room.mode != Mode::Alone && room.code.is_none();
+            is_open && self.host.catalog.world(&room.level).is_some()
         };
         let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_offered).collect();
         let life = |room: &RoomSummary| std::cmp::Reverse(room.members.len());
@@ -407,7 +432,11 @@ impl Ui {
         let menu = lines.into_iter().flatten().fold(menu, Menu::line);
         let [enters, watches] = [false, true].map(|watches| Choice::Enter { watches });
         back(match target {
-            RoomTarget::New { .. } => menu.entry("Go in", enters),
+            RoomTarget::New { mode: Mode::Alone, .. } => menu.entry("Go in", enters),
+            RoomTarget::New { .. } => {
+                let privacy = if self.is_private { "invited visitors" } else { "everybody" };
+                menu.entry("Go in", enters).entry_with("Open to", privacy, Choice::ChangePrivacy)
+            }
             RoomTarget::Existing(_) if is_full => menu.entry("Watch (full)", watches),
             RoomTarget::Existing(_) => menu.entry("Go in", enters).entry("Watch", watches),
         })
@@ -416,6 +445,8 @@ impl Ui {
     fn room_menu(&self) -> Menu<Choice> {
         let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
         let menu = Menu::new("room").line("The room goes on meanwhile.");
+        let code = self.stay.as_ref().and_then(|stay| stay.code);
+        let menu = menu.lines(code.map(|code| format!("Others come in with the code {code}.")));
         let menu = menu.entry("Go on", Choice::Back);
         let menu = if is_member { menu.entry("Restart the round", Choice::Again) } else { menu };
         menu.entry("Settings", Choice::Open(Page::Settings))

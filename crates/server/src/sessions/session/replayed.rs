@@ -43,7 +43,7 @@ impl ReplayedScreen {
             idle: IdleLimits::of(&Config::default()),
         };
         let mut ui = Ui::new(identity, host, false, Duration::ZERO);
-        ui.notify(SessionEvent::Entered { room: RoomId(0), member: Some(member) });
+        ui.notify(SessionEvent::Entered { room: RoomId(0), member: Some(member), code: None });
         Self { ui, picture: Buffer::empty(size.into()) }
     }
 

@@ -9,6 +9,7 @@ use super::intent_queue::IntentQueue;
 use super::messages::Request;
 use super::talk::Talk;
 use crate::rooms::ghost::Ghost;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use cellcaster::app::MapDisplay;
 use cellcaster::app::parts::{MapPanel, Watch};
@@ -20,6 +21,8 @@ use cellcaster::world::{Camera, Difficulty, FieldOfView, Figure};
 pub(crate) struct Stay {
     /// The visitor's number as a member; `None` if they watch.
     pub(crate) member: Option<MemberId>,
+    /// The invitation code, if the room is private.
+    pub(crate) code: Option<RoomCode>,
     /// The member that is watched while the visitor does not play.
     watched: Option<MemberId>,
     /// Whether the last picture shows another member's view, because the visitor is a watcher or has finished.
@@ -69,9 +72,10 @@ struct Shown {
 }
 
 impl Stay {
-    pub(crate) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
+    pub(crate) fn new(member: Option<MemberId>, code: Option<RoomCode>, map: MapDisplay) -> Self {
         Self {
             member,
+            code,
             watched: None,
             is_watching: false,
             talk: Talk::default(),

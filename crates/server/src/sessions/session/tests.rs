@@ -6,6 +6,7 @@ mod home;
 mod lag;
 mod pages;
 mod pictures;
+mod private;
 mod room;
 
 use super::*;

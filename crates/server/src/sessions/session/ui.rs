@@ -39,6 +39,8 @@ pub(crate) struct Ui {
     pub(crate) detection: Detection,
     pub(crate) pages: Pages<Page, Choice>,
     pub(crate) entry: LineEntry,
+    /// Whether a new room is private.
+    pub(crate) is_private: bool,
     /// Whether a request for a name is pending.
     pub(crate) awaits_name: bool,
     /// A sentence about the latest event.
@@ -102,6 +104,7 @@ impl Ui {
                 ..Detection::default()
             },
             pages: Pages::new(Page::Name),
+            is_private: false,
             awaits_name: false,
             note: None,
             draining: None,
@@ -269,9 +272,9 @@ impl Ui {
                     self.renew_menu();
                 }
             }
-            SessionEvent::Entered { member, .. } => {
+            SessionEvent::Entered { member, code, .. } => {
                 self.note = None;
-                self.stay = Some(Stay::new(member, self.identity.configuration.minimap));
+                self.stay = Some(Stay::new(member, code, self.identity.configuration.minimap));
                 self.clock.skip_to(self.now);
                 self.show(Page::Room);
             }

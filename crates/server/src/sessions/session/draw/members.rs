@@ -7,6 +7,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::overhead::style;
 use super::seconds_left;
+use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{
     Catalog, MemberView, Mode, NAME_COLUMNS, Role, RoomView, Standing, ordinal,
 };
@@ -14,11 +15,11 @@ use cellcaster::app::parts::{message, of_steps, whole_seconds};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::tui::canvas::Canvas;
 
-/// Draws the list of members with their points.
+/// Draws the list of members with their points, and the code of a private room.
 pub(crate) fn draw_members(
     canvas: &mut impl Canvas,
     picture: Rect,
-    room: &RoomView,
+    (room, code): (&RoomView, Option<RoomCode>),
     catalog: &Catalog,
     depth: ColorDepth,
 ) {
@@ -34,7 +35,8 @@ pub(crate) fn draw_members(
             Span::raw(format!(" {role:<width$} {:>3}", member.points)),
         ])
     });
-    let lines: Vec<Line> = [place].into_iter().chain(members).collect();
+    let code = code.map(|code| Line::raw(format!("invitation code {code}")).centered());
+    let lines: Vec<Line> = [place].into_iter().chain(members).chain(code).collect();
     let title = format!("{} {}/{}", header.mode.title(), room.members.len(), header.mode.most());
     panel(canvas, picture, &title, lines);
 }

@@ -157,7 +157,7 @@ fn excess_keys_are_dropped() {
     let [fast, slow] = ["Mara", "Jon"].map(|name| {
         let visitor = rig.visitor(name, (80, 24), Speaks::Plain);
         rig.press(visitor, ENTER);
-        rig.press(visitor, "6");
+        rig.press(visitor, "7");
         visitor
     });
     rig.pump(2_000);
@@ -194,9 +194,10 @@ fn boards_settings_and_help_return_to_the_lobby() {
     for (number, shown) in [
         ("4", "left and right change"),
         ("5", "board"),
-        ("6", "Difficulty"),
-        ("7", "walk back"),
-        ("8", "Enter ends the session"),
+        ("6", "The menu of a private room"),
+        ("7", "Difficulty"),
+        ("8", "walk back"),
+        ("9", "Enter ends the session"),
     ] {
         rig.press(one, number);
         assert!(rig.text(one).contains(shown), "{number}: {}", rig.text(one));
@@ -225,6 +226,7 @@ fn rooms_in_missing_maps_are_not_listed() {
         phase: Phase::Waiting,
         members: [line("Kim")].into(),
         watchers: 0,
+        code: None,
     };
     let elsewhere = |level| vec![room(7, level), room(8, "museum")];
     rig.rooms().show_shared(elsewhere("hall"));
