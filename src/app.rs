@@ -26,8 +26,8 @@ pub mod parts {
     pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
     pub use crate::app::page::{
-        Effect, Menu, Page, PageKind, Pages, is_answerable, is_too_small, leaving, message,
-        picture_and_status, too_small,
+        Effect, Menu, Page, PageKind, Pages, framed, is_answerable, is_too_small, leaving, message,
+        panel, picture_and_status, too_small, wrapped,
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
     pub use crate::app::played::Watch;

@@ -352,6 +352,11 @@ impl<C: Copy> Menu<C> {
         self
     }
 
+    /// Takes the lines of text, so that the menu shows only its entries.
+    pub fn take_text(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.text)
+    }
+
     /// The index of the selected entry.
     pub fn selected(&self) -> usize {
         self.selected
@@ -410,28 +415,43 @@ impl<C: Copy> Menu<C> {
 
     /// Draws the menu in the middle of `room`.
     pub fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
+        let (title, text) = self.shown(room.as_size(), 0);
+        message(canvas, room, &title, text);
+    }
+
+    /// Draws the menu in the upper left corner of `room`, at least `least` columns wide.
+    pub fn draw_in_corner(&mut self, canvas: &mut impl Canvas, room: Rect, least: u16) {
+        let (title, text) = self.shown(room.as_size(), least);
+        let [width, height] = panel_size(&title, &text);
+        let (width, height) = (width.max(least).min(room.width), height.min(room.height));
+        panel(canvas, Rect { width, height, ..room }, &title, text);
+    }
+
+    /// The title and the text of a panel that is at least `least` columns wide and fits into `room`.
+    fn shown(&mut self, room: Size, least: u16) -> (String, Text<'static>) {
         let most_rows = usize::from(room.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(room.width.saturating_sub(BORDERS + PADDING)).max(1);
         self.page = self.entries.len().min(most_rows);
         self.scroll();
-        let text: Vec<String> =
+        let least_columns = usize::from(least.saturating_sub(BORDERS + PADDING));
+        let mut text: Vec<String> =
             self.text.iter().flat_map(|line| wrapped(line, most_columns)).collect();
         let room_for_text = most_rows - self.page;
-        let text = &text[..text.len().min(room_for_text)];
+        text.truncate(room_for_text);
         let is_separated = !text.is_empty() && text.len() < room_for_text && self.page > 0;
         let shown = &self.entries[self.first..][..self.page];
         let text_width = text.iter().map(|line| line.chars().count()).max().unwrap_or(0);
         let width = shown.iter().map(MenuEntry::width).max().unwrap_or(0).max(text_width);
         let title = self.shown_title();
-        let width = width.max(title.chars().count()).min(most_columns);
-        let above = text.iter().map(|line| Line::raw(line.as_str()).centered());
+        let width = width.max(title.chars().count()).max(least_columns).min(most_columns);
+        let above = text.into_iter().map(|line| Line::raw(line).centered());
         let entries = (self.first..).zip(shown).map(|(index, entry)| {
             let line = Line::raw(entry.line(index == self.selected, width));
             if index == self.selected { line.style(SELECTED) } else { line }
         });
         let lines: Vec<Line> =
             above.chain(is_separated.then(Line::default)).chain(entries).collect();
-        message(canvas, room, &title, Text::from(lines));
+        (title, Text::from(lines))
     }
 
     /// The title, with the number of the selected entry if the list is scrolled.
@@ -466,7 +486,8 @@ impl<C> MenuEntry<C> {
         let mark = if is_selected { MARK } else { "  " };
         let value_width = self.value.chars().count();
         let room = width.saturating_sub(MARK.len() + value_width);
-        let label: String = self.label.chars().take(room).collect();
+        let gap = usize::from(value_width > 0);
+        let label: String = self.label.chars().take(room.saturating_sub(gap)).collect();
         format!("{mark}{label:<room$}{}", self.value)
     }
 }
@@ -660,7 +681,7 @@ pub(crate) fn minimap(picture: Rect, map: &Minimap, is_narrow: bool) -> Option<R
 ///
 /// Rejected: a ratatui block. In each frame it would clear the inside, which a minimap fills
 /// anyway, and allocate a list for its titles.
-pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
+pub fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect {
     let inside = Block::bordered().inner(area);
     if area.width < BORDERS || area.height < BORDERS {
         return inside;
@@ -692,16 +713,20 @@ pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, eff
 
 /// Draws a panel in the middle of the picture, as large as `text` needs and the picture allows.
 pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
-    let widest = text.width().max(Span::raw(title).width()) as u16;
-    let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
-    let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
+    let [width, height] = panel_size(title, &text).map(Constraint::Length);
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
     panel(canvas, area, title, text);
 }
 
+/// The width and the height that a panel needs.
+fn panel_size(title: &str, text: &Text) -> [u16; 2] {
+    let widest = text.width().max(Span::raw(title).width()) as u16;
+    [widest.saturating_add(BORDERS + PADDING), (text.height() as u16).saturating_add(BORDERS)]
+}
+
 /// Draws a panel with a text.
-pub(crate) fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Text) {
+pub fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Text) {
     let inside = framed(canvas, area, title);
     let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);
@@ -709,7 +734,7 @@ pub(crate) fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Tex
 
 /// Wraps `text` into lines of up to `width` characters. Lines break between words, and inside a
 /// word only if it is longer than a line.
-pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     let mut room = width;
     for word in text.split_whitespace() {

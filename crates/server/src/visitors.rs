@@ -12,7 +12,7 @@ use std::fmt;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
 
-use tokio::sync::Notify;
+use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
 use crate::accounts::{AccountKey, BanTarget, Identity, Name};
@@ -60,8 +60,19 @@ pub struct Present {
     pub key: Option<AccountKey>,
     /// A short description of the room they are in; `None` for the lobby.
     pub room: Option<String>,
+    /// `true` if they only watch that room.
+    pub watches: bool,
     /// The time of arrival.
     pub since: Instant,
+}
+
+/// The visitors with a name who play in no room, as lobbies list them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Onlookers {
+    /// The first [`MAX_ONLOOKERS`], in order of arrival, each with the room that they watch.
+    pub(crate) first: Vec<(Name, Option<String>)>,
+    /// The number of all.
+    pub(crate) count: usize,
 }
 
 #[derive(Debug)]
@@ -70,6 +81,7 @@ struct Table {
     next: u64,
     /// The entries, in order of arrival.
     entries: BTreeMap<u64, (Present, Arc<NoticeQueue>)>,
+    onlookers: watch::Sender<Arc<Onlookers>>,
 }
 
 #[derive(Debug, Default)]
@@ -86,12 +98,14 @@ struct Notices {
 
 /// The maximum number of lines queued per session.
 const MAX_LINES: usize = 8;
+/// The maximum number of onlookers whose names lobbies receive.
+const MAX_ONLOOKERS: usize = 12;
 
 impl Default for Table {
     fn default() -> Self {
         // If the system had no random numbers, the server would have no keys either.
         let run = getrandom::u32().unwrap_or_default() as u16;
-        Self { run, next: 1, entries: BTreeMap::new() }
+        Self { run, next: 1, entries: BTreeMap::new(), onlookers: watch::Sender::default() }
     }
 }
 
@@ -123,7 +137,8 @@ impl Visitors {
             table.next += 1;
             let (session, since) = (SessionId { run: table.run, number }, Instant::now());
             let address = address.to_canonical();
-            let present = Present { session, name: None, address, key, room: None, since };
+            let present =
+                Present { session, name: None, address, key, room: None, watches: false, since };
             table.entries.insert(number, (present, inbox.clone()));
             number
         });
@@ -133,6 +148,11 @@ impl Visitors {
     /// All visitors, in order of arrival.
     pub fn list(&self) -> Vec<Present> {
         locked(&self.0, |table| table.entries.values().map(|it| it.0.clone()).collect())
+    }
+
+    /// The visitors who play in no room.
+    pub(crate) fn onlookers(&self) -> watch::Receiver<Arc<Onlookers>> {
+        locked(&self.0, |table| table.onlookers.subscribe())
     }
 
     /// The number of visitors.
@@ -184,6 +204,24 @@ impl Visitors {
 }
 
 impl Table {
+    /// Tells lobbies about the onlookers, if they have changed.
+    fn publish(&self) {
+        let onlooker = |present: &Present| {
+            let is_onlooker = present.room.is_none() || present.watches;
+            Some((present.name.clone().filter(|_| is_onlooker)?, present.room.clone()))
+        };
+        let all = || self.entries.values().filter_map(|(present, _)| onlooker(present));
+        let (first, count) = (all().take(MAX_ONLOOKERS).collect(), all().count());
+        let onlookers = Onlookers { first, count };
+        self.onlookers.send_if_modified(|known| {
+            let is_new = **known != onlookers;
+            if is_new {
+                *known = Arc::new(onlookers);
+            }
+            is_new
+        });
+    }
+
     fn has_guest(&self, name: &Name, except: Option<u64>) -> bool {
         self.entries.iter().any(|(number, (present, _))| {
             let is_alike = |other: &Name| other.looks_like(name);
@@ -201,6 +239,7 @@ impl Presence {
             let is_free = !table.has_guest(name, Some(self.number));
             if let Some((present, _)) = table.entries.get_mut(&self.number).filter(|_| is_free) {
                 present.name = Some(name.clone());
+                table.publish();
             }
             is_free
         })
@@ -216,6 +255,11 @@ impl Presence {
         self.change(|it| it.room = room);
     }
 
+    /// Records whether the visitor only watches the room.
+    pub(crate) fn set_watching(&self, watches: bool) {
+        self.change(|it| it.watches = watches);
+    }
+
     /// Waits for the next notice. Cancellation-safe.
     pub async fn notice(&mut self) -> Notice {
         loop {
@@ -228,14 +272,20 @@ impl Presence {
 
     fn change(&self, act: impl FnOnce(&mut Present)) {
         locked(&self.visitors.0, |table| {
-            table.entries.get_mut(&self.number).map(|(present, _)| act(present))
+            if let Some((present, _)) = table.entries.get_mut(&self.number) {
+                act(present);
+            }
+            table.publish();
         });
     }
 }
 
 impl Drop for Presence {
     fn drop(&mut self) {
-        locked(&self.visitors.0, |table| table.entries.remove(&self.number));
+        locked(&self.visitors.0, |table| {
+            table.entries.remove(&self.number);
+            table.publish();
+        });
     }
 }
 

@@ -254,6 +254,7 @@ impl SharedRooms {
         let closes_after = self.0.rooms.limits().closes_after;
         let (state, record) = &loaded;
         let interface = RoomInterface::new(&state.room, record.stands, closes_after, record.code);
+        self.0.rooms.note_entered(id, &interface);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
         let context = Arc::clone(context);
         let replica = Replica::new(context, id, loaded, interface, broadcasts, receiver);

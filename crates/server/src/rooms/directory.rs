@@ -12,7 +12,7 @@ mod recording;
 mod tests;
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::Duration;
 
 use tokio::sync::watch;
@@ -62,6 +62,8 @@ struct Directory {
     summaries: watch::Sender<Arc<[RoomSummary]>>,
     /// The rooms that this host shares with other hosts.
     shared: Mutex<Vec<RoomSummary>>,
+    /// Those of the shared rooms that somebody has entered on this host.
+    entered: Mutex<BTreeMap<RoomId, Weak<RoomInterface>>>,
     /// The generator of invitation codes.
     codes: Mutex<SplitMix64>,
 }
@@ -113,6 +115,7 @@ impl Rooms {
             open: Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() }),
             summaries: watch::Sender::new(Arc::from([])),
             shared: Mutex::default(),
+            entered: Mutex::default(),
             codes: Mutex::new(SplitMix64::new(seeds.codes)),
         }));
         rooms.open_standing();
@@ -183,6 +186,21 @@ impl Rooms {
         } else {
             Err(RoomRefusal::Full)
         }
+    }
+
+    /// The latest snapshot of a room that runs on this host.
+    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
+        let own = |open: &mut OpenRooms| Some(Arc::clone(&open.rooms.get(&id)?.interface));
+        let entered = || locked(&self.0.entered, |entered| entered.get(&id)?.upgrade());
+        locked(&self.0.open, own).or_else(entered)?.view()
+    }
+
+    /// Records that this host runs a shared room.
+    pub(crate) fn note_entered(&self, id: RoomId, interface: &Arc<RoomInterface>) {
+        locked(&self.0.entered, |entered| {
+            entered.retain(|_, interface| interface.strong_count() > 0);
+            entered.insert(id, Arc::downgrade(interface));
+        });
     }
 
     /// A code for a new private room.

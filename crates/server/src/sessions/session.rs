@@ -2,7 +2,8 @@
 //!
 //! A session owns neither the connection nor the clock nor the room. Its driver passes it input with the time
 //! of arrival, takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows
-//! it the latest [snapshot](RoomView) of the room. The driver calls it in this order:
+//! it the latest [snapshot](RoomView) of the room: the visitor's room, or in the lobby the liveliest one. The
+//! driver calls it in this order:
 //!
 //! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`notify`](Session::notify),
 //!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and
@@ -24,6 +25,7 @@ mod frames;
 mod intent_queue;
 mod keys;
 mod line_entry;
+mod lobby;
 mod messages;
 mod pages;
 pub(crate) mod replayed;
@@ -44,6 +46,7 @@ use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::load::Rate;
 use crate::rooms::room::RoomView;
+use crate::rooms::summary::RoomId;
 use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
 use cellcaster::terminal::{Event, KeyEvent, Phase, Protocol, SessionOptions, WindowSize};
@@ -181,7 +184,7 @@ impl Session {
 
     /// Draws a frame into the output.
     pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
-        if self.ui.is_stale(room) {
+        if self.stale_from(room).is_some_and(|from| from <= now) {
             self.draw_anew(room, now);
         } else {
             self.protocol.refine();
@@ -211,6 +214,8 @@ impl Session {
         if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
             stay.drawn(room, ui.field_of_view, ui.identity.preferences.ghost);
             self.drawn_step = room.step;
+        } else {
+            ui.lobby.drawn(room, ui.field_of_view, now);
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
     }
@@ -287,13 +292,38 @@ impl Session {
         if self.ending != Ending::Not || !self.protocol.is_ready(now) {
             return None;
         }
-        let is_stale = self.ui.is_stale(room);
-        if !is_stale && self.protocol.is_settled() {
+        let stale_from = self.stale_from(room);
+        if stale_from.is_none() && self.protocol.is_settled() {
             return None;
         }
+        let is_stale = stale_from == Some(Duration::ZERO);
+        // A picture that is out of date soon is not refined meanwhile.
+        let from = stale_from.unwrap_or_default();
         let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
-        Some(self.next_frame(is_prompt).max(now))
+        Some(self.next_frame(is_prompt).max(from).max(now))
+    }
+
+    /// The time from which the picture on the screen is out of date; `None` if it is up to date.
+    fn stale_from(&self, room: Option<&RoomView>) -> Option<Duration> {
+        let Self { ui, pace, .. } = self;
+        if ui.is_stale(room) {
+            return Some(Duration::ZERO);
+        }
+        let in_lobby = || ui.lobby.stale_from(room, ui.field_of_view, pace.frame_time());
+        ui.stay.is_none().then(in_lobby).flatten()
+    }
+
+    /// The rooms of which a lobby shows one, the preferred one first. Outside of the lobby there are none.
+    pub(crate) fn lively_rooms(&self) -> Vec<RoomId> {
+        self.ui.lively_rooms()
+    }
+
+    /// The interval at which the driver looks for changes of the room that the lobby shows, if it shows one.
+    pub(crate) fn picture_time(&self) -> Option<Duration> {
+        let Self { ui, pace, .. } = self;
+        let is_live = ui.stay.is_none() && ui.lobby.is_live();
+        is_live.then(|| lobby::picture_time(pace.frame_time()))
     }
 
     /// The time of the next frame by the frame rate and the budget of bytes.

@@ -12,11 +12,6 @@ use cellcaster::game::PlayerColor;
 use cellcaster::world::Difficulty;
 
 impl Rooms {
-    /// The latest snapshot of a room; `None` if there is no such room.
-    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.interface.view()))
-    }
-
     /// Closes a room, as a fault would.
     pub(crate) fn close(&self, id: RoomId, sentence: &str) {
         locked(&self.0.open, |open| open.rooms[&id].interface.close(sentence));

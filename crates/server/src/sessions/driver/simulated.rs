@@ -129,7 +129,10 @@ impl Visiting {
         let (answer, answered) = oneshot::channel();
         let look = move |driver: &mut Driver| {
             let room = driver.place.as_ref().map(Place::room);
-            let view = room.and_then(|room| driver.shared.rooms.view(room));
+            let view = match room {
+                Some(room) => driver.shared.rooms.view(room),
+                None => driver.lively_room(),
+            };
             _ = answer.send(look(&mut driver.session, view.as_deref()));
         };
         self.looks.send(Box::new(look)).ok()?;

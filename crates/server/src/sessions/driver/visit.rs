@@ -28,14 +28,14 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::invitation::{Guesser, RoomCode};
-use crate::rooms::room::Command;
+use crate::rooms::room::{Command, RoomView};
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
     HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
 };
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
-use crate::visitors::{Notice, Presence};
+use crate::visitors::{Notice, Onlookers, Presence};
 use cellcaster::app::Configuration;
 use cellcaster::terminal::SessionOptions;
 use cellcaster::world::Difficulty;
@@ -56,7 +56,8 @@ pub(crate) struct Driver {
     presence: Presence,
     pub(crate) place: Option<Place>,
     rooms: watch::Receiver<Arc<[RoomSummary]>>,
-    /// Whether the session is told about changes of the rooms.
+    onlookers: watch::Receiver<Arc<Onlookers>>,
+    /// Whether the session is told about changes of the rooms and the visitors.
     in_lobby: bool,
     replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
@@ -81,6 +82,7 @@ enum DriverEvent {
     Arrived(Arrival),
     Drained,
     RoomsChanged,
+    OnlookersChanged,
     Replied(Reply),
     Notice(Notice),
     Time,
@@ -163,6 +165,7 @@ impl Driver {
             presence,
             place: None,
             rooms: shared.rooms.summaries(),
+            onlookers: shared.visitors.onlookers(),
             in_lobby: false,
             replies,
             replied,
@@ -224,6 +227,10 @@ impl Driver {
                     let rooms = self.rooms.borrow_and_update().clone();
                     self.session.notify(SessionEvent::Rooms(rooms), now);
                 }
+                DriverEvent::OnlookersChanged => {
+                    let onlookers = self.onlookers.borrow_and_update().clone();
+                    self.session.notify(SessionEvent::Onlookers(onlookers), now);
+                }
                 DriverEvent::Replied(reply) => self.hear(reply),
                 DriverEvent::Notice(Notice::Removed(sentence)) => {
                     self.leave();
@@ -271,7 +278,10 @@ impl Driver {
             return waiting;
         }
         // The snapshot is dropped before the driver waits.
-        let view = self.place.as_mut().and_then(Place::view);
+        let view = match &mut self.place {
+            Some(place) => place.view(),
+            None => self.lively_room(),
+        };
         self.session.set_rate(self.shared.load.rate());
         if self.session.is_due(view.as_deref(), now) {
             let session = &mut self.session;
@@ -293,6 +303,12 @@ impl Driver {
         time.map(|time| if time > self.woken_at { time } else { self.woken_at + RETRY_INTERVAL })
     }
 
+    /// The snapshot of the room that the lobby shows.
+    pub(crate) fn lively_room(&self) -> Option<Arc<RoomView>> {
+        let rooms = self.session.lively_rooms();
+        rooms.into_iter().find_map(|room| self.shared.rooms.view(room))
+    }
+
     async fn wait(
         &mut self,
         inbound: &mut Inbound,
@@ -312,10 +328,14 @@ impl Driver {
         let awaits_drain = drains_at.is_some_and(|time| time <= now);
         let drains_at = drains_at.filter(|_| !awaits_drain);
         let acts_at = drains_at.and_then(|_| self.after_wake(self.session.acts_at()));
-        let times = [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience];
+        let is_looking = !is_sending && self.place.is_none();
+        let picture =
+            self.session.picture_time().filter(|_| is_looking).map(|interval| now + interval);
+        let times =
+            [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience, picture];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
-        let Self { place, rooms, replied, in_lobby, presence, .. } = self;
+        let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
         tokio::select! {
             biased;
             arrival = inbound.next() => DriverEvent::Arrived(arrival),
@@ -324,6 +344,7 @@ impl Driver {
             notice = presence.notice() => DriverEvent::Notice(notice),
             () = changed(place.as_mut()), if looks => DriverEvent::Time,
             Ok(()) = rooms.changed(), if *in_lobby => DriverEvent::RoomsChanged,
+            Ok(()) = onlookers.changed(), if *in_lobby => DriverEvent::OnlookersChanged,
             () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => DriverEvent::Time,
         }
     }
@@ -366,6 +387,8 @@ impl Driver {
             Request::Name(text) => self.choose_name(&text),
             Request::Rooms => {
                 self.in_lobby = true;
+                let onlookers = self.onlookers.borrow_and_update().clone();
+                self.notify(SessionEvent::Onlookers(onlookers));
                 let rooms = self.rooms.borrow_and_update().clone();
                 self.notify(SessionEvent::Rooms(rooms));
             }
@@ -584,6 +607,7 @@ impl Driver {
                 let place = self.kept_while_draining(place);
                 self.in_lobby = false;
                 self.presence.set_room(Some(place.room().place()));
+                self.presence.set_watching(place.member_id().is_none());
                 let (room, member, code) = (place.room(), place.member_id(), place.code());
                 let event = SessionEvent::Entered { room, member, code };
                 self.place = Some(place);

@@ -1,6 +1,7 @@
 //! Drawing a visitor's screen.
 
 mod ceremony;
+mod lobby;
 mod members;
 pub(crate) mod overhead;
 mod room_status;
@@ -21,8 +22,8 @@ use super::ui::Ui;
 use crate::line;
 use crate::rooms::room::{Phase, RoomView};
 use cellcaster::app::parts::{
-    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
-    picture_and_status, too_small, whole_seconds,
+    DrawOptions, Menu, Overlay, is_too_small, leaving, message, picture_and_status, too_small,
+    whole_seconds,
 };
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::render::Filter;
@@ -39,9 +40,6 @@ const ROOM_KEYS: [&str; 3] = [
 /// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
-/// The minimum height, in rows, for a banner above the menu.
-const MIN_WITH_BANNER: u16 = 20;
-
 thread_local! {
     /// The renderer shared by the sessions drawn on this thread. It takes half a megabyte in a level with
     /// steps, and keeps no state from one picture to the next.
@@ -49,7 +47,7 @@ thread_local! {
 }
 
 impl Ui {
-    /// Draws the current page, with `room` as the latest snapshot.
+    /// Draws the current page, with `room` as the latest snapshot of the visitor's room, or of the liveliest one.
     pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
         let area = canvas.bounds();
         if is_too_small(area) {
@@ -62,27 +60,13 @@ impl Ui {
                 self.draw_room_status(canvas, status, room);
                 self.draw_panel(canvas, picture);
             }
-            _ => self.draw_lobby(canvas, picture, status),
+            _ => self.draw_lobby(canvas, picture, status, room),
         }
         if self.idle.is_warned() {
             let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
             let end = if is_member { "you leave the room" } else { "this session ends" };
             notice(canvas, picture, &format!("Still there? Press a key, or {end} soon."));
         }
-    }
-
-    fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
-        let below = if picture.height >= MIN_WITH_BANNER {
-            draw_banner(canvas, picture, self.glyphs(), self.depth())
-        } else {
-            picture
-        };
-        let text = match self.page() {
-            Page::Name => "type a name, Enter saves it",
-            _ => "up and down, Enter, Esc",
-        };
-        canvas.draw_widget(hint(text), status);
-        self.draw_panel(canvas, below);
     }
 
     /// Draws the page's panel over the picture.

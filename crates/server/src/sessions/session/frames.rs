@@ -32,6 +32,11 @@ impl Pace {
         Self { frame_time, drawn_at: None, paid_at: Duration::ZERO }
     }
 
+    /// The interval between frames.
+    pub(crate) fn frame_time(&self) -> Duration {
+        self.frame_time
+    }
+
     /// Sets the interval between frames.
     pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
         self.frame_time = frame_time;

@@ -10,6 +10,7 @@ use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, MemberId};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::visitors::Onlookers;
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
 use cellcaster::game::Rank;
@@ -64,7 +65,8 @@ pub(crate) enum Way {
 pub(crate) enum Request {
     /// Take this name. Answered by [`SessionEvent::Named`].
     Name(String),
-    /// Send the rooms, now and on every change, until the session enters a room. Answered by [`SessionEvent::Rooms`].
+    /// Send the rooms and the visitors, now and on every change, until the session enters a room. Answered by
+    /// [`SessionEvent::Onlookers`] and [`SessionEvent::Rooms`].
     Rooms,
     /// Enter a room. Answered by [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
     Go(Way),
@@ -87,6 +89,8 @@ pub(crate) enum Request {
 pub(crate) enum SessionEvent {
     /// The visitor's new name, or a sentence that says why they cannot have it.
     Named(Result<Line, String>),
+    /// The visitors who play in no room, for the lobby.
+    Onlookers(Arc<Onlookers>),
     /// The rooms for the lobby.
     Rooms(Arc<[RoomSummary]>),
     /// The visitor has entered a room; `member` is `None` if they watch. A private room has a `code`.

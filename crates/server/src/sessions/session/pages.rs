@@ -7,6 +7,7 @@
 use super::draw::COMPRESSION;
 use super::line_entry::LineEntry;
 use super::messages::{Request, Way};
+use super::stay::Stay;
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
@@ -223,7 +224,8 @@ impl Ui {
 
     /// Records that the visitor has left the room, and returns to the lobby.
     pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
-        self.stay = None;
+        let stay = self.stay.take();
+        self.lobby.begin(stay.as_ref().and_then(Stay::level));
         self.note = sentence;
         self.ask(Request::Rooms);
         self.show(Page::Lobby);
@@ -250,16 +252,7 @@ impl Ui {
     }
 
     fn lobby_menu(&self) -> Menu<Choice> {
-        let menu = Menu::new(self.host.name.as_str());
-        let [notice, message] = [&self.host.notice, &self.host.message];
-        let lines = [
-            self.note.clone(),
-            self.draining.map(|draining| draining.sentence(self.now)),
-            notice.as_ref().map(ToString::to_string),
-            message.as_ref().map(ToString::to_string),
-            self.wants_compression.then(|| COMPRESSION.to_owned()),
-        ];
-        let menu = lines.into_iter().flatten().fold(menu, Menu::line);
+        let menu = Menu::new(self.host.name.as_str()).lines(self.lobby_lines());
         let rooms = self.rooms_by_life();
         let offer = self.offer(&rooms);
         let (label, value) = self.label_of(offer);
@@ -287,8 +280,22 @@ impl Ui {
             .entry("Leave", Choice::Open(Page::Leaving))
     }
 
-    /// The multiplayer rooms whose levels this host has, by number of members in descending order, full rooms last.
-    fn rooms_by_life(&self) -> Vec<&RoomSummary> {
+    /// The messages that the lobby shows.
+    pub(crate) fn lobby_lines(&self) -> Vec<String> {
+        let [notice, message] = [&self.host.notice, &self.host.message];
+        let lines = [
+            self.note.clone(),
+            self.draining.map(|draining| draining.sentence(self.now)),
+            notice.as_ref().map(ToString::to_string),
+            message.as_ref().map(ToString::to_string),
+            self.wants_compression.then(|| COMPRESSION.to_owned()),
+        ];
+        lines.into_iter().flatten().collect()
+    }
+
+    /// The multiplayer rooms that are open to everybody and whose levels this host has, by number of members in
+    /// descending order, full rooms last.
+    pub(crate) fn rooms_by_life(&self) -> Vec<&RoomSummary> {
         let is_offered = |room: &&RoomSummary| {
             let is_open = room.mode != Mode::Alone && room.code.is_none();
             is_open && self.host.catalog.world(&room.level).is_some()
@@ -300,7 +307,7 @@ impl Ui {
     }
 
     /// The offered room: the room with the most members that is not full, or else a new room.
-    fn offer(&self, rooms: &[&RoomSummary]) -> RoomTarget {
+    pub(crate) fn offer(&self, rooms: &[&RoomSummary]) -> RoomTarget {
         let open = rooms.first().filter(|room| !room.is_full());
         open.map_or_else(|| self.first_walk(), |room| RoomTarget::Existing(room.id))
     }
@@ -333,12 +340,8 @@ impl Ui {
 
     /// The title of a room's level.
     pub(crate) fn level_title(&self, target: RoomTarget) -> String {
-        let catalog = &self.host.catalog;
-        let name = match target {
-            RoomTarget::Existing(id) => self.room(id).map(|room| room.level.as_str()),
-            RoomTarget::New { level, .. } => catalog.names.get(level).map(String::as_str),
-        };
-        name.map_or_else(String::new, |name| catalog.title(name).to_owned())
+        let title = |name| self.host.catalog.title(name).to_owned();
+        self.level_name(target).map(title).unwrap_or_default()
     }
 
     fn rooms_menu(&self, watches: bool) -> Menu<Choice> {

@@ -4,6 +4,7 @@ mod bytes;
 mod ghosts;
 mod home;
 mod lag;
+mod lobby;
 mod pages;
 mod pictures;
 mod private;

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::endings::{Draining, Idle, IdleAction};
 use super::line_entry::LineEntry;
+use super::lobby::Lobby;
 use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
@@ -48,6 +49,7 @@ pub(crate) struct Ui {
     /// The server's shutdown, once announced.
     pub(crate) draining: Option<Draining>,
     pub(crate) rooms: Arc<[RoomSummary]>,
+    pub(crate) lobby: Lobby,
     pub(crate) board: Board,
     /// The visitor's stay in a room; `None` in the lobby.
     pub(crate) stay: Option<Stay>,
@@ -109,6 +111,7 @@ impl Ui {
             note: None,
             draining: None,
             rooms: Arc::from([]),
+            lobby: Lobby::default(),
             board: Board::default(),
             stay: None,
             status: StatusLine::default(),
@@ -269,6 +272,7 @@ impl Ui {
             SessionEvent::Rooms(rooms) => {
                 self.rooms = rooms;
                 if self.stay.is_none() {
+                    self.ask_for_lobby_board();
                     self.renew_menu();
                 }
             }
@@ -282,6 +286,7 @@ impl Ui {
                 self.leave_room(Some(sentence));
             }
             SessionEvent::Board { level, difficulty, rows } => {
+                self.lobby.receive(&level, difficulty, &rows);
                 let asked = self.host.catalog.names.get(self.board.level);
                 let is_asked = self.identity.preferences.difficulty == difficulty;
                 if asked == Some(&level) && is_asked {
@@ -294,6 +299,7 @@ impl Ui {
                     stay.ghosts.receive(level, difficulty, ghosts);
                 }
             }
+            SessionEvent::Onlookers(onlookers) => self.lobby.onlookers = onlookers,
             SessionEvent::Result(sentence) => self.hear(sentence),
             SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
             SessionEvent::Draining { ends_at, can_return } => {
@@ -319,6 +325,7 @@ impl Ui {
     /// Shows the lobby after the name is chosen.
     pub(crate) fn enter_lobby(&mut self) {
         self.note = None;
+        self.lobby.begin(None);
         self.ask(Request::Rooms);
         self.show(Page::Lobby);
     }

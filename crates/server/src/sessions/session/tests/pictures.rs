@@ -42,6 +42,15 @@ fn every_page_is_readable() {
 }
 
 #[test]
+fn a_large_lobby_is_readable() {
+    let mut rig = Rig::new(Mode::Tag);
+    rig.member("Mara", (80, 24), Speaks::Plain);
+    let jon = rig.visitor("Jon", (120, 40), Speaks::Plain);
+    rig.press(jon, ENTER);
+    insta::assert_snapshot!("lobby_120x40", rig.text(jon));
+}
+
+#[test]
 fn a_room_is_readable() {
     assert_pages("room", face_to_face, Mode::Roam);
     let chat = |rig: &mut Rig, size| {

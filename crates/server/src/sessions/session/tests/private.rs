@@ -40,7 +40,8 @@ fn only_its_code_leads_into_a_private_room() {
     let code = open_private(&mut rig, mara);
     // It is neither listed, nor offered, nor shown, nor watched, and its level is not named.
     let text = rig.text(jon);
-    assert!(!text.contains("Tag"), "{text}");
+    assert!(!text.contains("Tag") && text.contains("nobody is walking"), "{text}");
+    assert!(text.contains("in private"), "{text}");
     rig.press(jon, "3");
     assert!(rig.text(jon).contains("All rooms are empty."), "{}", rig.text(jon));
     rig.press(jon, ESCAPE);

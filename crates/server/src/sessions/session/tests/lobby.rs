@@ -1,0 +1,119 @@
+//! The lobby as a place: its picture, the visitors and the board.
+
+use super::private::in_lobby;
+use super::*;
+use crate::config::Config;
+use crate::rooms::summary::RoomId;
+use cellcaster::terminal::Fidelity;
+
+/// The number of bytes that a visitor receives in this time, in milliseconds.
+fn bytes_in(rig: &mut Rig, index: usize, milliseconds: u64) -> usize {
+    let begun = rig.now();
+    rig.pump(milliseconds);
+    rig.clients[index].received(begun).iter().map(Vec::len).sum()
+}
+
+const WALK: &str = "\x1b[119;1:1u";
+const STAND: &str = "\x1b[119;1:3u";
+
+#[test]
+fn the_lobby_shows_the_liveliest_room_and_its_changes() {
+    let mut rig = Rig::new(Mode::Roam);
+    let jon = in_lobby(&mut rig, "Jon", (80, 24));
+    assert!(rig.text(jon).contains("nobody is walking"), "{}", rig.text(jon));
+    let mara = rig.member("Mara", (80, 24), Speaks::Kitty);
+    rig.pump(1_000);
+    assert!(rig.text(jon).contains("Mara┘"), "{}", rig.text(jon));
+    let before = rig.text(jon);
+    rig.send(mara, WALK);
+    rig.pump(1_000);
+    assert_ne!(rig.text(jon), before);
+    // A room with more members takes its place.
+    for (name, keys) in [("Kim", &["2", "2", ENTER, ENTER][..]), ("Lee", &["2", ENTER])] {
+        let other = in_lobby(&mut rig, name, (80, 24));
+        for key in keys {
+            rig.press(other, key);
+        }
+    }
+    assert_eq!(rig.rooms().view(RoomId(2)).map(|room| room.members.len()), Some(2));
+    rig.pump(1_000);
+    assert!(rig.text(jon).contains("┌Tag in The Hall─"), "{}", rig.text(jon));
+    assert!(rig.text(jon).contains("Kim, Lee┘"), "{}", rig.text(jon));
+}
+
+#[test]
+fn a_lobby_at_rest_costs_no_bytes() {
+    let mut rig = Rig::new(Mode::Roam);
+    let mara = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let jon = in_lobby(&mut rig, "Jon", (80, 24));
+    rig.pump(10_000);
+    assert_eq!(bytes_in(&mut rig, jon, 60_000), 0);
+    rig.send(mara, WALK);
+    assert!(bytes_in(&mut rig, jon, 1_000) > 0);
+    rig.send(mara, STAND);
+    rig.pump(10_000);
+    assert_eq!(bytes_in(&mut rig, jon, 60_000), 0);
+    // A page without a picture costs nothing, even while the room changes.
+    let kim = rig.visitor("Kim", (80, 24), Speaks::Kitty);
+    rig.press(mara, "b");
+    rig.send(mara, WALK);
+    assert_eq!(bytes_in(&mut rig, kim, 1_000), 0);
+}
+
+#[test]
+fn the_lobby_draws_few_pictures_a_second() {
+    let mut rig = Rig::new(Mode::Roam);
+    let mara = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let jon = in_lobby(&mut rig, "Jon", (80, 24));
+    rig.session(jon, |session, _| session.protocol.set_fidelity(Some(Fidelity::EXACT)));
+    rig.pump(2_000);
+    rig.send(mara, WALK);
+    let begun = rig.now();
+    rig.pump(2_000);
+    let pictures = rig.clients[jon].received(begun).len();
+    assert!((6..=9).contains(&pictures), "{pictures}");
+    // If frames come rarely, pictures come more rarely still.
+    rig.live.replace(Config { frames_per_second: 5, ..Config::default() });
+    rig.press(mara, "b");
+    rig.send(mara, WALK);
+    let begun = rig.now();
+    rig.pump(2_000);
+    let pictures = rig.clients[jon].received(begun).len();
+    assert!((1..=2).contains(&pictures), "{pictures}");
+}
+
+#[test]
+fn the_lobby_lists_who_is_here() {
+    let mut rig = Rig::new(Mode::Roam);
+    let jon = in_lobby(&mut rig, "Jon", (120, 40));
+    let shows = |rig: &Rig, words: [&str; 2]| {
+        let text = rig.text(jon);
+        let is_listed = text.lines().any(|line| words.iter().all(|word| line.contains(word)));
+        assert!(is_listed, "{words:?}: {text}");
+    };
+    shows(&rig, ["Jon", "lobby"]);
+    rig.member("Mara", (80, 24), Speaks::Kitty);
+    shows(&rig, ["Mara", "Roam in The Hall"]);
+    let kim = in_lobby(&mut rig, "Kim", (80, 24));
+    rig.press(kim, "3");
+    rig.press(kim, ENTER);
+    rig.press(kim, "2");
+    assert!(rig.text(kim).contains("watching Mara"), "{}", rig.text(kim));
+    shows(&rig, ["Kim", "watches"]);
+    for number in 0..40 {
+        in_lobby(&mut rig, &format!("many{number}"), (40, 12));
+    }
+    let text = rig.text(jon);
+    assert!(text.contains("and 3") && text.contains(" more"), "{text}");
+    rig.press(kim, "\x03");
+    rig.press(kim, "\x03");
+    assert!(!rig.text(jon).contains("watches"), "{}", rig.text(jon));
+}
+
+#[test]
+fn the_lobby_shows_the_best_of_a_board() {
+    let mut rig = Rig::new(Mode::Roam);
+    let jon = in_lobby(&mut rig, "Jon", (80, 24));
+    let text = rig.text(jon);
+    assert!(text.contains("┌board─") && text.contains("no results yet"), "{text}");
+}
