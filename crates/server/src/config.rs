@@ -32,7 +32,7 @@ use tokio::sync::watch;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::accounts::{AccountRate, AddressPrefix};
+use crate::accounts::{AccountKey, AccountRate, AddressPrefix};
 use crate::admission::Limits;
 use crate::logging::LogFilter;
 use crate::rooms::directory::{RecordingBounds, RoomLimits};
@@ -62,6 +62,8 @@ pub struct Config {
     pub metrics: Option<SocketAddr>,
     /// The proxies, whose connections begin with a header that names the visitor.
     pub proxies: Vec<AddressPrefix>,
+    /// The keys of the moderators.
+    pub moderators: Vec<AccountKey>,
     /// The limits on connections.
     pub admission: Limits,
     /// The number of accounts that a network may create.
@@ -122,6 +124,7 @@ impl Default for Config {
             maps: None,
             metrics: None,
             proxies: Vec::new(),
+            moderators: Vec::new(),
             admission: Limits::default(),
             accounts: AccountRate::default(),
             handshake: Duration::from_secs(20),
@@ -403,6 +406,8 @@ fn in_mode(mode: Mode) -> RoomWish {
     RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
+/// The most moderators.
+const MAX_MODERATORS: usize = 64;
 /// The longest message of the day, in characters.
 const MAX_MESSAGE_LENGTH: usize = 200;
 /// The longest name of a host, in characters.
@@ -413,6 +418,7 @@ const MAX_PROXIES: usize = 64;
 
 const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
 const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
+const MODERATORS_EXAMPLE: &str = "moderators = [\"SHA256:...\"]";
 const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
 const PROXIES_EXAMPLE: &str = "proxies = [\"10.0.0.5\", \"10.1.0.0/16\"]";
 const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
@@ -465,7 +471,7 @@ const METRICS_LISTEN: Setting<Config> = Setting {
 };
 
 /// The text settings, in the order of a file.
-const TEXTS: [Setting<Config>; 6] = [
+const TEXTS: [Setting<Config>; 7] = [
     LISTEN,
     Setting {
         key: "name",
@@ -489,6 +495,11 @@ const TEXTS: [Setting<Config>; 6] = [
         about: "the addresses of proxies; each connection from them must begin with a PROXY header, whose\n\
                 address counts as the visitor's",
         value: &Text { at: |it| &mut it.proxies, read: proxies, write: |list| address_list(list) },
+    },
+    Setting {
+        key: "moderators",
+        about: "the keys of players who can mute and kick others, as \"cellcaster-server admin who\" lists them",
+        value: &Text { at: |it| &mut it.moderators, read: moderators, write: list_of_keys },
     },
 ];
 
@@ -807,6 +818,35 @@ fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {
         },
         Some,
     )
+}
+
+fn moderators(entry: &Entry<'_, '_>) -> Option<Vec<AccountKey>> {
+    let Some(list) = entry.list() else {
+        entry.faults.push(entry.wrong_type("a list of keys", MODERATORS_EXAMPLE));
+        return None;
+    };
+    if list.len() > MAX_MODERATORS {
+        let message =
+            format!("there are {} moderators, and the limit is {MAX_MODERATORS}", list.len());
+        return entry.reject(message, "", "");
+    }
+    // Reports a fault for each element that has one.
+    let keys: Vec<Option<AccountKey>> = list.iter().map(moderator).collect();
+    keys.into_iter().collect()
+}
+
+fn moderator(entry: &Entry<'_, '_>) -> Option<AccountKey> {
+    let text = entry.string(MODERATORS_EXAMPLE)?;
+    AccountKey::parse(text).or_else(|| {
+        let help =
+            "write SHA256: and 43 characters, as \"cellcaster-server admin who\" lists the key";
+        entry.reject(format!("{} is not the fingerprint of a key", quoted(text)), "", help)
+    })
+}
+
+fn list_of_keys(keys: &Vec<AccountKey>) -> String {
+    let keys: Vec<String> = keys.iter().map(|key| format!("\"{key}\"")).collect();
+    format!("[{}]", keys.join(", "))
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ fn a_written_configuration_parses_to_itself() -> Result<(), Faults> {
     config.maps = Some("/srv/maps".into());
     config.proxies =
         ["10.0.0.5", "2001:db8::/32"].map(|it| AddressPrefix::parse(it).unwrap()).into();
+    config.moderators = vec![AccountKey::new([1; 32]), AccountKey::new([2; 32])];
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
     config.standing.pop();
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
@@ -83,6 +84,17 @@ fn proxy_faults_are_reported_with_their_lines() {
     insta::assert_snapshot!(faults("proxies = [\"10.0.0.5\", \"10.0.0.0/33\",\n\"proxy\", 5]\n"));
     insta::assert_snapshot!(faults("proxies = \"10.0.0.5\"\n"));
     insta::assert_snapshot!(faults(&format!("proxies = [{}]\n", "\"10.0.0.5\", ".repeat(65))));
+}
+
+#[test]
+fn moderator_faults_are_reported_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "moderators = [\"mara\", \"SHA256:short\", 7]\nmesage = \"\"\n"
+    ));
+    insta::assert_snapshot!(faults("moderators = \"mara\"\n"));
+    let key = format!("\"{}\", ", AccountKey::new([1; 32]));
+    let said = faults(&format!("moderators = [{}]\n", key.repeat(65)));
+    assert!(said.contains("there are 65 moderators, and the limit is 64"), "{said}");
 }
 
 #[test]
