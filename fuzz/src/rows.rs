@@ -9,8 +9,8 @@ use std::cell::RefCell;
 use cellcaster::game::{Rank, Share, Tally};
 use cellcaster::world::Difficulty;
 use cellcaster_server::accounts::{
-    AccountKey, AccountSettings, BanTarget, ColumnValue, HostStore, LevelBoard, Name, UnixTime,
-    VerifiedRun,
+    AccountKey, AccountSettings, BanScope, BanTarget, ColumnValue, HostStore, LevelBoard, Name,
+    UnixTime, VerifiedRun,
 };
 
 use crate::bytes::Bytes;
@@ -27,12 +27,12 @@ const WORDS: [&str; 16] = [
     "normal",
     "hard",
     "gold",
-    "bronze",
+    "visit",
     "name",
     "key",
     "addresses",
     "10.0.0.0/8",
-    "half",
+    "talk",
     "true",
     "fps = 60\n",
 ];
@@ -100,7 +100,8 @@ fn use_all(store: &mut HostStore) {
     let tally =
         Tally { steps: 7, treasure: share, secrets: share, alarms: 1, deaths: 2, stunned: 3 };
     let run = VerifiedRun::made_up(board.clone(), tally, Rank::ALL[0], "4 s forward\n");
-    check(store.bans(now));
+    check(store.bans(BanScope::Visit, now));
+    check(store.bans(BanScope::Talk, now));
     check(store.level_boards());
     check(store.level_scores(&board, 10));
     check(store.account_named(&name));
@@ -117,7 +118,7 @@ fn use_all(store: &mut HostStore) {
         check(store.note_visit(account, now));
         _ = store.rename(account, &name, now);
     }
-    check(store.unban(&BanTarget::Name(name)));
+    check(store.unban(BanScope::Visit, &BanTarget::Name(name)));
 }
 
 /// Checks that a failure has a sentence.

@@ -43,7 +43,7 @@ pub use rusqlite::types::Value as ColumnValue;
 
 pub use account::{Account, AccountId, AccountKey, AccountSettings, UnixTime};
 pub(crate) use ban::applying;
-pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
+pub use ban::{AddressPrefix, Ban, BanScope, BanTarget, Identity};
 pub use failure::{AccountRefusal, StoreFailure};
 pub use known::KnownPlayers;
 pub use lease::Lease;

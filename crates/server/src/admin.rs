@@ -6,8 +6,10 @@
 //! In a cluster, the server asks all hosts, and the reply names the hosts that have not answered. To end a host,
 //! the operator asks that host's own socket.
 //!
-//! A ban is not a request. `cellcaster-server admin` writes it to the store, so that an operator can ban somebody
-//! while no server runs. A request then ends the sessions that the ban applies to.
+//! A ban or a mute is not a request. `cellcaster-server admin` writes it to the store, so that an operator can ban
+//! somebody while no server runs. A request then ends the sessions that the ban applies to.
+//!
+//! In a cluster, moderators' kicks and messages between visitors of different hosts are also requests.
 //!
 //! Rejected: a TCP port with a password. Every user of the machine could reach it.
 
@@ -31,6 +33,18 @@ pub enum AdminRequest {
         reason: String,
         /// `true` if they are banned.
         banned: bool,
+        /// The name of the moderator who ends the sessions; `None` if an operator ends them.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        moderator: Option<String>,
+    },
+    /// Shows a line from one visitor to another: [`AdminReply::Count`].
+    Tell {
+        /// The name of the visitor who wrote it.
+        from: String,
+        /// The name of the visitor who reads it.
+        to: String,
+        /// The line.
+        text: String,
     },
     /// Shows a line to all visitors: [`AdminReply::Count`].
     Say {
@@ -149,9 +163,25 @@ impl AdminRequest {
     /// all hosts have the same list.
     pub(crate) fn is_for_all_hosts(&self) -> bool {
         match self {
-            Self::Who | Self::Hosts | Self::Say { .. } | Self::Remove { .. } => true,
+            Self::Who
+            | Self::Hosts
+            | Self::Say { .. }
+            | Self::Remove { .. }
+            | Self::Tell { .. } => true,
             Self::Rooms | Self::Drain => false,
         }
+    }
+}
+
+impl VisitorRow {
+    /// The target of a mute of this visitor: the key or, for a guest, the address. An owner of an IPv6 address has the
+    /// whole /64. `None` if a host of another version has written the row.
+    pub(crate) fn talker(&self) -> Option<BanTarget> {
+        if let Some(key) = &self.key {
+            return AccountKey::parse(key).map(BanTarget::Key);
+        }
+        let address = self.address.parse().ok()?;
+        Some(BanTarget::Addresses(AddressPrefix::around(address, [32, 64])))
     }
 }
 

@@ -499,7 +499,11 @@ const TEXTS: [Setting<Config>; 7] = [
     Setting {
         key: "moderators",
         about: "the keys of players who can mute and kick others, as \"cellcaster-server admin who\" lists them",
-        value: &Text { at: |it| &mut it.moderators, read: moderators, write: list_of_keys },
+        value: &Text {
+            at: |it| &mut it.moderators,
+            read: moderators,
+            write: |keys| list_of_keys(keys),
+        },
     },
 ];
 
@@ -844,7 +848,7 @@ fn moderator(entry: &Entry<'_, '_>) -> Option<AccountKey> {
     })
 }
 
-fn list_of_keys(keys: &Vec<AccountKey>) -> String {
+fn list_of_keys(keys: &[AccountKey]) -> String {
     let keys: Vec<String> = keys.iter().map(|key| format!("\"{key}\"")).collect();
     format!("[{}]", keys.join(", "))
 }

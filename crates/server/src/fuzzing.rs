@@ -97,6 +97,7 @@ impl Hall {
             name: name.clone(),
             is_named: size.rows % 2 == 0,
             preferences: Preferences::default(),
+            ignored: Vec::new(),
             configuration: Configuration::default(),
         };
         let host = HostFacts {
@@ -133,7 +134,7 @@ impl Hall {
     /// Sends a visitor an event from the host. `seconds` chooses the event.
     pub fn notify(&mut self, visitor: usize, seconds: u64) {
         let line = Line::of("The host speaks.", CHAT_COLUMNS).expect("it fits");
-        let event = match seconds % 5 {
+        let event = match seconds % 7 {
             0 => SessionEvent::Draining {
                 ends_at: self.now.saturating_add(Duration::from_secs(seconds)),
                 can_return: seconds.is_multiple_of(10),
@@ -144,6 +145,12 @@ impl Hall {
                 self.leave(visitor);
                 SessionEvent::Left("The room is closed.".to_owned())
             }
+            4 => SessionEvent::Heard {
+                from: line.clone(),
+                text: line,
+                is_private: seconds.is_multiple_of(2),
+            },
+            5 => SessionEvent::Players { names: [line].into(), moderates: true },
             _ => SessionEvent::Refused("The room is full.".to_owned()),
         };
         self.visitors[visitor].session.notify(event, self.now);
@@ -265,6 +272,18 @@ impl Hall {
                 self.leave(visitor);
                 None
             }
+            Request::Say(text) => {
+                let from = self.visitors[visitor].name.clone();
+                Some(SessionEvent::Heard { from, text, is_private: false })
+            }
+            Request::Tell { to, text } => Some(SessionEvent::Told { to, text }),
+            Request::Players => {
+                let names = self.visitors.iter().map(|visitor| visitor.name.clone()).collect();
+                Some(SessionEvent::Players { names, moderates: true })
+            }
+            Request::Report { .. } | Request::Moderate { .. } => {
+                Some(SessionEvent::Advice("It is done.".to_owned()))
+            }
             Request::Board { level, difficulty } => {
                 Some(SessionEvent::Board { level, difficulty, rows: [].into() })
             }
@@ -273,6 +292,7 @@ impl Hall {
             }
             Request::Save(settings) => {
                 assert!(settings.configuration.len() <= AccountSettings::MAX_BYTES);
+                assert!(settings.ignored.len() <= AccountSettings::MAX_IGNORED);
                 let read = Configuration::parse(&settings.configuration, "settings");
                 assert!(read.is_ok(), "{}", settings.configuration);
                 None

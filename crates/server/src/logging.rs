@@ -4,7 +4,8 @@
 //!
 //! - Each event has a function in this module. Operators can rely on the names of the events.
 //! - **No key and no address is logged in full:** a key appears as its fingerprint, an address as its network.
-//! - **Text that a player typed is data:** it appears in a field, quoted and escaped. Chat is not logged at all.
+//! - **Text that a player typed is data:** it appears in a field, quoted and escaped. Chat is not logged, except for the
+//!   lines that a visitor reports.
 //! - A flood of connections takes a few lines a second: `Throttle` sums the events before a login by network and
 //!   second.
 //!
@@ -359,6 +360,43 @@ pub(crate) fn removed_session(session: SessionId, count: usize) {
 /// An operator sent a line to `count` visitors.
 pub(crate) fn said(count: usize) {
     info!(target: ADMIN, count, "said");
+}
+
+/// A visitor reported a player. `lines` are the last lines of the player that the visitor has seen.
+pub(crate) fn reported(
+    (reporter, reporter_key): (&str, Option<AccountKey>),
+    (player, key): (&str, Option<AccountKey>),
+    room: Option<&str>,
+    reason: &str,
+    lines: &[String],
+) {
+    let (reporter, player, reason) = (clean(reporter), clean(player), clean(reason));
+    let (reporter_key, key) = (or_guest(reporter_key), or_guest(key));
+    let (room, lines) = (clean(room.unwrap_or("lobby")), clean(lines.join(" | ")));
+    warn!(target: ADMIN, player, key, reporter, reporter_key, room, reason, lines, "reported");
+}
+
+/// A moderator muted a player for some seconds.
+pub(crate) fn muted(moderator: &str, player: &str, target: &BanTarget, seconds: u64) {
+    let (moderator, player) = (clean(moderator), clean(player));
+    // The log contains no address in full.
+    let key = match target {
+        BanTarget::Key(key) => or_guest(Some(*key)),
+        BanTarget::Name(_) | BanTarget::Addresses(_) => or_guest(None),
+    };
+    info!(target: ADMIN, moderator, player, key, seconds, "muted");
+}
+
+/// A moderator ended the mute of a player.
+pub(crate) fn unmuted(moderator: &str, player: &str) {
+    let (moderator, player) = (clean(moderator), clean(player));
+    info!(target: ADMIN, moderator, player, "unmuted");
+}
+
+/// A moderator ended the sessions of a player.
+pub(crate) fn kicked(moderator: &str, player: &str, reason: &str) {
+    let (moderator, player, reason) = (clean(moderator), clean(player), clean(reason));
+    info!(target: ADMIN, moderator, player, reason, "kicked");
 }
 
 /// The text of a value, with escapes for characters that a terminal would interpret or not show.

@@ -7,11 +7,13 @@ use std::sync::Arc;
 
 use tokio::sync::Notify;
 
+use crate::accounts::Name;
 use crate::admin::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
 use crate::cluster::SharedRooms;
 use crate::line::Line;
 use crate::logging;
-use crate::visitors::{Present, SessionId, Visitors};
+use crate::rooms::room::NAME_COLUMNS;
+use crate::visitors::{Heard, Present, SessionId, Visitors};
 
 /// The parts of a server that an operator can see and change. Clones share them.
 #[derive(Clone)]
@@ -76,11 +78,17 @@ impl Operator {
                 None => AdminReply::Fault(NO_CLUSTER.to_owned()),
             },
             AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
-            AdminRequest::Remove { target, reason, banned } => {
-                match self.remove(target, &farewell(reason, *banned), *banned) {
+            AdminRequest::Remove { target, reason, banned, moderator } => {
+                let sentence = farewell(reason, *banned, moderator.as_deref());
+                match self.remove(target, &sentence, *banned) {
                     Err(sentence) => AdminReply::Fault(sentence),
                     Ok(count) => AdminReply::Count(count),
                 }
+            }
+            AdminRequest::Tell { from, to, text } => {
+                let (from, text) = (from.clone(), text.clone());
+                let line = Heard { from, text, is_private: true };
+                AdminReply::Count(self.visitors.tell(&Name::kept(to), &line))
             }
             AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
                 None => AdminReply::Fault("the line contains no printable character".to_owned()),
@@ -121,11 +129,12 @@ impl Operator {
 }
 
 /// The sentence for visitors whose sessions are ended.
-pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
-    let what = if is_banned {
-        "You are banned from this host"
-    } else {
-        "The operator of this host has ended your session"
+pub(crate) fn farewell(reason: &str, is_banned: bool, moderator: Option<&str>) -> String {
+    let moderator = moderator.and_then(|name| Line::of(name, NAME_COLUMNS));
+    let what = match moderator {
+        _ if is_banned => "You are banned from this host".to_owned(),
+        Some(name) => format!("The moderator {name} has ended your session"),
+        None => "The operator of this host has ended your session".to_owned(),
     };
     match Line::of(reason, REASON_COLUMNS) {
         Some(reason) => format!("{what}: {reason}"),

@@ -1,11 +1,14 @@
-//! The visitors on a server, as its operator sees them, and the operator's notices to them.
+//! The visitors on a server, as its operator sees them, and the notices to them: from the operator, and from
+//! other visitors.
 //!
 //! The driver of a session holds a [`Presence`]. It records the visitor's name and location there and waits
 //! for [notices](Presence::notice). An operator can list visitors, send a line to all of them, and remove
-//! some.
+//! some. A visitor can write to one other visitor, or talk to all visitors in the lobby.
 //!
-//! At most `MAX_LINES` lines are queued per session; then the oldest is dropped. A session that does not read
-//! them therefore uses no more memory.
+//! The list also holds the mutes in force, as the store contains them.
+//!
+//! At most `MAX_LINES` lines of the operator and of other visitors each are queued per session; then the oldest
+//! is dropped. A session that does not read them therefore uses no more memory.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
@@ -15,7 +18,7 @@ use std::sync::{Arc, Mutex};
 use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
-use crate::accounts::{AccountKey, BanTarget, Identity, Name};
+use crate::accounts::{AccountKey, Ban, BanTarget, Identity, Name, UnixTime, applying};
 use crate::lock::locked;
 
 /// The visitors of a server. Clones share the same list.
@@ -35,8 +38,21 @@ pub struct Presence {
 pub enum Notice {
     /// A line from the operator.
     Said(String),
+    /// A line from another visitor.
+    Heard(Heard),
     /// The session must end, with this sentence.
     Removed(String),
+}
+
+/// A line from another visitor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heard {
+    /// The name of the visitor.
+    pub from: String,
+    /// The text.
+    pub text: String,
+    /// `true` if it was written to this visitor alone, `false` if to everybody in the lobby.
+    pub is_private: bool,
 }
 
 /// A number for a session, unique across all hosts and restarts, written as `3f9a-7`.
@@ -80,8 +96,17 @@ struct Table {
     run: u16,
     next: u64,
     /// The entries, in order of arrival.
-    entries: BTreeMap<u64, (Present, Arc<NoticeQueue>)>,
+    entries: BTreeMap<u64, Entry>,
+    mutes: Vec<Ban>,
     onlookers: watch::Sender<Arc<Onlookers>>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    present: Present,
+    /// The [keys](Name::keys) of the name. Computing them takes longer than looking through a thousand entries.
+    keys: Vec<String>,
+    inbox: Arc<NoticeQueue>,
 }
 
 #[derive(Debug, Default)]
@@ -93,10 +118,11 @@ struct NoticeQueue {
 #[derive(Debug, Default)]
 struct Notices {
     lines: VecDeque<String>,
+    heard: VecDeque<Heard>,
     removed: Option<String>,
 }
 
-/// The maximum number of lines queued per session.
+/// The maximum number of lines of each kind queued per session.
 const MAX_LINES: usize = 8;
 /// The maximum number of onlookers whose names lobbies receive.
 const MAX_ONLOOKERS: usize = 12;
@@ -105,7 +131,8 @@ impl Default for Table {
     fn default() -> Self {
         // If the system had no random numbers, the server would have no keys either.
         let run = getrandom::u32().unwrap_or_default() as u16;
-        Self { run, next: 1, entries: BTreeMap::new(), onlookers: watch::Sender::default() }
+        let (entries, mutes) = (BTreeMap::new(), Vec::new());
+        Self { run, next: 1, entries, mutes, onlookers: watch::Sender::default() }
     }
 }
 
@@ -139,7 +166,8 @@ impl Visitors {
             let address = address.to_canonical();
             let present =
                 Present { session, name: None, address, key, room: None, watches: false, since };
-            table.entries.insert(number, (present, inbox.clone()));
+            let entry = Entry { present, keys: Vec::new(), inbox: inbox.clone() };
+            table.entries.insert(number, entry);
             number
         });
         Presence { number, visitors: self.clone(), inbox }
@@ -147,7 +175,7 @@ impl Visitors {
 
     /// All visitors, in order of arrival.
     pub fn list(&self) -> Vec<Present> {
-        locked(&self.0, |table| table.entries.values().map(|it| it.0.clone()).collect())
+        locked(&self.0, |table| table.entries.values().map(|it| it.present.clone()).collect())
     }
 
     /// The visitors who play in no room.
@@ -175,6 +203,46 @@ impl Visitors {
         self.each(|it| it.room.as_deref() == Some(room), |inbox| inbox.say(line));
     }
 
+    /// Sends a line to the visitors with this name, or with a name that looks like it; returns their number.
+    pub fn tell(&self, name: &Name, line: &Heard) -> usize {
+        let keys = name.keys();
+        locked(&self.0, |table| {
+            table.named(&keys).map(|entry| entry.inbox.hear(line.clone())).count()
+        })
+    }
+
+    /// Sends a line to the visitors with a name who are in no room.
+    pub(crate) fn tell_lobby(&self, line: &Heard) {
+        let is_in_lobby = |it: &Present| it.name.is_some() && it.room.is_none();
+        self.each(is_in_lobby, |inbox| inbox.hear(line.clone()));
+    }
+
+    /// The visitor with this name, or with a name that looks like it.
+    pub(crate) fn named(&self, name: &Name) -> Option<Present> {
+        let keys = name.keys();
+        locked(&self.0, |table| table.named(&keys).next().map(|entry| entry.present.clone()))
+    }
+
+    /// The names of the first `most` visitors in a room, or in no room.
+    pub(crate) fn names_in(&self, room: Option<&str>, most: usize) -> Vec<Name> {
+        locked(&self.0, |table| {
+            let there = table.entries.values().filter(|it| it.present.room.as_deref() == room);
+            there.filter_map(|it| it.present.name.clone()).take(most).collect()
+        })
+    }
+
+    /// Replaces the mutes in force.
+    pub(crate) fn set_mutes(&self, mutes: Vec<Ban>) {
+        locked(&self.0, |table| table.mutes = mutes);
+    }
+
+    /// The mute in force that applies to a visitor. If several apply, the one that ends last.
+    pub(crate) fn mute_of(&self, identity: &Identity<'_>, now: UnixTime) -> Option<Ban> {
+        locked(&self.0, |table| {
+            applying(table.mutes.iter().filter(|mute| mute.is_in_force(now)), identity).cloned()
+        })
+    }
+
     /// Ends the sessions that match `target` with a sentence; returns their number.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
         let is_meant = |it: &Present| {
@@ -191,14 +259,15 @@ impl Visitors {
 
     /// Returns true if a guest has a name that looks like `name`.
     pub(crate) fn has_guest(&self, name: &Name) -> bool {
-        locked(&self.0, |table| table.has_guest(name, None))
+        let keys = name.keys();
+        locked(&self.0, |table| table.has_guest(&keys, None))
     }
 
     /// Calls `act` on the inboxes of matching visitors; returns their number.
     fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&NoticeQueue)) -> usize {
         locked(&self.0, |table| {
-            let meant = table.entries.values().filter(|(present, _)| is_meant(present));
-            meant.map(|(_, inbox)| act(inbox)).count()
+            let meant = table.entries.values().filter(|entry| is_meant(&entry.present));
+            meant.map(|entry| act(&entry.inbox)).count()
         })
     }
 }
@@ -210,7 +279,7 @@ impl Table {
             let is_onlooker = present.room.is_none() || present.watches;
             Some((present.name.clone().filter(|_| is_onlooker)?, present.room.clone()))
         };
-        let all = || self.entries.values().filter_map(|(present, _)| onlooker(present));
+        let all = || self.entries.values().filter_map(|entry| onlooker(&entry.present));
         let (first, count) = (all().take(MAX_ONLOOKERS).collect(), all().count());
         let onlookers = Onlookers { first, count };
         self.onlookers.send_if_modified(|known| {
@@ -222,12 +291,15 @@ impl Table {
         });
     }
 
-    fn has_guest(&self, name: &Name, except: Option<u64>) -> bool {
-        self.entries.iter().any(|(number, (present, _))| {
-            let is_alike = |other: &Name| other.looks_like(name);
-            present.key.is_none()
-                && Some(*number) != except
-                && present.name.as_ref().is_some_and(is_alike)
+    /// The entries with a name that has one of these keys.
+    fn named<'t>(&'t self, keys: &'t [String]) -> impl Iterator<Item = &'t Entry> {
+        self.entries.values().filter(|entry| entry.keys.iter().any(|key| keys.contains(key)))
+    }
+
+    fn has_guest(&self, keys: &[String], except: Option<u64>) -> bool {
+        let except = except.and_then(|number| self.entries.get(&number));
+        self.named(keys).any(|entry| {
+            entry.present.key.is_none() && except.is_none_or(|it| !std::ptr::eq(it, entry))
         })
     }
 }
@@ -235,10 +307,11 @@ impl Table {
 impl Presence {
     /// Sets a guest's name, unless another guest has a name that looks like it. Returns whether it was set.
     pub(crate) fn take_guest_name(&self, name: &Name) -> bool {
+        let keys = name.keys();
         locked(&self.visitors.0, |table| {
-            let is_free = !table.has_guest(name, Some(self.number));
-            if let Some((present, _)) = table.entries.get_mut(&self.number).filter(|_| is_free) {
-                present.name = Some(name.clone());
+            let is_free = !table.has_guest(&keys, Some(self.number));
+            if let Some(entry) = table.entries.get_mut(&self.number).filter(|_| is_free) {
+                (entry.present.name, entry.keys) = (Some(name.clone()), keys);
                 table.publish();
             }
             is_free
@@ -247,17 +320,19 @@ impl Presence {
 
     /// Records the visitor's name, from their account or chosen as a guest.
     pub fn set_name(&self, name: &str) {
-        self.change(|it| it.name = Some(Name::kept(name)));
+        let name = Name::kept(name);
+        let keys = name.keys();
+        self.change(|it| (it.present.name, it.keys) = (Some(name), keys));
     }
 
     /// Records a short description of the visitor's room; `None` for the lobby.
     pub fn set_room(&self, room: Option<String>) {
-        self.change(|it| it.room = room);
+        self.change(|it| it.present.room = room);
     }
 
     /// Records whether the visitor only watches the room.
     pub(crate) fn set_watching(&self, watches: bool) {
-        self.change(|it| it.watches = watches);
+        self.change(|it| it.present.watches = watches);
     }
 
     /// Waits for the next notice. Cancellation-safe.
@@ -270,10 +345,10 @@ impl Presence {
         }
     }
 
-    fn change(&self, act: impl FnOnce(&mut Present)) {
+    fn change(&self, act: impl FnOnce(&mut Entry)) {
         locked(&self.visitors.0, |table| {
-            if let Some((present, _)) = table.entries.get_mut(&self.number) {
-                act(present);
+            if let Some(entry) = table.entries.get_mut(&self.number) {
+                act(entry);
             }
             table.publish();
         });
@@ -291,11 +366,12 @@ impl Drop for Presence {
 
 impl NoticeQueue {
     fn say(&self, line: &str) {
-        locked(&self.notices, |notices| {
-            notices.lines.push_back(line.to_owned());
-            let surplus = notices.lines.len().saturating_sub(MAX_LINES);
-            notices.lines.drain(..surplus);
-        });
+        locked(&self.notices, |notices| push(&mut notices.lines, line.to_owned()));
+        self.changed.notify_one();
+    }
+
+    fn hear(&self, line: Heard) {
+        locked(&self.notices, |notices| push(&mut notices.heard, line));
         self.changed.notify_one();
     }
 
@@ -304,12 +380,20 @@ impl NoticeQueue {
         self.changed.notify_one();
     }
 
-    /// Takes the next notice. A removal comes before any lines.
+    /// Takes the next notice. A removal comes before any lines, and lines of the operator before others.
     fn take(&self) -> Option<Notice> {
         locked(&self.notices, |notices| {
             let removed = notices.removed.take().map(Notice::Removed);
-            removed.or_else(|| notices.lines.pop_front().map(Notice::Said))
+            let said = || notices.lines.pop_front().map(Notice::Said);
+            removed.or_else(said).or_else(|| notices.heard.pop_front().map(Notice::Heard))
         })
+    }
+}
+
+fn push<T>(queue: &mut VecDeque<T>, line: T) {
+    queue.push_back(line);
+    if queue.len() > MAX_LINES {
+        queue.pop_front();
     }
 }
 

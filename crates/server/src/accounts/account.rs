@@ -54,6 +54,8 @@ pub struct AccountSettings {
     /// Keys, glyphs, colours and other settings, as the text of a configuration file. The store does
     /// not read it. A text of more than [`Self::MAX_BYTES`] bytes is refused.
     pub configuration: String,
+    /// The players whose talk is not shown, at most [`Self::MAX_IGNORED`].
+    pub ignored: Vec<Name>,
 }
 
 impl UnixTime {
@@ -85,9 +87,12 @@ impl UnixTime {
 impl AccountSettings {
     /// The longest configuration that is stored, in bytes.
     pub const MAX_BYTES: usize = 16 << 10;
+    /// The most players who are ignored.
+    pub const MAX_IGNORED: usize = 32;
 
     pub(crate) fn checked(&self) -> Result<&Self, StoreFailure> {
-        let is_short = self.configuration.len() <= Self::MAX_BYTES;
+        let is_short =
+            self.configuration.len() <= Self::MAX_BYTES && self.ignored.len() <= Self::MAX_IGNORED;
         is_short.then_some(self).ok_or_else(|| StoreFailure::new("the settings are too long"))
     }
 }

@@ -1,4 +1,4 @@
-//! Bans: of a key, a name, or a range of addresses.
+//! Bans of a key, a name, or a range of addresses: from the host, or from talking on it.
 
 use std::fmt;
 use std::net::IpAddr;
@@ -10,6 +10,8 @@ use super::{AccountKey, Name, UnixTime};
 /// A ban.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ban {
+    /// What it forbids.
+    pub scope: BanScope,
     /// The visitors that it applies to.
     pub target: BanTarget,
     /// The end; `None` for never.
@@ -20,6 +22,15 @@ pub struct Ban {
     pub by: String,
     /// When it was made.
     pub made_at: UnixTime,
+}
+
+/// What a ban forbids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BanScope {
+    /// Visits to the host.
+    Visit,
+    /// Talk: the visitor is muted, but can play.
+    Talk,
 }
 
 /// The visitors that a ban applies to.
@@ -61,6 +72,16 @@ impl Ban {
     /// Returns true if the ban is in force.
     pub fn is_in_force(&self, now: UnixTime) -> bool {
         self.until.is_none_or(|until| now < until)
+    }
+
+    /// The author of a ban by a moderator. An operator is a user of the host's system, whose name has no blank.
+    pub(crate) fn by_moderator(name: &Name) -> String {
+        format!("moderator {name}")
+    }
+
+    /// The author, as players may read it. They do not read the names of the system's users.
+    pub(crate) fn author(&self) -> &str {
+        if self.by.starts_with("moderator ") { &self.by } else { "operator of this host" }
     }
 }
 
@@ -138,7 +159,10 @@ impl fmt::Display for AddressPrefix {
 }
 
 /// The ban in `bans` that applies to a visitor. If several apply, the one that ends last.
-pub(crate) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
+pub(crate) fn applying<'b>(
+    bans: impl IntoIterator<Item = &'b Ban>,
+    identity: &Identity<'_>,
+) -> Option<&'b Ban> {
     let applying = bans.into_iter().filter(|ban| ban.target.applies_to(identity));
     applying.max_by_key(|ban| (ban.until.is_none(), ban.until))
 }

@@ -23,8 +23,8 @@ use serde::{Deserialize, Serialize};
 
 use super::waiting::{failure, replace};
 use super::{
-    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, NAME_HELD, Name, StoreFailure,
-    UnixTime,
+    Account, AccountId, AccountKey, AccountSettings, Ban, BanScope, BanTarget, NAME_HELD, Name,
+    StoreFailure, UnixTime,
 };
 
 /// The most players that are remembered.
@@ -79,6 +79,7 @@ struct PlayerEntry {
     seen_at: u64,
     preferences: Preferences,
     configuration: String,
+    ignored: Vec<String>,
     confirmed_at: u64,
 }
 
@@ -215,7 +216,8 @@ impl KnownPlayer {
     fn bytes(&self) -> usize {
         let preferences = serde_json::to_string(&self.settings.preferences);
         let preferences = preferences.map_or(0, |text| text.len());
-        ENTRY_BYTES + preferences + self.settings.configuration.len()
+        let ignored: usize = self.settings.ignored.iter().map(|name| name.as_str().len()).sum();
+        ENTRY_BYTES + preferences + self.settings.configuration.len() + ignored
     }
 }
 
@@ -231,6 +233,7 @@ impl PlayerEntry {
             seen_at: account.seen_at.seconds(),
             preferences: settings.preferences,
             configuration: settings.configuration.clone(),
+            ignored: settings.ignored.iter().map(|name| name.as_str().to_owned()).collect(),
             confirmed_at: confirmed_at.seconds(),
         }
     }
@@ -244,8 +247,11 @@ impl PlayerEntry {
             created_at: UnixTime::new(self.created_at),
             seen_at: UnixTime::new(self.seen_at),
         };
-        let settings =
-            AccountSettings { preferences: self.preferences, configuration: self.configuration };
+        let settings = AccountSettings {
+            preferences: self.preferences,
+            configuration: self.configuration,
+            ignored: self.ignored.iter().map(|name| Name::kept(name)).collect(),
+        };
         settings.checked().ok()?;
         let confirmed_at = UnixTime::new(self.confirmed_at);
         Some(KnownPlayer { account, settings, confirmed_at })
@@ -267,6 +273,7 @@ impl BanEntry {
 
     fn ban(self) -> Option<Ban> {
         Some(Ban {
+            scope: BanScope::Visit,
             target: BanTarget::of_parts(&self.kind, &self.target)?,
             until: self.until.map(UnixTime::new),
             reason: self.reason,

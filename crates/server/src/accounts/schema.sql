@@ -18,11 +18,14 @@ CREATE TABLE settings (
     account INTEGER NOT NULL PRIMARY KEY REFERENCES accounts,
     -- In JSON.
     preferences TEXT NOT NULL,
-    configuration TEXT NOT NULL
+    configuration TEXT NOT NULL,
+    -- Names, in JSON.
+    ignored TEXT NOT NULL
 ) STRICT;
 
 CREATE TABLE bans (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
+    scope TEXT NOT NULL CHECK (scope IN ('visit', 'talk')),
     kind TEXT NOT NULL CHECK (kind IN ('key', 'name', 'addresses')),
     target TEXT NOT NULL,
     until INTEGER,

@@ -51,7 +51,7 @@ pub(crate) trait Statements {
 pub(crate) struct Row(pub(crate) Vec<Value>);
 
 /// The version of the [tables](SCHEMA). Lower versions were never released.
-pub(crate) const VERSION: i64 = 6;
+pub(crate) const VERSION: i64 = 7;
 
 /// The tables in SQLite's dialect. `postgres` translates the types.
 pub(crate) const SCHEMA: &str = include_str!("schema.sql");

@@ -9,16 +9,16 @@ use cellcaster::world::Difficulty;
 use rusqlite::{Connection, params};
 use serde::Serialize;
 
-use super::ban::applying;
+use super::applying;
 
 use super::postgres::PostgresDatabase;
 use super::rate::milliseconds;
 use super::results::with_run;
 use super::statements::{Isolation, Row, Statements};
 use super::{
-    Account, AccountId, AccountKey, AccountRefusal, AccountSettings, AddressPrefix, Ban, BanTarget,
-    Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL, StoreFailure,
-    UnixTime, VerifiedRun, sqlite,
+    Account, AccountId, AccountKey, AccountRefusal, AccountSettings, AddressPrefix, Ban, BanScope,
+    BanTarget, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL,
+    StoreFailure, UnixTime, VerifiedRun, sqlite,
 };
 
 /// The store of a host.
@@ -268,12 +268,16 @@ impl HostStore {
     /// # Errors
     /// See [`account`](Self::account).
     pub fn settings(&mut self, id: AccountId) -> Result<AccountSettings, StoreFailure> {
-        let sql = "SELECT preferences, configuration FROM settings WHERE account = ?1";
+        let sql = "SELECT preferences, configuration, ignored FROM settings WHERE account = ?1";
         let row = self.database.once(|it| it.row(sql, params![id]))?;
         let settings = row.map(|row| {
             // Preferences of another version become the defaults.
             let preferences = serde_json::from_str(&row.get::<String>(0)?).unwrap_or_default();
-            Ok(AccountSettings { preferences, configuration: row.get(1)? })
+            let ignored: Vec<String> =
+                serde_json::from_str(&row.get::<String>(2)?).unwrap_or_default();
+            let ignored = ignored.iter().take(AccountSettings::MAX_IGNORED);
+            let ignored = ignored.map(|name| Name::kept(name)).collect();
+            Ok(AccountSettings { preferences, configuration: row.get(1)?, ignored })
         });
         settings.unwrap_or_else(|| Ok(AccountSettings::default()))
     }
@@ -287,29 +291,32 @@ impl HostStore {
         id: AccountId,
         settings: &AccountSettings,
     ) -> Result<(), StoreFailure> {
-        let AccountSettings { preferences, configuration } = settings.checked()?;
-        let sql = "INSERT INTO settings (account, preferences, configuration) VALUES (?1, ?2, ?3) \
+        let AccountSettings { preferences, configuration, ignored } = settings.checked()?;
+        let sql = "INSERT INTO settings (account, preferences, configuration, ignored) \
+                   VALUES (?1, ?2, ?3, ?4) \
                    ON CONFLICT (account) DO UPDATE SET preferences = excluded.preferences, \
-                   configuration = excluded.configuration";
-        let values = params![id, json(preferences), configuration];
+                   configuration = excluded.configuration, ignored = excluded.ignored";
+        let ignored: Vec<&str> = ignored.iter().map(Name::as_str).collect();
+        let values = params![id, json(preferences), configuration, json(&ignored)];
         self.database.once(|it| it.execute(sql, values).map(|_| ()))
     }
 }
 
 /// Bans.
 impl HostStore {
-    /// Bans a target. The ban replaces an earlier one of the same target.
+    /// Bans a target. The ban replaces an earlier one of the same scope and target.
     ///
     /// # Errors
     /// See [`account`](Self::account).
     pub fn ban(&mut self, ban: &Ban) -> Result<(), StoreFailure> {
-        let Ban { target, until, reason, by, made_at } = ban;
+        let Ban { scope, target, until, reason, by, made_at } = ban;
         let (kind, text) = target.parts();
-        let sql = "INSERT INTO bans (kind, target, until, reason, made_by, made_at) \
-                   VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
+        let sql = "INSERT INTO bans (scope, kind, target, until, reason, made_by, made_at) \
+                   VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
         self.database.change(|it| {
-            remove_ban(it, target)?;
-            it.execute(sql, params![kind, text, until, reason, by, made_at]).map(|_| ())
+            remove_ban(it, *scope, target)?;
+            let values = params![scope.name(), kind, text, until, reason, by, made_at];
+            it.execute(sql, values).map(|_| ())
         })
     }
 
@@ -317,19 +324,19 @@ impl HostStore {
     ///
     /// # Errors
     /// See [`account`](Self::account).
-    pub fn unban(&mut self, target: &BanTarget) -> Result<bool, StoreFailure> {
-        self.database.change(|it| remove_ban(it, target))
+    pub fn unban(&mut self, scope: BanScope, target: &BanTarget) -> Result<bool, StoreFailure> {
+        self.database.change(|it| remove_ban(it, scope, target))
     }
 
-    /// The bans in force, in the order in which they were made.
+    /// The bans of a scope in force, in the order in which they were made.
     ///
     /// # Errors
     /// See [`account`](Self::account).
-    pub fn bans(&mut self, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
-        self.database.once(|it| bans_in_force(it, now))
+    pub fn bans(&mut self, scope: BanScope, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
+        self.database.once(|it| bans_in_force(it, scope, now))
     }
 
-    /// The ban in force that applies to a visitor. If several apply, the one that ends last.
+    /// The ban in force that keeps a visitor from the host. If several apply, the one that ends last.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -338,7 +345,7 @@ impl HostStore {
         identity: &Identity<'_>,
         now: UnixTime,
     ) -> Result<Option<Ban>, StoreFailure> {
-        Ok(applying(self.bans(now)?, identity))
+        Ok(applying(&self.bans(BanScope::Visit, now)?, identity).cloned())
     }
 }
 
@@ -477,7 +484,7 @@ fn check_name(
     now: UnixTime,
 ) -> Result<(), AccountRefusal> {
     let identity = Identity { name: Some(name), ..Identity::default() };
-    if applying(bans_in_force(it, now)?, &identity).is_some() {
+    if applying(&bans_in_force(it, BanScope::Visit, now)?, &identity).is_some() {
         return Err(AccountRefusal::NameBanned);
     }
     let sql = "SELECT account FROM names WHERE key = ?1 AND account IS DISTINCT FROM ?2 \
@@ -499,9 +506,13 @@ fn take_name(it: &dyn Statements, id: AccountId, name: &Name) -> Result<(), Stor
     Ok(())
 }
 
-fn remove_ban(it: &dyn Statements, target: &BanTarget) -> Result<bool, StoreFailure> {
+fn remove_ban(
+    it: &dyn Statements,
+    scope: BanScope,
+    target: &BanTarget,
+) -> Result<bool, StoreFailure> {
     let mut removed = false;
-    for (id, ban) in bans(it)? {
+    for (id, ban) in bans(it, scope)? {
         if ban.target.is_same(target) {
             it.execute("DELETE FROM bans WHERE id = ?1", params![id])?;
             removed = true;
@@ -510,22 +521,37 @@ fn remove_ban(it: &dyn Statements, target: &BanTarget) -> Result<bool, StoreFail
     Ok(removed)
 }
 
-fn bans_in_force(it: &dyn Statements, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
-    let bans = bans(it)?.into_iter().map(|(_, ban)| ban);
+fn bans_in_force(
+    it: &dyn Statements,
+    scope: BanScope,
+    now: UnixTime,
+) -> Result<Vec<Ban>, StoreFailure> {
+    let bans = bans(it, scope)?.into_iter().map(|(_, ban)| ban);
     Ok(bans.filter(|ban| ban.is_in_force(now)).collect())
 }
 
-/// All bans with their numbers, in the order in which they were made. Bans with an unknown target are left out.
-fn bans(it: &dyn Statements) -> Result<Vec<(i64, Ban)>, StoreFailure> {
-    let sql = "SELECT id, kind, target, until, reason, made_by, made_at FROM bans ORDER BY id";
+/// All bans of a scope with their numbers, in the order in which they were made. Bans with an unknown target are left out.
+fn bans(it: &dyn Statements, scope: BanScope) -> Result<Vec<(i64, Ban)>, StoreFailure> {
+    let sql = "SELECT id, kind, target, until, reason, made_by, made_at FROM bans \
+               WHERE scope = ?1 ORDER BY id";
     let mut bans = Vec::new();
-    for row in it.rows(sql, &[])? {
+    for row in it.rows(sql, params![scope.name()])? {
         if let Some(target) = BanTarget::of_parts(&row.get::<String>(1)?, &row.get::<String>(2)?) {
             let (until, reason, by, made_at) = (row.get(3)?, row.get(4)?, row.get(5)?, row.get(6)?);
-            bans.push((row.get(0)?, Ban { target, until, reason, by, made_at }));
+            bans.push((row.get(0)?, Ban { scope, target, until, reason, by, made_at }));
         }
     }
     Ok(bans)
+}
+
+impl BanScope {
+    /// The name of a scope, as the store keeps it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Visit => "visit",
+            Self::Talk => "talk",
+        }
+    }
 }
 
 impl BanTarget {

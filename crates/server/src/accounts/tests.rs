@@ -176,11 +176,15 @@ fn settings_are_stored_per_account() {
             ..Preferences::default()
         };
         let configuration = "glyphs = \"ascii\" # '; DROP TABLE settings; --\n".to_owned();
-        let settings = AccountSettings { preferences, configuration };
+        let ignored = vec![name("Rude"), name("アダ")];
+        let settings = AccountSettings { preferences, configuration, ignored };
         store.set_settings(ada, &settings).unwrap();
         assert_eq!(store.settings(ada).unwrap(), settings);
         let configuration = "#".repeat(AccountSettings::MAX_BYTES + 1);
         let long = AccountSettings { configuration, ..AccountSettings::default() };
+        assert!(store.set_settings(ada, &long).is_err());
+        let ignored = vec![name("Rude"); AccountSettings::MAX_IGNORED + 1];
+        let long = AccountSettings { ignored, ..AccountSettings::default() };
         assert!(store.set_settings(ada, &long).is_err());
         assert_eq!(store.settings(ada).unwrap(), settings);
     });
@@ -189,6 +193,7 @@ fn settings_are_stored_per_account() {
 #[test]
 fn a_ban_applies_until_it_ends() {
     let ban = |target, until| Ban {
+        scope: BanScope::Visit,
         target,
         until,
         reason: "it's \"no\"; -- \u{1F600}".to_owned(),
@@ -205,8 +210,8 @@ fn a_ban_applies_until_it_ends() {
         for ban in &bans {
             store.ban(ban).unwrap();
         }
-        assert_eq!(store.bans(at(0)).unwrap(), bans);
-        assert_eq!(store.bans(at(1)).unwrap(), bans[..2]);
+        assert_eq!(store.bans(BanScope::Visit, at(0)).unwrap(), bans);
+        assert_eq!(store.bans(BanScope::Visit, at(1)).unwrap(), bans[..2]);
         let rude = name("rude");
         let address = Some("::ffff:192.0.2.9".parse().unwrap());
         let visitor = Identity { address, name: Some(&rude), ..Identity::default() };
@@ -223,10 +228,37 @@ fn a_ban_applies_until_it_ends() {
         // A later ban replaces the earlier one.
         let longer = ban(range(), None);
         store.ban(&longer).unwrap();
-        assert_eq!(store.bans(at(0)).unwrap(), [&bans[..2], &[longer]].concat());
-        assert!(store.unban(&BanTarget::Name(name("RUDE"))).unwrap());
-        assert!(store.unban(&range()).unwrap() && !store.unban(&range()).unwrap());
-        assert_eq!(store.bans(at(0)).unwrap(), bans[..1]);
+        assert_eq!(store.bans(BanScope::Visit, at(0)).unwrap(), [&bans[..2], &[longer]].concat());
+        assert!(store.unban(BanScope::Visit, &BanTarget::Name(name("RUDE"))).unwrap());
+        assert!(
+            store.unban(BanScope::Visit, &range()).unwrap()
+                && !store.unban(BanScope::Visit, &range()).unwrap()
+        );
+        assert_eq!(store.bans(BanScope::Visit, at(0)).unwrap(), bans[..1]);
+    });
+}
+
+#[test]
+fn a_mute_is_not_a_ban_from_the_host() {
+    with_each(|store| {
+        let [mute, ban] = [BanScope::Talk, BanScope::Visit].map(|scope| Ban {
+            scope,
+            target: BanTarget::Key(key(1)),
+            until: Some(at(1)),
+            reason: String::new(),
+            by: "root".to_owned(),
+            made_at: at(0),
+        });
+        let visitor = Identity { key: Some(&key(1)), ..Identity::default() };
+        store.ban(&mute).unwrap();
+        assert_eq!(store.ban_of(&visitor, at(0)).unwrap(), None);
+        store.ban(&ban).unwrap();
+        assert_eq!(store.bans(BanScope::Talk, at(0)).unwrap(), std::slice::from_ref(&mute));
+        assert_eq!(store.bans(BanScope::Talk, at(1)).unwrap(), []);
+        assert!(store.unban(BanScope::Visit, &ban.target).unwrap());
+        assert_eq!(store.bans(BanScope::Talk, at(0)).unwrap(), [mute]);
+        assert!(store.unban(BanScope::Talk, &ban.target).unwrap());
+        assert!(!store.unban(BanScope::Talk, &ban.target).unwrap());
     });
 }
 

@@ -1,7 +1,7 @@
 //! `cellcaster-server admin`: an operator's requests to a host.
 //!
-//! Bans are written to the store, whether a server runs or not. A running server then ends the
-//! sessions that they apply to.
+//! Bans and mutes are written to the store, whether a server runs or not. A running server then ends the
+//! sessions that a ban applies to. It looks for new mutes itself.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -13,7 +13,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction, ListFormat, ListOptions};
 use super::host_store::{StoreLocation, failed};
-use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
+use crate::accounts::{Ban, BanScope, BanTarget, HostStore, Name, UnixTime};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
 use crate::operator::socket::{AdminFailure, ask};
 use cellcaster::cli::Error;
@@ -52,7 +52,12 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
             ban(&mut host, database, &player.target(None), time, &reason)
         }
         AdminAction::Unban { player } => unban(database, &player.target(None)),
-        AdminAction::Bans(list) => bans(database, &list),
+        AdminAction::Bans(list) => bans(database, BanScope::Visit, &list),
+        AdminAction::Mute { player, session, time, reason } => {
+            mute(&mut host, database, &player.target(session), time, &reason)
+        }
+        AdminAction::Unmute { player } => unmute(&mut host, database, &player.target(None)),
+        AdminAction::Mutes(list) => bans(database, BanScope::Talk, &list),
     };
     for remark in host.remarks {
         Error::machine(remark.replace(char::is_control, "?")).warn();
@@ -120,13 +125,20 @@ impl RunningHost<'_> {
     }
 
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
-        match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
-            0 => {
-                Err(Error::mistake("no session matches; \"cellcaster-server admin who\" lists all"))
-            }
+        match self.counts(&AdminRequest::Remove {
+            target,
+            reason,
+            banned: false,
+            moderator: None,
+        })? {
+            0 => Err(no_session()),
             count => Ok(format!("ended {}\n", sessions(count))),
         }
     }
+}
+
+fn no_session() -> Error {
+    Error::mistake("no session matches; \"cellcaster-server admin who\" lists all")
 }
 
 fn other_version() -> Error {
@@ -189,10 +201,41 @@ fn ban(
     reason: &str,
 ) -> Result<String, Error> {
     let mut store = open(database)?;
-    let now = UnixTime::now();
     let targets = targets(&mut store, target)?;
-    for target in &targets {
+    let whom = forbid(&mut store, BanScope::Visit, &targets, time, reason)?;
+    let ended = match remove(host, &targets, reason)? {
+        None => "no server runs".to_owned(),
+        Some(count) => format!("ended {}", sessions(count)),
+    };
+    Ok(format!("banned {whom}; {ended}\n"))
+}
+
+/// Mutes a target.
+fn mute(
+    host: &mut RunningHost<'_>,
+    database: &StoreLocation,
+    target: &Target,
+    time: Option<Duration>,
+    reason: &str,
+) -> Result<String, Error> {
+    let mut store = open(database)?;
+    let targets = muted_targets(host, &mut store, target)?;
+    let whom = forbid(&mut store, BanScope::Talk, &targets, time, reason)?;
+    Ok(format!("muted {whom}\n"))
+}
+
+/// Writes a ban for each target, and describes them in words.
+fn forbid(
+    store: &mut HostStore,
+    scope: BanScope,
+    targets: &[BanTarget],
+    time: Option<Duration>,
+    reason: &str,
+) -> Result<String, Error> {
+    let now = UnixTime::now();
+    for target in targets {
         let ban = Ban {
+            scope,
             target: target.clone(),
             until: time.map(|time| now.after(time.as_secs())),
             reason: reason.to_owned(),
@@ -201,44 +244,65 @@ fn ban(
         };
         store.ban(&ban).map_err(failed)?;
     }
-    let removed = remove(host, &targets, reason)?;
     let whom: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
     let time =
         time.map_or("for ever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
-    let ended = match removed {
-        None => "no server runs".to_owned(),
-        Some(count) => format!("ended {}", sessions(count)),
-    };
-    Ok(format!("banned {} {time}; {ended}\n", whom.join(" and ")))
+    Ok(format!("{} {time}", whom.join(" and ")))
 }
 
 /// Ends the bans of a target.
 fn unban(database: &StoreLocation, target: &Target) -> Result<String, Error> {
     let mut store = open(database)?;
+    let targets = targets(&mut store, target)?;
+    let ended = allow(&mut store, BanScope::Visit, &targets)?.ok_or_else(|| {
+        Error::mistake("there is no such ban; \"cellcaster-server admin bans\" lists them")
+    })?;
+    Ok(format!("{ended} may come back\n"))
+}
+
+/// Ends the mutes of a target.
+fn unmute(
+    host: &mut RunningHost<'_>,
+    database: &StoreLocation,
+    target: &Target,
+) -> Result<String, Error> {
+    let mut store = open(database)?;
+    let targets = muted_targets(host, &mut store, target)?;
+    let ended = allow(&mut store, BanScope::Talk, &targets)?.ok_or_else(|| {
+        Error::mistake("there is no such mute; \"cellcaster-server admin mutes\" lists them")
+    })?;
+    Ok(format!("{ended} may talk again\n"))
+}
+
+/// Ends the bans of some targets, and names those that had one; `None` if there are none.
+fn allow(
+    store: &mut HostStore,
+    scope: BanScope,
+    targets: &[BanTarget],
+) -> Result<Option<String>, Error> {
     let mut ended = Vec::new();
-    for target in targets(&mut store, target)? {
-        if store.unban(&target).map_err(failed)? {
+    for target in targets {
+        if store.unban(scope, target).map_err(failed)? {
             ended.push(target.to_string());
         }
     }
-    if ended.is_empty() {
-        return Err(Error::mistake(
-            "there is no such ban; \"cellcaster-server admin bans\" lists them",
-        ));
-    }
-    Ok(format!("{} may come back\n", ended.join(" and ")))
+    Ok((!ended.is_empty()).then(|| ended.join(" and ")))
 }
 
-/// Lists the bans in force.
-fn bans(database: &StoreLocation, options: &ListOptions) -> Result<String, Error> {
+/// Lists the bans of a scope in force.
+fn bans(database: &StoreLocation, scope: BanScope, options: &ListOptions) -> Result<String, Error> {
     let mut store = database.open_to_read()?;
     let now = UnixTime::now();
-    let bans = store.bans(now).map_err(failed)?;
+    let bans = store.bans(scope, now).map_err(failed)?;
     if let ListFormat::Json = options.format {
         return Ok(document(&bans.iter().map(ban_object).collect()));
     }
+    let what = match scope {
+        BanScope::Visit => "banned",
+        BanScope::Talk => "muted",
+    };
     if bans.is_empty() {
-        return Ok("nobody is banned\n".to_owned());
+        return Ok(format!("nobody is {what}\n"));
     }
     let left = |ban: &Ban| match ban.until {
         None => "ever".to_owned(),
@@ -246,7 +310,7 @@ fn bans(database: &StoreLocation, options: &ListOptions) -> Result<String, Error
     };
     let ago = |ban: &Ban| time_text(now.seconds().saturating_sub(ban.made_at.seconds()));
     Ok(table(
-        &["banned", "for", "made", "by", "reason"],
+        &[what, "for", "made", "by", "reason"],
         bans.iter().map(|ban| {
             let made = format!("{} ago", ago(ban));
             vec![ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
@@ -289,6 +353,34 @@ fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Err
     Ok([target].into_iter().chain(account.map(|account| BanTarget::Key(account.key))).collect())
 }
 
+/// The targets of a mute. A guest who is online is muted by address, because the next guest may have the same name.
+fn muted_targets(
+    host: &mut RunningHost<'_>,
+    store: &mut HostStore,
+    target: &Target,
+) -> Result<Vec<BanTarget>, Error> {
+    let is_meant = |row: &VisitorRow| match target {
+        Target::Session(session) => row.session == *session,
+        Target::Name(name) => {
+            let name = Name::kept(name);
+            row.key.is_none()
+                && row.name.as_ref().is_some_and(|it| Name::kept(it).looks_like(&name))
+        }
+        Target::Key(_) | Target::Address(_) => false,
+    };
+    let rows = match host.answers(&AdminRequest::Who) {
+        Ok(AdminReply::Visitors(rows)) => rows,
+        Ok(_) => return Err(other_version()),
+        Err(AdminFailure::NoServer(_)) if !matches!(target, Target::Session(_)) => Vec::new(),
+        Err(failure) => return Err(failure.into()),
+    };
+    match rows.iter().find(|row| is_meant(row)) {
+        Some(row) => row.talker().map(|target| vec![target]).ok_or_else(other_version),
+        None if matches!(target, Target::Session(_)) => Err(no_session()),
+        None => targets(store, target),
+    }
+}
+
 /// Ends the sessions of `targets`, and returns their number; `None` if no server runs.
 fn remove(
     host: &mut RunningHost<'_>,
@@ -303,7 +395,12 @@ fn remove(
             BanTarget::Name(_) => Target::Name(text),
             BanTarget::Addresses(_) => Target::Address(text),
         };
-        let request = AdminRequest::Remove { target, reason: reason.to_owned(), banned: true };
+        let request = AdminRequest::Remove {
+            target,
+            reason: reason.to_owned(),
+            banned: true,
+            moderator: None,
+        };
         match host.answers(&request) {
             Ok(AdminReply::Count(count)) => removed = count.max(removed),
             Err(AdminFailure::NoServer(_)) => return Ok(None),

@@ -97,11 +97,12 @@ pub(crate) struct Store {
     pub(crate) store: Option<StoreLocation>,
 }
 
-/// List, kick and ban the visitors of a host, or show them a line
+/// List, kick, mute and ban the visitors of a host, or show them a line
 ///
-/// ban, unban and bans also work while no server runs, because the store contains the bans. Name a player by name,
-/// --key or --address; banning a name also bans the key of its account. In a cluster, who, say, kick and ban apply to
-/// all hosts, hosts lists them, and drain ends the host of the data folder.
+/// The commands for bans and mutes also work while no server runs, because the store contains both. Name a player by
+/// name, --key or --address; banning or muting a name also bans or mutes the key of its account. A running server
+/// follows a mute within 2 seconds. In a cluster, who, say, kick, ban and mute apply to all hosts, hosts lists them, and
+/// drain ends the host of the data folder.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-server admin who\n  cellcaster-server admin kick ada --reason \"let others play\"\n  cellcaster-server admin ban --address 203.0.113.0/24 --for 7d"
@@ -154,6 +155,27 @@ pub(crate) enum AdminAction {
     },
     /// List the bans in force
     Bans(ListOptions),
+    /// Mute a player, who can go on playing; a guest who is online is muted by address
+    Mute {
+        #[command(flatten)]
+        player: PlayerSelector,
+        /// The id of one session, from "cellcaster-server admin who"
+        #[arg(long, value_name = "ID", value_parser = session, group = "target")]
+        session: Option<SessionId>,
+        /// The duration, such as 30m or 7d [default: for ever]
+        #[arg(long = "for", value_name = "TIME", value_parser = time)]
+        time: Option<Duration>,
+        /// The reason, which the player sees
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        reason: String,
+    },
+    /// End a mute
+    Unmute {
+        #[command(flatten)]
+        player: PlayerSelector,
+    },
+    /// List the mutes in force
+    Mutes(ListOptions),
     /// Show a line to all visitors
     Say {
         /// The text of the line

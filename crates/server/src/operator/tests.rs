@@ -17,7 +17,7 @@ fn operator_with(visitors: &Visitors, drain: Arc<Notify>) -> Operator {
 }
 
 fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {
-    AdminRequest::Remove { target, reason: reason.to_owned(), banned }
+    AdminRequest::Remove { target, reason: reason.to_owned(), banned, moderator: None }
 }
 
 #[tokio::test]
@@ -83,7 +83,10 @@ fn the_line_format_is_fixed() {
         (AdminRequest::Hosts, r#"{"do":"hosts"}"#),
         (AdminRequest::Say { text: "a\nb".to_owned() }, r#"{"do":"say","text":"a\nb"}"#),
     ];
-    for (request, line) in lines {
+    let tell = r#"{"do":"tell","from":"Ada","to":"Ben","text":"hi"}"#;
+    let [from, to, text] = ["Ada", "Ben", "hi"].map(str::to_owned);
+    let tell = (AdminRequest::Tell { from, to, text }, tell);
+    for (request, line) in lines.into_iter().chain([tell]) {
         assert_eq!(serde_json::to_string(&request).unwrap(), line);
         assert_eq!(serde_json::from_str::<AdminRequest>(line).unwrap(), request);
     }
@@ -102,13 +105,14 @@ fn the_line_format_is_fixed() {
 
 proptest! {
     #[test]
-    fn no_request_panics(name in ".*", reason in ".*", banned: bool, kind in 0..5) {
+    fn no_request_panics(name in ".*", reason in ".*", banned: bool, kind in 0..6) {
         let operator = operator(&Visitors::default());
         let request = match kind {
             0 => remove(Target::Name(name), &reason, banned),
             1 => remove(Target::Key(name), &reason, banned),
             2 => remove(Target::Address(name), &reason, banned),
             3 => remove(Target::Session(name), &reason, banned),
+            4 => AdminRequest::Tell { from: reason.clone(), to: name, text: reason },
             _ => AdminRequest::Say { text: name },
         };
         operator.answer_alone(&request);

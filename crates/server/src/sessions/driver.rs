@@ -8,6 +8,7 @@
 //!   time. On the runtime's threads, a session with a window of 500×200 cells delayed other visitors' keys by
 //!   up to a whole frame, because the drawing thread may be the thread that polls the sockets.
 //! - Rooms step whether or not a session draws them, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
+//! - A muted visitor's talk is stopped before it reaches anybody, see [`talk`].
 //! - The store runs on its own thread. A driver waits for it only at the start of a visit.
 //! - A result counts once the store's thread has replayed its script. If the store is unreachable or full,
 //!   the result waits in a file or in memory, and is recorded later.
@@ -16,6 +17,7 @@ mod login;
 mod results;
 #[cfg(test)]
 mod simulated;
+mod talk;
 mod visit;
 
 use std::io;
@@ -46,6 +48,7 @@ use crate::rooms::ghost::KeptRuns;
 use crate::rooms::invitation::WrongCodes;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::RoomSummary;
+use crate::sessions::session::SessionEvent;
 use crate::ssh::{Departure, Host, Link, Visitor};
 use crate::visitors::Visitors;
 
@@ -175,6 +178,7 @@ impl GameHost {
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
+        tokio::spawn(talk::follow_mutes(Arc::downgrade(&shared)));
         tokio::spawn(follow_limits(
             shared.config.subscribe(),
             shared.rooms.clone(),
@@ -259,7 +263,7 @@ impl Host for GameHost {
         let is_remembered = known.is_remembered;
         let mut driver = Driver::new(shared, &visitor, known, options);
         if is_remembered {
-            driver.tell(AWAY);
+            driver.notify(SessionEvent::Result(AWAY.to_owned()));
         }
         driver.look_for_place();
         Departure { status: driver.run(&mut link).await, refusal: None }

@@ -19,9 +19,11 @@
 //! hundred times as long as decoding them.
 
 mod ceremony;
+mod commands;
 mod draw;
 mod endings;
 mod frames;
+mod ignored;
 mod intent_queue;
 mod keys;
 mod line_entry;
@@ -41,7 +43,9 @@ use std::time::Duration;
 
 pub(crate) use self::endings::IdleLimits;
 use self::frames::{Pace, Unanswered};
-pub(crate) use self::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent, Way};
+pub(crate) use self::messages::{
+    BoardRow, HostFacts, Moderation, Profile, Request, SessionEvent, Way,
+};
 use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::load::Rate;
@@ -203,11 +207,12 @@ impl Session {
         let answered = self.unanswered.answer(has_acted);
         self.answered = self.answered.into_iter().chain(answered).min();
         let Self { protocol, ui, .. } = self;
-        if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
-            ui.requests.extend(stay.look_at(room, now));
-            if stay.take_ring() && ui.identity.preferences.bell {
-                protocol.ring_bell();
-            }
+        if let Some(room) = room {
+            ui.look_at(room, now);
+        }
+        let rings = ui.stay.as_mut().is_some_and(|stay| stay.take_ring());
+        if rings && ui.identity.preferences.bell {
+            protocol.ring_bell();
         }
         protocol.draw(|screen| ui.draw(screen, room));
         ui.is_stale = false;
@@ -247,8 +252,8 @@ impl Session {
     /// answer comes first in most cases, so that one event tells of both.
     pub(crate) fn needs_drain_at(&self) -> Duration {
         let Self { protocol, ui, .. } = self;
-        let is_answered = protocol.round_trip().is_some()
-            && protocol.frames_answered() < protocol.frames_sent();
+        let is_answered =
+            protocol.round_trip().is_some() && protocol.frames_answered() < protocol.frames_sent();
         if is_answered && ui.stay.is_some() { self.next_frame(false) } else { Duration::ZERO }
     }
 

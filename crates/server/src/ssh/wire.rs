@@ -172,7 +172,6 @@ impl<S> Wire<S> {
             ready!(self.pause.as_mut().poll(cx));
         }
     }
-
 }
 
 impl<S: AsyncRead + Unpin> Wire<S> {

@@ -52,6 +52,35 @@ fn lines_wait_in_order_and_are_bounded() {
 }
 
 #[test]
+fn a_flood_of_other_visitors_displaces_no_line_of_the_operator() {
+    let visitors = Visitors::default();
+    let [mut ada, mut ben, mut unnamed] = [1, 2, 3].map(|last| visitors.arrive(here(last), None));
+    ada.set_name("Ada");
+    ben.set_name("Ben");
+    ben.set_room(Some("room 1".to_owned()));
+    visitors.say("closing soon");
+    let line = |number: usize, is_private| {
+        let (from, text) = ("Eve".to_owned(), number.to_string());
+        Heard { from, text, is_private }
+    };
+    for number in 0..MAX_LINES + 3 {
+        assert_eq!(visitors.tell(&Name::kept("ADA"), &line(number, true)), 1);
+    }
+    visitors.tell_lobby(&line(99, false));
+    assert_eq!(visitors.tell(&Name::kept("Eve"), &line(0, true)), 0);
+    for presence in [&mut ada, &mut ben, &mut unnamed] {
+        assert_eq!(next(presence), Some(Notice::Said("closing soon".to_owned())));
+    }
+    for number in 4..MAX_LINES + 3 {
+        assert_eq!(next(&mut ada), Some(Notice::Heard(line(number, true))));
+    }
+    assert_eq!(next(&mut ada), Some(Notice::Heard(line(99, false))));
+    for presence in [&mut ada, &mut ben, &mut unnamed] {
+        assert_eq!(next(presence), None);
+    }
+}
+
+#[test]
 fn a_removal_reaches_its_targets_before_any_line() -> Result<(), Box<dyn std::error::Error>> {
     let visitors = Visitors::default();
     let key = AccountKey::new([1; 32]);

@@ -31,6 +31,10 @@ fn target(index: usize) -> BanTarget {
     }
 }
 
+fn scope(index: usize) -> BanScope {
+    if index.is_multiple_of(3) { BanScope::Talk } else { BanScope::Visit }
+}
+
 /// A text as stores receive it, without U+0000.
 fn text() -> impl Strategy<Value = String> {
     any::<String>().prop_map(|text| text.replace('\0', ""))
@@ -75,16 +79,21 @@ fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
         Call::Visit(id) => format!("{:?}", store.note_visit(AccountId(*id), now)),
         Call::Set(id, bell, text) => {
             let preferences = Preferences { bell: *bell, ..Preferences::default() };
-            let settings = AccountSettings { preferences, configuration: text.clone() };
+            let settings = AccountSettings {
+                preferences,
+                configuration: text.clone(),
+                ignored: vec![name(NAMES[*id as usize % NAMES.len()])],
+            };
             format!("{:?}", store.set_settings(AccountId(*id), &settings).map_err(of_failure))
         }
         Call::Ban(index, days, reason) => {
             let until = days.map(|days| now.after(days * DAY));
             let (reason, by) = (reason.clone(), reason.clone());
-            let ban = Ban { target: target(*index), until, reason, by, made_at: now };
+            let scope = scope(*index);
+            let ban = Ban { scope, target: target(*index), until, reason, by, made_at: now };
             format!("{:?}", store.ban(&ban))
         }
-        Call::Unban(index) => format!("{:?}", store.unban(&target(*index))),
+        Call::Unban(index) => format!("{:?}", store.unban(scope(*index), &target(*index))),
         Call::Record(id, level, steps, rank) => {
             let run = run(LEVELS[*level], *steps, Rank::ALL[*rank]);
             format!("{:?}", store.record(AccountId(*id), &run, now).map_err(of_failure))
@@ -94,7 +103,10 @@ fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
 
 /// The whole visible content of a store.
 fn shown(store: &mut HostStore, now: UnixTime) -> String {
-    let mut shown = format!("{:?} {:?}", store.bans(now), store.level_boards());
+    let mut shown = format!("{:?}", store.level_boards());
+    for scope in [BanScope::Visit, BanScope::Talk] {
+        _ = write!(shown, "{:?}", store.bans(scope, now));
+    }
     for number in 1..4 {
         let id = AccountId(number.into());
         let (account, settings) = (store.account(&key(number)), store.settings(id));

@@ -23,7 +23,14 @@ fn settings(configuration: &str) -> AccountSettings {
 }
 
 fn ban(target: BanTarget, until: Option<UnixTime>) -> Ban {
-    Ban { target, until, reason: "insults".to_owned(), by: "op".to_owned(), made_at: second(0) }
+    Ban {
+        scope: BanScope::Visit,
+        target,
+        until,
+        reason: "insults".to_owned(),
+        by: "op".to_owned(),
+        made_at: second(0),
+    }
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn run(test: impl AsyncFnOnce(Hosts)) {
 
 fn remove(name: &str) -> AdminRequest {
     let target = Target::Name(name.to_owned());
-    AdminRequest::Remove { target, reason: String::new(), banned: true }
+    AdminRequest::Remove { target, reason: String::new(), banned: true, moderator: None }
 }
 
 #[test]

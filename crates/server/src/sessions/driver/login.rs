@@ -11,10 +11,11 @@ use std::time::Duration;
 use tokio::time::sleep;
 
 use super::Shared;
+use super::talk::read_mutes;
 use crate::accounts::known::KnownPlayer;
 use crate::accounts::{
-    Account, AccountKey, AccountRefusal, AccountSettings, Ban, BanTarget, HostStore, Identity,
-    KnownPlayers, Name, Origin, StoreFailure, UnixTime, applying,
+    Account, AccountKey, AccountRefusal, AccountSettings, Ban, BanScope, BanTarget, HostStore,
+    Identity, KnownPlayers, Name, Origin, StoreFailure, UnixTime, applying,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
@@ -52,8 +53,14 @@ impl Shared {
     ) -> Result<AccountData, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
-        let known = self.known.clone();
-        let answer = self.store.call(move |store| look_up(store, known.as_deref(), address, key));
+        let (known, visitors) = (self.known.clone(), self.visitors.clone());
+        let answer = self.store.call(move |store| {
+            let found = look_up(store, known.as_deref(), address, key)?;
+            if found.failure.is_none() {
+                read_mutes(store, &visitors)?;
+            }
+            Ok::<_, StoreFailure>(found)
+        });
         let failed = |failure: String| {
             self.metrics.store_errors.inc();
             logging::store_failed(failure);
@@ -130,7 +137,7 @@ fn look_up(
     };
     let name = found.as_ref().map(|(account, _)| &account.name);
     let identity = Identity { address: Some(address), key: key.as_ref(), name };
-    let ban = applying(bans, &identity);
+    let ban = applying(&bans, &identity).cloned();
     let (account, settings) = found.unzip();
     Ok(LookedUp { ban, account, settings: settings.unwrap_or_default(), failure })
 }
@@ -143,7 +150,7 @@ fn look_up_in(
     key: Option<AccountKey>,
     now: UnixTime,
 ) -> Result<Found, StoreFailure> {
-    let bans = store.bans(now)?;
+    let bans = store.bans(BanScope::Visit, now)?;
     let account = key.map(|key| store.account(&key)).transpose()?.flatten();
     let found = account.map(|account| {
         store.note_visit(account.id, now)?;
@@ -163,7 +170,7 @@ pub(crate) async fn remember_all(shared: Weak<Shared>, known: Arc<Mutex<KnownPla
         let Some(shared) = shared.upgrade() else { return };
         let known = Arc::clone(&known);
         shared.store.run(move |store| {
-            if let Ok(bans) = store.bans(UnixTime::now()) {
+            if let Ok(bans) = store.bans(BanScope::Visit, UnixTime::now()) {
                 locked(&known, |known| known.note_bans(&bans));
             }
             save(&known);

@@ -17,9 +17,11 @@ use tokio::task::block_in_place;
 use tokio::time::sleep_until;
 
 use super::login::{self, AccountData};
+use super::talk::{REPORT_BURST, REPORT_RATE, TALK_BURST, TALK_RATE};
 use super::{Shared, results};
 use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin, UnixTime};
 use crate::admission::counted_address;
+use crate::bucket::Bucket;
 use crate::cluster::Entrant;
 use crate::line::Line;
 #[cfg(test)]
@@ -28,14 +30,14 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::invitation::{Guesser, RoomCode};
-use crate::rooms::room::{Command, RoomView};
-use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
+use crate::rooms::room::{CHAT_COLUMNS, NAME_COLUMNS, RoomView};
+use crate::rooms::sequencer::FinishedRun;
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
     HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
 };
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
-use crate::visitors::{Notice, Onlookers, Presence};
+use crate::visitors::{Heard, Notice, Onlookers, Presence};
 use cellcaster::app::Configuration;
 use cellcaster::terminal::SessionOptions;
 use cellcaster::world::Difficulty;
@@ -45,21 +47,25 @@ use cellcaster::world::Difficulty;
 pub(crate) struct Driver {
     pub(crate) shared: Arc<Shared>,
     pub(crate) session: Session,
-    key: Option<AccountKey>,
+    pub(crate) key: Option<AccountKey>,
     /// The address from which the visitor connects.
-    address: IpAddr,
+    pub(crate) address: IpAddr,
     account: Option<Account>,
     /// The name that a guest may take without further checks.
     offer: Name,
     /// The name, once it has been chosen.
-    name: Option<Name>,
+    pub(crate) name: Option<Name>,
     presence: Presence,
     pub(crate) place: Option<Place>,
     rooms: watch::Receiver<Arc<[RoomSummary]>>,
     onlookers: watch::Receiver<Arc<Onlookers>>,
     /// Whether the session is told about changes of the rooms and the visitors.
     in_lobby: bool,
-    replies: mpsc::Sender<Reply>,
+    /// Limits the rate of lines.
+    pub(crate) talk: Bucket,
+    /// Limits the rate of reports.
+    pub(crate) reports: Bucket,
+    pub(crate) replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
     /// The time at which the session was last woken.
     woken_at: Duration,
@@ -99,7 +105,7 @@ const MAX_WAITING_BYTES: usize = 64 << 10;
 const MESSAGE_COLUMNS: usize = 200;
 
 /// A reply from the store or the cluster.
-enum Reply {
+pub(crate) enum Reply {
     /// A name, with the account that now has it; `None` for a guest.
     Named(Name, Result<Option<Account>, String>),
     SessionEvent(SessionEvent),
@@ -131,6 +137,7 @@ impl Driver {
             name: login::line(&offer),
             is_named: account.is_some(),
             preferences: settings.preferences,
+            ignored: settings.ignored,
             // Settings that cannot be parsed were written by another version.
             configuration: Configuration::parse(&settings.configuration, "settings")
                 .unwrap_or_default(),
@@ -167,6 +174,8 @@ impl Driver {
             rooms: shared.rooms.summaries(),
             onlookers: shared.visitors.onlookers(),
             in_lobby: false,
+            talk: Bucket::new(TALK_RATE, TALK_BURST, now),
+            reports: Bucket::new(REPORT_RATE, REPORT_BURST, now),
             replies,
             replied,
             woken_at: Duration::ZERO,
@@ -239,6 +248,13 @@ impl Driver {
                 DriverEvent::Notice(Notice::Said(text)) => {
                     if let Some(line) = Line::of(&text, MESSAGE_COLUMNS) {
                         self.session.notify(SessionEvent::Said(line), now);
+                    }
+                }
+                DriverEvent::Notice(Notice::Heard(Heard { from, text, is_private })) => {
+                    let from = Line::of(&from, NAME_COLUMNS);
+                    if let Some((from, text)) = from.zip(Line::of(&text, CHAT_COLUMNS)) {
+                        let event = SessionEvent::Heard { from, text, is_private };
+                        self.session.notify(event, now);
                     }
                 }
                 DriverEvent::Time => self.wake(now),
@@ -331,8 +347,7 @@ impl Driver {
         let is_looking = !is_sending && self.place.is_none();
         let picture =
             self.session.picture_time().filter(|_| is_looking).map(|interval| now + interval);
-        let times =
-            [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience, picture];
+        let times = [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience, picture];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
@@ -398,6 +413,15 @@ impl Driver {
                 Err(sentence) => self.notify(SessionEvent::Refused(sentence)),
             },
             Request::Command(command) => self.act(command),
+            Request::Say(text) => self.say_in_lobby(&text),
+            Request::Tell { to, text } => self.tell(to, text),
+            Request::Players => self.list_players(),
+            Request::Report { player, reason, lines } => {
+                self.report(&player, reason.as_ref(), lines);
+            }
+            Request::Moderate { player, act, reason } => {
+                self.moderate(&player, act, reason.as_ref());
+            }
             Request::Leave => self.leave(),
             Request::Board { level, difficulty } => self.show_board(level, difficulty),
             Request::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
@@ -433,12 +457,7 @@ impl Driver {
         }
     }
 
-    /// Shows a sentence to the visitor.
-    pub(crate) fn tell(&mut self, sentence: &str) {
-        self.notify(SessionEvent::Result(sentence.to_owned()));
-    }
-
-    fn notify(&mut self, event: SessionEvent) {
+    pub(crate) fn notify(&mut self, event: SessionEvent) {
         let now = self.shared.now();
         self.session.notify(event, now);
     }
@@ -479,13 +498,6 @@ impl Driver {
         self.account = account.or(self.account.take());
         self.name = Some(name);
         SessionEvent::Named(Ok(line))
-    }
-
-    fn act(&mut self, command: Command) {
-        let Some(place) = &self.place else { return };
-        if place.act(command) == Err(CommandRefusal::TooOften) {
-            self.notify(SessionEvent::Result("Not so fast: wait a second.".to_owned()));
-        }
     }
 
     fn show_board(&mut self, level: String, difficulty: Difficulty) {
@@ -532,7 +544,7 @@ impl Driver {
     }
 
     /// Queues a call to the store, whose reply arrives later; returns whether it was accepted.
-    fn call_store(
+    pub(crate) fn call_store(
         &self,
         act: impl FnOnce(&mut HostStore) -> Option<Reply> + Send + 'static,
     ) -> bool {

@@ -32,9 +32,10 @@ use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings cannot change.
-const ROOM_KEYS: [&str; 3] = [
+const ROOM_KEYS: [&str; 4] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emote,",
-    "Tab lists the members, or watches the next one.",
+    "Tab lists the members, or watches the next; 7 lists the players here.",
+    "In the lobby: / talks. /tell NAME TEXT writes to a player anywhere.",
     "Who is \"it\" or seeks glows. A red edge: it is you.",
 ];
 /// Advice for a link that may make pictures coarse.
@@ -161,7 +162,8 @@ impl Ui {
             stay.next_change = view.next_change();
             ceremony::draw_edge(canvas, area, stay.edge(room), depth);
             if let Some((_, player)) = seen_through {
-                overhead::draw(canvas, area, &options, &player, room, &ghosts);
+                let (player, ignored) = (&player, &self.ignored);
+                overhead::draw(canvas, area, &options, player, (room, ignored), &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
                     overlay.draw_map(canvas, area, &mut stay.map, &view, None);
@@ -181,7 +183,7 @@ impl Ui {
         } else if stay.shows_members && page == Page::Room {
             members::draw_members(canvas, area, (room, stay.code), &self.host.catalog, depth);
         }
-        talk::draw(canvas, area, stay.talk.shown(), page == Page::Chat, depth);
+        talk::draw(canvas, area, self.talk.shown(), page == Page::Chat, depth);
         if let Some(draining) = self.draining {
             notice(canvas, area, &draining.sentence(self.now));
         }

@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use super::Request;
-use super::line_entry::LineEntry;
+use super::commands::columns_of;
 use super::pages::{Choice, Page};
 use super::ui::Ui;
 use crate::line::Line;
-use crate::rooms::room::{CHAT_COLUMNS, Command};
+use crate::rooms::room::Command;
 use cellcaster::app::parts::{Action, Choice as _, Effect, is_answerable, widened};
 use cellcaster::game::Intent;
 use cellcaster::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
@@ -150,6 +150,7 @@ impl Ui {
             Some(Action::ToggleHelp) if self.page() == Page::Help => self.close(),
             Some(Action::ToggleHelp) => self.open(Page::Help),
             _ if matches!(key, Key::Escape | Key::Backspace) => self.go_back(),
+            _ if key == Key::Char('/') && self.page() == Page::Lobby => self.open_chat(""),
             Some(Action::Leave) if self.stay.is_some() => self.open(Page::RoomMenu),
             Some(Action::Leave) => self.open(Page::Leaving),
             _ => {}
@@ -170,10 +171,14 @@ impl Ui {
     fn press_while_typing(&mut self, event: KeyEvent) {
         match (self.page(), event.key) {
             (Page::Name, Key::Escape) => self.open(Page::Leaving),
-            (Page::Code, Key::Escape) => self.close(),
-            (_, Key::Escape) => self.show(Page::Room),
+            (_, Key::Escape) => self.close(),
             (_, Key::Enter) if event.phase == Phase::Press => self.submit(),
-            _ => self.is_stale |= self.entry.press(event),
+            (page, _) => {
+                self.is_stale |= self.entry.press(event);
+                if page == Page::Chat {
+                    self.entry.columns = columns_of(self.entry.text());
+                }
+            }
         }
     }
 
@@ -187,10 +192,11 @@ impl Ui {
             return;
         }
         if self.page() == Page::Chat {
+            self.close();
             if let Some(line) = self.entry.line() {
-                self.ask(Request::Command(Command::Say(line)));
+                self.submit_line(line);
             }
-            return self.show(Page::Room);
+            return;
         }
         let name = self.entry.line();
         if self.identity.is_named && name.as_ref() == Some(&self.identity.name) {
@@ -217,12 +223,10 @@ impl Ui {
         let (is_member, watches) = (stay.member.is_some(), stay.is_watching);
         match key {
             Key::Enter if stay.dead_since.is_some() => return self.press_to_go_on(press),
-            Key::Enter | Key::Char('/') if is_member => {
-                self.entry = LineEntry::new(CHAT_COLUMNS);
-                return self.open(Page::Chat);
-            }
+            Key::Enter | Key::Char('/') => return self.open_chat(""),
+            Key::Char('7') => return self.open_players(),
             Key::Char('1') if is_member => return self.open(Page::Emotes),
-            Key::Char(';') => stay.talk.toggle(),
+            Key::Char(';') => self.talk.toggle(),
             Key::Tab | Key::Right | Key::Down if watches => stay.watch_another(true),
             Key::Left | Key::Up if watches => stay.watch_another(false),
             Key::Tab => stay.shows_members ^= true,

@@ -11,15 +11,15 @@ use cellcaster::terminal::{Key, KeyEvent};
 pub(crate) struct LineEntry {
     text: String,
     /// The maximum width, in columns.
-    columns: usize,
+    pub(crate) columns: usize,
     /// Whether the text is an offer, which the first typed character replaces.
     is_offer: bool,
 }
 
 impl LineEntry {
-    /// An empty entry of at most `columns` columns.
-    pub(crate) fn new(columns: usize) -> Self {
-        Self { columns, ..Self::default() }
+    /// An entry that begins with `text`, of at most `columns` columns.
+    pub(crate) fn beginning(text: &str, columns: usize) -> Self {
+        Self { text: text.to_owned(), columns, ..Self::default() }
     }
 
     /// An entry that contains an offer.
@@ -30,6 +30,10 @@ impl LineEntry {
     /// The text as a line; `None` if it is blank.
     pub(crate) fn line(&self) -> Option<Line> {
         Line::of(&self.text, self.columns)
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        &self.text
     }
 
     /// Handles a key. Returns whether the text has changed.
@@ -113,13 +117,13 @@ mod tests {
 
     #[test]
     fn only_printable_characters_that_fit_are_accepted() {
-        let mut entry = LineEntry::new(6);
+        let mut entry = LineEntry::beginning("", 6);
         type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
         // The accent combines with the character before it.
         assert_eq!(entry.text, "á日b日");
         assert_eq!(entry.shown(4), "b日_");
         assert_eq!(entry.shown(0), "_");
-        assert_eq!(LineEntry::new(4).line(), None);
+        assert_eq!(LineEntry::beginning("", 4).line(), None);
     }
 
     proptest::proptest! {
@@ -127,7 +131,7 @@ mod tests {
         fn typing_key_by_key_gives_the_same_line_as_pasting(
             text in "([a-e漢 \u{a0}][\u{300}-\u{303}]?|[ᄀ-ᄂ][ᅡ-ᅣ][ᆨ-ᆪ]?){0,16}",
         ) {
-            let mut entry = LineEntry::new(60);
+            let mut entry = LineEntry::beginning("", 60);
             type_all(&mut entry, &text);
             assert_eq!(entry.line(), Line::of(&text, 60), "{text:?}");
         }
@@ -137,11 +141,11 @@ mod tests {
     fn the_line_is_shown_as_it_will_be_sent() {
         for text in ["e\u{301}te\u{301}", "a  b \u{a0}c", "\u{ad}\u{3164}x\u{e000}", "שלום 日本"]
         {
-            let mut entry = LineEntry::new(12);
+            let mut entry = LineEntry::beginning("", 12);
             type_all(&mut entry, text);
             assert_eq!(entry.line(), Line::of(text, 12), "{text:?}");
         }
-        let mut entry = LineEntry::new(12);
+        let mut entry = LineEntry::beginning("", 12);
         type_all(&mut entry, "cafe\u{301} ");
         assert_eq!(entry.text, "café ");
         assert!(!entry.press(event(Key::Char(' '), false)));

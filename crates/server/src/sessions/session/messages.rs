@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::endings::IdleLimits;
-use crate::accounts::AccountSettings;
+use crate::accounts::{AccountSettings, Name};
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
@@ -26,6 +26,8 @@ pub(crate) struct Profile {
     /// Whether the account already has this name.
     pub(crate) is_named: bool,
     pub(crate) preferences: Preferences,
+    /// The players whose talk is not shown.
+    pub(crate) ignored: Vec<Name>,
     /// The visitor's configuration, including key bindings and start-up settings.
     pub(crate) configuration: Configuration,
 }
@@ -74,6 +76,16 @@ pub(crate) enum Request {
     Code(Line),
     /// Submit a command to the room, other than [`Command::Join`] or [`Command::Leave`].
     Command(Command),
+    /// Say a line in the lobby.
+    Say(Line),
+    /// Write to another visitor. Answered by [`SessionEvent::Told`] or [`SessionEvent::Advice`].
+    Tell { to: Line, text: Line },
+    /// List the other visitors in the room or in the lobby. Answered by [`SessionEvent::Players`].
+    Players,
+    /// Report a player, with the last lines of theirs that were shown. Answered by [`SessionEvent::Advice`].
+    Report { player: Line, reason: Option<Line>, lines: Vec<String> },
+    /// Carry out an act of a moderator. Answered by [`SessionEvent::Advice`].
+    Moderate { player: Line, act: Moderation, reason: Option<Line> },
     /// Leave the room. Not answered.
     Leave,
     /// Load a board. Answered by [`SessionEvent::Board`].
@@ -82,6 +94,17 @@ pub(crate) enum Request {
     Ghosts { level: String, difficulty: Difficulty },
     /// Save the settings. Not answered.
     Save(AccountSettings),
+}
+
+/// An act of a moderator against a player.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moderation {
+    /// Nobody reads what they say for this time.
+    Mute(Duration),
+    /// They may talk again.
+    Unmute,
+    /// Their sessions end.
+    Kick,
 }
 
 /// An event from the driver to a session.
@@ -107,6 +130,14 @@ pub(crate) enum SessionEvent {
     Result(String),
     /// A line from the operator.
     Said(Line),
+    /// A line from another visitor, to this visitor alone or to everybody in the lobby.
+    Heard { from: Line, text: Line, is_private: bool },
+    /// The visitor's line has reached the visitor `to`.
+    Told { to: Line, text: Line },
+    /// A sentence about talk or moderation.
+    Advice(String),
+    /// The other visitors in the room or in the lobby, and whether this visitor is a moderator.
+    Players { names: Arc<[Line]>, moderates: bool },
     /// The server shuts down at `ends_at`. `can_return` states whether the visitor can return to the room
     /// through another host.
     Draining { ends_at: Duration, can_return: bool },

@@ -4,9 +4,12 @@
 //! page, the usual choice is selected, so Enter alone leads to a first walk. Escape goes back. Before the
 //! session ends, the visitor is asked to confirm.
 
+use std::time::Duration;
+
+use super::commands::Players;
 use super::draw::COMPRESSION;
 use super::line_entry::LineEntry;
-use super::messages::{Request, Way};
+use super::messages::{Moderation, Request, Way};
 use super::stay::Stay;
 use super::ui::Ui;
 use crate::line::Line;
@@ -57,6 +60,12 @@ pub(crate) enum Page {
     Emotes,
     /// More actions in a room.
     RoomMenu,
+    /// The other visitors in the room or in the lobby.
+    Players,
+    /// The actions towards the chosen player.
+    Player,
+    /// A choice of the time for which the chosen player is muted.
+    Mute,
 }
 
 /// The effect of a menu entry.
@@ -76,6 +85,20 @@ pub(crate) enum Choice {
     Back,
     /// Shows an emote to everybody.
     Emote(Emote),
+    /// Lists the players.
+    Players,
+    /// Opens the page about the player with this index.
+    Player(usize),
+    /// Types a line to the room or the lobby.
+    Talk,
+    /// Types a line to the chosen player.
+    Write,
+    /// Ignores the chosen player, or stops ignoring them.
+    Ignore,
+    /// Types the reason of a report about the chosen player.
+    Report,
+    /// Carries out an act of a moderator against the chosen player.
+    Moderate(Moderation),
     /// Asks to restart the round.
     Again,
     /// Leaves the room.
@@ -160,7 +183,7 @@ impl Ui {
             Choice::Open(page) => {
                 self.is_private = false;
                 if page == Page::Code {
-                    self.entry = LineEntry::new(CODE_COLUMNS);
+                    self.entry = LineEntry::beginning("", CODE_COLUMNS);
                 }
                 self.open(page);
             }
@@ -177,6 +200,18 @@ impl Ui {
                 self.ask(Request::Command(Command::Emote(emote)));
                 self.show(Page::Room);
             }
+            Choice::Players => self.open_players(),
+            Choice::Player(index) => {
+                let names = self.players.names.as_ref();
+                self.players.chosen = names.and_then(|names| names.get(index).cloned());
+                self.open(Page::Player);
+            }
+            Choice::Talk => self.type_line(""),
+            Choice::Write | Choice::Ignore | Choice::Report | Choice::Moderate(_) => {
+                if let Some(player) = self.players.chosen.clone() {
+                    self.act_on_player(choice, player);
+                }
+            }
             Choice::Again => {
                 self.ask(Request::Command(Command::Again));
                 self.show(Page::Room);
@@ -184,6 +219,33 @@ impl Ui {
             Choice::LeaveRoom => self.leave_by_request(),
             Choice::Nothing => {}
         }
+    }
+
+    /// Carries out a choice about a player.
+    fn act_on_player(&mut self, choice: Choice, player: Line) {
+        match choice {
+            Choice::Write => self.type_line(&format!("/tell {player} ")),
+            Choice::Report => self.type_line(&format!("/report {player} ")),
+            Choice::Ignore => {
+                if self.ignored.contains(&player) {
+                    self.stop_ignoring(&player);
+                } else {
+                    self.ignore(&player);
+                }
+                self.renew_menu();
+            }
+            Choice::Moderate(act) => {
+                self.ask(Request::Moderate { player, act, reason: None });
+                self.show_home();
+            }
+            _ => {}
+        }
+    }
+
+    /// Opens the line of chat, from which the visitor returns to the room or the lobby.
+    fn type_line(&mut self, text: &str) {
+        self.show_home();
+        self.open_chat(text);
     }
 
     fn enter_room(&mut self, watches: bool) {
@@ -247,6 +309,9 @@ impl Ui {
             Page::Settings => self.settings_menu(),
             Page::Emotes => emotes_menu(),
             Page::RoomMenu => self.room_menu(),
+            Page::Players => self.players_menu(),
+            Page::Player => self.player_menu(),
+            Page::Mute => self.mute_menu(),
             _ => Menu::new(""),
         }
     }
@@ -277,6 +342,7 @@ impl Ui {
             .entry("Enter a code", Choice::Open(Page::Code))
             .entry("Settings", Choice::Open(Page::Settings))
             .entry("Help", Choice::Open(Page::Help))
+            .entry("Players and talk", Choice::Players)
             .entry("Leave", Choice::Open(Page::Leaving))
     }
 
@@ -454,7 +520,54 @@ impl Ui {
         let menu = if is_member { menu.entry("Restart the round", Choice::Again) } else { menu };
         menu.entry("Settings", Choice::Open(Page::Settings))
             .entry("Help", Choice::Open(Page::Help))
+            .entry_with("Players", "7", Choice::Players)
             .entry_with("Leave the room", "q", Choice::LeaveRoom)
+    }
+}
+
+/// The pages about players.
+impl Ui {
+    fn players_menu(&self) -> Menu<Choice> {
+        let menu = match &self.players.names {
+            None => Menu::new("players").line("…"),
+            Some(names) if names.is_empty() => Menu::new("players").line("Nobody else is here."),
+            Some(_) => Menu::new("players"),
+        };
+        let names = self.players.names.iter().flat_map(|names| names.iter()).enumerate();
+        let menu = names.fold(menu, |menu, (index, name)| {
+            let value = if self.ignored.contains(name) { "ignored" } else { "" };
+            menu.entry_with(name.as_str(), value, Choice::Player(index))
+        });
+        menu.entry_with("Talk", "/", Choice::Talk).entry("Back", Choice::Back)
+    }
+
+    fn player_menu(&self) -> Menu<Choice> {
+        let Players { chosen, moderates, .. } = &self.players;
+        let Some(player) = chosen else { return Menu::new("").entry("Back", Choice::Back) };
+        let is_ignored = self.ignored.contains(player);
+        let menu = Menu::new(player.as_str())
+            .entry("Write", Choice::Write)
+            .entry(if is_ignored { "Stop ignoring" } else { "Ignore" }, Choice::Ignore)
+            .entry("Report", Choice::Report);
+        let menu = if *moderates {
+            menu.entry("Mute", Choice::Open(Page::Mute))
+                .entry("Unmute", Choice::Moderate(Moderation::Unmute))
+                .entry("Kick", Choice::Moderate(Moderation::Kick))
+        } else {
+            menu
+        };
+        menu.entry("Back", Choice::Back)
+    }
+
+    fn mute_menu(&self) -> Menu<Choice> {
+        let name = self.players.chosen.as_ref().map_or("", Line::as_str);
+        let times = [("10 minutes", 10), ("1 hour", 60), ("1 day", 24 * 60)];
+        let menu = Menu::new(format!("mute {name} for"));
+        let menu = times.into_iter().fold(menu, |menu, (label, minutes)| {
+            let act = Moderation::Mute(Duration::from_mins(minutes));
+            menu.entry(label, Choice::Moderate(act))
+        });
+        menu.entry("Back", Choice::Back)
     }
 }
 

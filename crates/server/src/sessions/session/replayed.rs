@@ -30,6 +30,7 @@ impl ReplayedScreen {
             name: name.clone(),
             is_named: true,
             preferences: Preferences::default(),
+            ignored: Vec::new(),
             configuration: Configuration::default(),
         };
         let host = HostFacts {
@@ -51,9 +52,8 @@ impl ReplayedScreen {
     pub(crate) fn draw(&mut self, room: &RoomView, now: Duration) -> &Buffer {
         let Self { ui, picture } = self;
         ui.now = now;
-        if let Some(stay) = &mut ui.stay {
-            stay.look_at(room, now);
-        }
+        ui.look_at(room, now);
+        ui.requests.clear();
         picture.reset();
         ui.draw(picture, Some(room));
         if let Some(stay) = &mut ui.stay {

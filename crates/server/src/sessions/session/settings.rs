@@ -1,7 +1,8 @@
 //! The settings page.
 //!
 //! The page shows the settings of the game at home, the preset of key bindings, and the chat switch. The
-//! choices are saved with the account, except for the map and chat, which belong to a stay in a room.
+//! choices are saved with the account, except for the map, which belongs to a stay in a room, and chat, which belongs
+//! to the session.
 
 use super::messages::Request;
 use super::pages::Choice;
@@ -36,7 +37,7 @@ const PRESET: Setting<SessionChoices> =
 const CHAT: Setting<SessionChoices> =
     Setting { key: "chat", about: "Chat", value: &At(|it: &mut SessionChoices| &mut it.chat) };
 
-/// The rows in the order of the page. The last ones appear only in a room.
+/// The rows in the order of the page. The last one appears only in a room.
 const ROWS: [Setting<SessionChoices>; 12] = [
     Setting::DIFFICULTY,
     PRESET,
@@ -48,10 +49,10 @@ const ROWS: [Setting<SessionChoices>; 12] = [
     Setting::GLYPHS,
     Setting::COLORS,
     Setting::CORRECTION,
-    Setting::MAP,
     CHAT,
+    Setting::MAP,
 ];
-const ROWS_OUTSIDE_OF_ROOMS: usize = 10;
+const ROWS_OUTSIDE_OF_ROOMS: usize = 11;
 
 impl Ui {
     pub(crate) fn settings_menu(&self) -> Menu<Choice> {
@@ -74,7 +75,7 @@ impl Ui {
         SessionChoices {
             common: Choices { preferences, mouse: self.pointer.is_on(), map },
             preset: identity.configuration.preset,
-            chat: stay.is_some_and(|stay| stay.talk.is_on()),
+            chat: self.talk.is_on(),
         }
     }
 
@@ -100,16 +101,23 @@ impl Ui {
         }
         if let Some(stay) = stay {
             stay.map.is_shown = after.common.map != MapDisplay::Off;
-            if after.chat != before.chat {
-                stay.talk.toggle();
-            }
+        }
+        if after.chat != before.chat {
+            self.talk.toggle();
         }
         let is_kept = |it: SessionChoices| (it.common.preferences, it.preset, it.common.mouse);
         if is_kept(after) != is_kept(before) {
-            let preferences = identity.preferences;
-            let configuration = identity.configuration.to_string();
-            self.ask(Request::Save(AccountSettings { preferences, configuration }));
+            self.save_settings();
         }
         self.renew_menu();
+    }
+
+    /// Saves the account's settings, including the ignored players.
+    pub(crate) fn save_settings(&mut self) {
+        self.ask(Request::Save(AccountSettings {
+            preferences: self.identity.preferences,
+            configuration: self.identity.configuration.to_string(),
+            ignored: self.ignored.names().to_vec(),
+        }));
     }
 }

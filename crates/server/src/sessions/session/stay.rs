@@ -7,7 +7,6 @@ use super::ceremony::{Ceremony, Edge, Pass, edge, finishers};
 use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
 use super::messages::Request;
-use super::talk::Talk;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
@@ -27,7 +26,6 @@ pub(crate) struct Stay {
     watched: Option<MemberId>,
     /// Whether the last picture shows another member's view, because the visitor is a watcher or has finished.
     pub(crate) is_watching: bool,
-    pub(crate) talk: Talk,
     pub(crate) intents: IntentQueue,
     pub(crate) frames: ShownSteps,
     pub(crate) map: MapPanel,
@@ -78,7 +76,6 @@ impl Stay {
             code,
             watched: None,
             is_watching: false,
-            talk: Talk::default(),
             intents: IntentQueue::default(),
             frames: ShownSteps::default(),
             map: MapPanel::new(map).narrow(),
@@ -98,8 +95,6 @@ impl Stay {
 
     /// Updates the stay from `room` before it is drawn; returns a request for data that the picture needs.
     pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
-        self.talk.hear(&room.said, now);
-        self.talk.forget_old(now);
         let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
         let begins = !self.shown.as_ref().is_some_and(is_same_round);
         if begins && self.shown.is_some() {
@@ -230,7 +225,6 @@ impl Stay {
             || shown.large != self.large(room)
             || shown.edge != self.edge(room)
             || shown.finishers != finishers(room).len()
-            || self.talk.is_behind(&room.said)
             || shown.animates_at.is_some_and(|time| time <= elapsed)
             || !Arc::ptr_eq(&shown.header, &room.header)
     }

@@ -1,12 +1,18 @@
-//! The latest chat lines, shown for a while at the lower left of the picture.
+//! The latest lines of talk, shown for a while at the lower left of the picture.
+//!
+//! Lines come from the room, from the lobby, from single visitors, and from the host. The session also remembers the
+//! last lines of other visitors that it has shown, for reports.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line as TextLine, Span};
 
 use super::draw::overhead;
+use super::ignored::Ignored;
+use crate::accounts::Name;
 use crate::line::Line;
 use crate::rooms::room::Said;
 use cellcaster::color::palette::ColorDepth;
@@ -20,12 +26,17 @@ const MAX_LINES: usize = 5;
 /// The number of earlier lines that a new arrival sees.
 const EARLIER: u64 = 2;
 
+/// The number of lines that the session remembers.
+const MAX_REMEMBERED: usize = 32;
+/// The number of lines in a report.
+const MAX_REPORTED: usize = 5;
+
 /// A line that is shown.
 #[derive(Clone, Debug)]
 pub(crate) struct Remark {
-    /// The speaker; `None` for the room and the host.
-    pub(crate) by: Option<(Line, PlayerColor)>,
-    pub(crate) text: String,
+    /// The speaker and, in a room, their colour; `None` for the room and the host.
+    by: Option<(String, Option<PlayerColor>)>,
+    text: String,
     until: Duration,
     is_of_host: bool,
 }
@@ -36,25 +47,76 @@ pub(crate) struct Talk {
     /// The number of the last line received from the room; `None` before the first look.
     known: Option<u64>,
     remarks: VecDeque<Remark>,
+    /// The last lines of visitors, with their names.
+    remembered: VecDeque<(Line, String)>,
+    /// The last visitor who wrote to this one.
+    correspondent: Option<Line>,
     /// Whether the visitor has switched chat off.
     is_off: bool,
 }
 
 impl Talk {
-    /// Adds the new lines in `said`.
-    pub(crate) fn hear(&mut self, said: &[Said], now: Duration) {
+    /// Begins with the lines of another room.
+    pub(crate) fn enter_room(&mut self) {
+        self.known = None;
+    }
+
+    /// Adds the new lines in `said`, except for those of ignored players.
+    pub(crate) fn hear(&mut self, said: &[Said], ignored: &Ignored, now: Duration) {
         let Some(last) = said.last().map(|said| said.number) else { return };
         let known = self.known.unwrap_or(last.saturating_sub(EARLIER));
         self.known = Some(last);
         for said in said.iter().filter(|said| said.number > known) {
-            let (by, text) = (said.by.clone(), said.text.clone());
-            self.push(Remark { by, text, until: now + SHOWN, is_of_host: false });
+            let speaker = said.by.as_ref();
+            if speaker.is_some_and(|(name, _)| ignored.contains(name)) {
+                continue;
+            }
+            if let Some((name, _)) = speaker {
+                self.remember(name, &said.text);
+            }
+            let by = speaker.map(|(name, color)| (name.to_string(), Some(*color)));
+            self.push(by, said.text.clone(), false, now);
         }
+    }
+
+    /// Adds a line of another visitor, to this one alone or to everybody in the lobby.
+    pub(crate) fn hear_visitor(
+        &mut self,
+        from: Line,
+        text: &Line,
+        is_private: bool,
+        now: Duration,
+    ) {
+        self.remember(&from, text.as_str());
+        let mark = if is_private { " (private)" } else { "" };
+        self.push(Some((format!("{from}{mark}"), None)), text.to_string(), false, now);
+        if is_private {
+            self.correspondent = Some(from);
+        }
+    }
+
+    /// Shows the visitor's own line to another visitor.
+    pub(crate) fn told(&mut self, to: &Line, text: &Line, now: Duration) {
+        self.push(Some((format!("to {to} (private)"), None)), text.to_string(), true, now);
+    }
+
+    /// The last visitor who wrote to this one.
+    pub(crate) fn correspondent(&self) -> Option<&Line> {
+        self.correspondent.as_ref()
+    }
+
+    /// The last lines of a player, oldest first.
+    pub(crate) fn lines_of(&self, player: &Line) -> Vec<String> {
+        let player = Ignored::new(vec![Name::kept(player.as_str())]);
+        let lines = self.remembered.iter().filter(|(name, _)| player.contains(name));
+        let lines: Vec<&String> = lines.map(|(_, text)| text).collect();
+        let first = lines.len().saturating_sub(MAX_REPORTED);
+        lines[first..].iter().map(|&text| text.clone()).collect()
     }
 
     /// Shows a line from the host, even if chat is off.
     pub(crate) fn hear_host(&mut self, text: String, now: Duration) {
-        self.push(Remark { by: None, text, until: now + SHOWN, is_of_host: true });
+        self.push(None, text, true, now);
     }
 
     /// Returns true if `said` contains new lines.
@@ -89,14 +151,29 @@ impl Talk {
         self.remarks.iter().filter(|remark| !self.is_off || remark.is_of_host)
     }
 
-    fn push(&mut self, remark: Remark) {
-        self.remarks.push_back(remark);
+    fn push(
+        &mut self,
+        by: Option<(String, Option<PlayerColor>)>,
+        text: String,
+        is_of_host: bool,
+        now: Duration,
+    ) {
+        self.remarks.push_back(Remark { by, text, until: now + SHOWN, is_of_host });
         if self.remarks.len() > MAX_LINES {
             self.remarks.pop_front();
         }
     }
+
+    fn remember(&mut self, name: &Line, text: &str) {
+        self.remembered.push_back((name.clone(), text.to_owned()));
+        if self.remembered.len() > MAX_REMEMBERED {
+            self.remembered.pop_front();
+        }
+    }
 }
 
+/// The style of a name without a colour.
+const BOLD: Style = Style::new().add_modifier(Modifier::BOLD);
 /// The rows at the top of the picture that stay free.
 const ROWS_ABOVE: u16 = 3;
 
@@ -112,8 +189,10 @@ pub(crate) fn draw<'r>(
     let rows = (picture.top() + ROWS_ABOVE..bottom).rev();
     for (y, remark) in rows.zip(remarks.rev()) {
         let by = remark.by.as_ref();
-        let name = by
-            .map(|(name, color)| Span::styled(format!(" {name}"), overhead::style(*color, depth)));
+        let name = by.map(|(name, color)| {
+            let style = color.map_or(BOLD, |color| overhead::style(color, depth));
+            Span::styled(format!(" {name}"), style)
+        });
         let text = Span::raw(format!(" {} ", remark.text));
         let line = name.into_iter().chain([text]).collect::<TextLine<'_>>();
         let width = (line.width() as u16).min(picture.width);
@@ -137,16 +216,17 @@ mod tests {
     fn lines_are_shown_once_and_for_a_while() {
         let at = Duration::from_secs;
         let mut talk = Talk::default();
-        talk.hear(&said(1..=8), at(10));
+        let nobody = Ignored::default();
+        talk.hear(&said(1..=8), &nobody, at(10));
         assert_eq!(shown(&talk), ["7", "8"]);
-        talk.hear(&said(2..=9), at(12));
-        talk.hear(&said(2..=9), at(13));
+        talk.hear(&said(2..=9), &nobody, at(12));
+        talk.hear(&said(2..=9), &nobody, at(13));
         assert_eq!(shown(&talk), ["7", "8", "9"]);
         assert!(!talk.is_behind(&said(2..=9)) && talk.is_behind(&said(2..=10)));
         assert_eq!(talk.next_end(), Some(at(18)));
         assert!(talk.forget_old(at(18)));
         assert_eq!(shown(&talk), ["9"]);
-        talk.hear(&said(10..=30), at(20));
+        talk.hear(&said(10..=30), &nobody, at(20));
         assert_eq!(shown(&talk), ["26", "27", "28", "29", "30"]);
         talk.toggle();
         talk.hear_host("the host".to_owned(), at(20));

@@ -9,6 +9,7 @@ mod pages;
 mod pictures;
 mod private;
 mod room;
+mod talk;
 
 use super::*;
 use crate::rooms::room::{MemberId, Mode};

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::commands::Players;
 use super::endings::{Draining, Idle, IdleAction};
+use super::ignored::Ignored;
 use super::line_entry::LineEntry;
 use super::lobby::Lobby;
 use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
+use super::talk::Talk;
 use crate::line::Line;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
@@ -53,6 +56,9 @@ pub(crate) struct Ui {
     pub(crate) board: Board,
     /// The visitor's stay in a room; `None` in the lobby.
     pub(crate) stay: Option<Stay>,
+    pub(crate) talk: Talk,
+    pub(crate) ignored: Ignored,
+    pub(crate) players: Players,
     pub(crate) status: StatusLine,
     /// The statistics of frames and the link, and whether the status line shows them.
     pub(crate) stats: Option<Stats>,
@@ -114,6 +120,9 @@ impl Ui {
             lobby: Lobby::default(),
             board: Board::default(),
             stay: None,
+            talk: Talk::default(),
+            ignored: Ignored::new(identity.ignored.clone()),
+            players: Players::default(),
             status: StatusLine::default(),
             stats: None,
             shows_stats: false,
@@ -143,18 +152,27 @@ impl Ui {
     /// Returns true if a new picture would differ from the current one.
     pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
         let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
-        let differs =
-            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, view, shows_ghosts));
+        let differs = |stay: &Stay| {
+            room.is_some_and(|room| {
+                stay.differs_from(room, view, shows_ghosts) || self.talk.is_behind(&room.said)
+            })
+        };
         self.is_stale || self.stay.as_ref().is_some_and(differs)
+    }
+
+    /// Follows the room before it is drawn.
+    pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) {
+        let Some(stay) = &mut self.stay else { return };
+        self.talk.hear(&room.said, &self.ignored, now);
+        self.talk.forget_old(now);
+        self.requests.extend(stay.look_at(room, now));
     }
 
     /// Handles everything that is due at `now`.
     pub(crate) fn wake(&mut self, now: Duration) {
         self.advance(now);
         self.settle();
-        if let Some(stay) = &mut self.stay {
-            self.is_stale |= stay.talk.forget_old(now);
-        }
+        self.is_stale |= self.talk.forget_old(now);
         match self.idle.step(self.idle_limit(), now) {
             None => {}
             Some(IdleAction::Warn) => self.is_stale = true,
@@ -173,7 +191,7 @@ impl Ui {
             self.pages.pending_until(),
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
-            stay.and_then(|stay| stay.talk.next_end()),
+            self.talk.next_end(),
             stay.and_then(|stay| stay.intents.next_at()),
             self.draining.and_then(|draining| draining.next_at(self.now)),
         ];
@@ -278,6 +296,7 @@ impl Ui {
             }
             SessionEvent::Entered { member, code, .. } => {
                 self.note = None;
+                self.talk.enter_room();
                 self.stay = Some(Stay::new(member, code, self.identity.configuration.minimap));
                 self.clock.skip_to(self.now);
                 self.show(Page::Room);
@@ -302,6 +321,17 @@ impl Ui {
             SessionEvent::Onlookers(onlookers) => self.lobby.onlookers = onlookers,
             SessionEvent::Result(sentence) => self.hear(sentence),
             SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
+            SessionEvent::Heard { from, text, is_private } => {
+                if !self.ignored.contains(&from) {
+                    self.talk.hear_visitor(from, &text, is_private, self.now);
+                }
+            }
+            SessionEvent::Told { to, text } => self.talk.told(&to, &text, self.now),
+            SessionEvent::Advice(sentence) => self.advise(sentence),
+            SessionEvent::Players { names, moderates } => {
+                (self.players.names, self.players.moderates) = (Some(names), moderates);
+                self.renew_menu();
+            }
             SessionEvent::Draining { ends_at, can_return } => {
                 self.draining = Some(Draining { ends_at, can_return });
                 self.renew_menu();
@@ -331,8 +361,8 @@ impl Ui {
     }
 
     fn hear(&mut self, sentence: String) {
-        if let Some(stay) = &mut self.stay {
-            stay.talk.hear_host(sentence, self.now);
+        if self.stay.is_some() {
+            self.talk.hear_host(sentence, self.now);
         } else {
             self.note = Some(sentence);
             self.renew_menu();
@@ -342,6 +372,6 @@ impl Ui {
 
 /// The key bindings without the keys that have another meaning in a room.
 pub(crate) fn bindings_of(configuration: &Configuration) -> Bindings {
-    let keys = ['/', ';', '1'].map(Key::Char);
+    let keys = ['/', ';', '1', '7'].map(Key::Char);
     configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
 }

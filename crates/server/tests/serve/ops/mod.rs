@@ -17,3 +17,4 @@ mod running;
 #[cfg(feature = "system-tests")]
 mod shared_store;
 mod signals;
+mod talk;

@@ -16,6 +16,7 @@ use crate::rooms::room::{Mode, RoomView};
 use crate::rooms::summary::RoomSummary;
 use crate::sessions::session::lobby::seen_through;
 use crate::sessions::session::pages::{Choice, Page};
+use crate::sessions::session::talk;
 use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{
     DrawOptions, Menu, Page as _, PageKind, draw_banner, framed, hint, of_steps, panel, wrapped,
@@ -99,14 +100,28 @@ impl Ui {
         let text = match self.page() {
             Page::Name => "type a name, Enter saves it",
             Page::Code => "type the code, Enter, Esc",
+            Page::Lobby => "up and down, Enter, Esc, / talks",
             _ => "up and down, Enter, Esc",
         };
         canvas.draw_widget(hint(text), status);
         let is_large = picture.width >= MIN_COLUMNS && picture.height >= MIN_ROWS;
         self.lobby.has_picture = is_large && self.page() != Page::Name;
         if self.lobby.has_picture {
-            return self.draw_place(canvas, picture, room);
+            self.draw_place(canvas, picture, room);
+        } else {
+            self.draw_pages(canvas, picture);
         }
+        let (page, depth) = (self.page(), self.depth());
+        if page != Page::Name {
+            talk::draw(canvas, picture, self.talk.shown(), page == Page::Chat, depth);
+        }
+        if page == Page::Chat {
+            self.draw_panel(canvas, picture);
+        }
+    }
+
+    /// Draws the page's panel alone.
+    fn draw_pages(&mut self, canvas: &mut impl Canvas, picture: Rect) {
         let below = if picture.height >= MIN_WITH_BANNER {
             draw_banner(canvas, picture, self.glyphs(), self.depth())
         } else {
@@ -115,7 +130,7 @@ impl Ui {
         if self.page() == Page::Lobby {
             let below = self.draw_messages(canvas, below);
             self.draw_entries(|menu| menu.draw(canvas, below));
-        } else {
+        } else if self.page() != Page::Chat {
             self.draw_panel(canvas, below);
         }
     }
@@ -139,6 +154,11 @@ impl Ui {
             }
             PageKind::Menu { .. } => {
                 self.pages.menu.draw_in_corner(canvas, areas.all, areas.menu.width);
+            }
+            _ if page == Page::Chat => {
+                let mut menu = self.menu_of(Page::Lobby);
+                menu.take_text();
+                menu.draw_in_corner(canvas, areas.menu, areas.menu.width);
             }
             _ => self.draw_panel(canvas, areas.all),
         }

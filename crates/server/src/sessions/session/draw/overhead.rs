@@ -8,6 +8,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::rooms::room::looks::FigureLook;
 use crate::rooms::room::{MemberView, Mode, Role, RoomView};
+use crate::sessions::session::ignored::Ignored;
 use crate::sessions::session::stay::SeenGhost;
 use cellcaster::app::parts::DrawOptions;
 use cellcaster::color::palette::ColorDepth;
@@ -41,7 +42,7 @@ pub(crate) fn draw(
     area: Rect,
     options: &DrawOptions,
     player: &PlayerView,
-    room: &RoomView,
+    (room, ignored): (&RoomView, &Ignored),
     ghosts: &[SeenGhost],
 ) {
     let [columns, rows] = options.glyphs.pixels_per_cell();
@@ -52,7 +53,7 @@ pub(crate) fn draw(
     let projection = Projection::new(&camera, size, aspect);
     let distance = |position: DVec2| position.distance(camera.position());
     let others = player.others().filter(|it| it.is_in_sight && distance(it.position) <= NEAR);
-    let others = others.filter_map(|other| Overhead::of_member(&other, room));
+    let others = others.filter_map(|other| Overhead::of_member(&other, room, ignored));
     let is_seen = |figure: &Figure| {
         distance(figure.position) <= NEAR && player.sees_figure(figure.position, figure.base)
     };
@@ -72,7 +73,7 @@ pub(crate) fn draw(
 }
 
 impl Overhead {
-    fn of_member(other: &OtherPlayer, room: &RoomView) -> Option<Self> {
+    fn of_member(other: &OtherPlayer, room: &RoomView, ignored: &Ignored) -> Option<Self> {
         let member = room.member_of(other.id)?;
         let head = match member.look {
             FigureLook::Marked => HEAD_MARKED,
@@ -82,7 +83,7 @@ impl Overhead {
         Some(Self {
             position: other.position,
             head: other.feet + head,
-            text: label(member, room.header.mode),
+            text: label(member, room.header.mode, ignored),
             color: member.color,
         })
     }
@@ -94,14 +95,15 @@ impl Overhead {
     }
 }
 
-/// The label of a member: their role, name and emote.
-fn label(member: &MemberView, mode: Mode) -> String {
+/// The label of a member: their role, name and, unless they are ignored, their emote.
+fn label(member: &MemberView, mode: Mode, ignored: &Ignored) -> String {
     let role = match (member.role, mode) {
         (Role::Seeker, Mode::Tag) => "IT ",
         (Role::Seeker, _) => "seeks: ",
         _ => "",
     };
-    let emote = member.emote.map_or_else(String::new, |emote| format!(" {}", emote.text()));
+    let emote = member.emote.filter(|_| !ignored.contains(&member.name));
+    let emote = emote.map_or_else(String::new, |emote| format!(" {}", emote.text()));
     format!("{role}{}{emote}", member.name)
 }
 

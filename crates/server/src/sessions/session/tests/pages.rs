@@ -197,7 +197,7 @@ fn boards_settings_and_help_return_to_the_lobby() {
         ("6", "The menu of a private room"),
         ("7", "Difficulty"),
         ("8", "walk back"),
-        ("9", "Enter ends the session"),
+        ("9", "Nobody else is here."),
     ] {
         rig.press(one, number);
         assert!(rig.text(one).contains(shown), "{number}: {}", rig.text(one));

@@ -8,6 +8,7 @@ use rustix::process::Signal;
 use super::Hosts;
 use crate::ops::killed::user_key;
 use crate::play::enter_room;
+use crate::player::Player;
 use crate::transport::folder;
 
 #[test]
@@ -41,6 +42,33 @@ fn operators_see_and_reach_visitors_on_all_hosts() {
     let session = who.lines().find(|line| line.contains("Jon")).unwrap().split(' ').next().unwrap();
     assert_eq!(one.admin_says(&["kick", "--session", session]), "ended 1 session\n");
     jon.wait_for_end();
+}
+
+#[test]
+fn private_messages_and_mutes_reach_all_hosts() {
+    let hosts = Hosts::start(2);
+    let key = user_key(&folder());
+    let mara = hosts.running[0].0.player(Some(&key));
+    enter_room(&mara, "Mara");
+    let jon = hosts.player(1, "Jon");
+    let say = |player: &Player, line: &str| {
+        player.send("/");
+        player.wait_for(" say: ");
+        player.send(format!("{line}\r"));
+    };
+    say(&mara, "/tell jon hello from afar");
+    jon.wait_for("Mara (private) hello from afar");
+    mara.wait_for("to jon (private) hello from afar");
+    say(&mara, "/tell nobody1 hello");
+    mara.wait_for("Nobody here is called nobody1.");
+    // The operator of one host mutes a guest of the other host, by address.
+    let mute = ["mute", "jon", "--for", "10m", "--store", &hosts.store];
+    let muted = hosts.running[0].0.admin_says(&mute);
+    assert!(muted.ends_with("for 10m 0s\n"), "{muted}");
+    thread::sleep(Duration::from_secs(4));
+    say(&jon, "you are slow");
+    jon.wait_for("The operator of this host has muted you for ");
+    assert!(!mara.text().contains("you are slow"), "{}", mara.text());
 }
 
 #[test]
