@@ -5,6 +5,7 @@ mod limits;
 mod maps;
 mod network;
 mod operators;
+mod private;
 mod recordings;
 mod returning;
 

@@ -13,25 +13,36 @@ fn press(player: &Player, name: &str, keys: &[(&str, &str)]) {
     }
 }
 
-#[test]
-fn a_friend_enters_a_private_room_by_its_code() {
-    let server = GameServer::open();
-    let mara = server.player(&[]);
+/// Opens a private room; returns its code.
+pub(crate) fn open_private(player: &Player, name: &str) -> String {
+    let comes_in = format!("{name} comes in.");
     let to_room = [
         ("Open a room", "3"),
         ("Hide and seek", "2"),
         ("The Museum", "1"),
         ("Open to", "2"),
         ("invited visitors", "1"),
-        ("Mara comes in.", "\t"),
+        (comes_in.as_str(), "\t"),
     ];
-    press(&mara, "Mara", &to_room);
-    mara.wait_for("invitation code ");
-    let text = mara.text();
-    let code = text.split("invitation code ").nth(1).map(|after| after[..6].to_lowercase());
-    let jon = server.player(&[]);
-    press(&jon, "Jon", &[("Enter a code", "7"), ("type the code", &code.expect("a code"))]);
-    jon.send("\r");
-    jon.wait_for("Jon comes in.");
+    press(player, name, &to_room);
+    player.wait_for("invitation code ");
+    let text = player.text();
+    let (_, after) = text.split_once("invitation code ").unwrap();
+    after[..6].to_owned()
+}
+
+/// Enters a private room by its code, in lower case.
+pub(crate) fn enter_by_code(player: &Player, name: &str, code: &str) {
+    press(player, name, &[("Enter a code", "7"), ("type the code", &code.to_lowercase())]);
+    player.send("\r");
+    player.wait_for(&format!("{name} comes in."));
+}
+
+#[test]
+fn a_friend_enters_a_private_room_by_its_code() {
+    let server = GameServer::open();
+    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    let code = open_private(&mara, "Mara");
+    enter_by_code(&jon, "Jon", &code);
     mara.wait_for("Jon comes in.");
 }
