@@ -236,7 +236,7 @@ impl Visitors {
         locked(&self.0, |table| table.mutes = mutes);
     }
 
-    /// The mute in force that applies to a visitor. If several apply, the one that ends last.
+    /// The mute in force that applies to a visitor. If several apply, returns the last to end.
     pub(crate) fn mute_of(&self, identity: &Identity<'_>, now: UnixTime) -> Option<Ban> {
         locked(&self.0, |table| {
             applying(table.mutes.iter().filter(|mute| mute.is_in_force(now)), identity).cloned()

@@ -10,7 +10,7 @@ use super::{AccountKey, Name, UnixTime};
 /// A ban.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ban {
-    /// What it forbids.
+    /// The forbidden thing.
     pub scope: BanScope,
     /// The visitors that it applies to.
     pub target: BanTarget,
@@ -24,7 +24,7 @@ pub struct Ban {
     pub made_at: UnixTime,
 }
 
-/// What a ban forbids.
+/// The thing that a ban forbids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BanScope {
     /// Visits to the host.
@@ -158,7 +158,7 @@ impl fmt::Display for AddressPrefix {
     }
 }
 
-/// The ban in `bans` that applies to a visitor. If several apply, the one that ends last.
+/// The ban in `bans` that applies to a visitor. If several apply, returns the last to end.
 pub(crate) fn applying<'b>(
     bans: impl IntoIterator<Item = &'b Ban>,
     identity: &Identity<'_>,

@@ -336,7 +336,7 @@ impl HostStore {
         self.database.once(|it| bans_in_force(it, scope, now))
     }
 
-    /// The ban in force that keeps a visitor from the host. If several apply, the one that ends last.
+    /// The ban in force that keeps a visitor from the host. If several apply, returns the last to end.
     ///
     /// # Errors
     /// See [`account`](Self::account).
@@ -556,7 +556,7 @@ impl BanScope {
 
 impl BanTarget {
     /// The kind and the text of a target, as the store keeps them.
-    pub(super) fn parts(&self) -> (&'static str, String) {
+    pub(crate) fn parts(&self) -> (&'static str, String) {
         match self {
             Self::Key(key) => ("key", key.to_string()),
             Self::Name(name) => ("name", name.to_string()),
@@ -564,7 +564,7 @@ impl BanTarget {
         }
     }
 
-    pub(super) fn of_parts(kind: &str, text: &str) -> Option<Self> {
+    pub(crate) fn of_parts(kind: &str, text: &str) -> Option<Self> {
         match kind {
             "key" => AccountKey::parse(text).map(Self::Key),
             "name" => Some(Self::Name(Name::kept(text))),

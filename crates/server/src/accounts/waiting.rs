@@ -236,7 +236,7 @@ impl WaitingResult {
 }
 
 /// Replaces a file, which only its owner can read. The file is complete or unchanged.
-pub(super) fn replace(file: &Path, content: &[u8]) -> io::Result<()> {
+pub(crate) fn replace(file: &Path, content: &[u8]) -> io::Result<()> {
     let new = file.with_extension("new");
     let written = private::create_file(&new)
         .and_then(|()| SystemFiles.write(&new, content))
@@ -245,6 +245,6 @@ pub(super) fn replace(file: &Path, content: &[u8]) -> io::Result<()> {
     written.inspect_err(|_| _ = SystemFiles.remove(&new))
 }
 
-pub(super) fn failure(file: &Path, error: &io::Error) -> StoreFailure {
+pub(crate) fn failure(file: &Path, error: &io::Error) -> StoreFailure {
     StoreFailure::new(format!("{} can't be used: {error}", printable_path(file)))
 }

@@ -202,12 +202,12 @@ fn ban(
 ) -> Result<String, Error> {
     let mut store = open(database)?;
     let targets = targets(&mut store, target)?;
-    let whom = forbid(&mut store, BanScope::Visit, &targets, time, reason)?;
+    let banned = forbid(&mut store, BanScope::Visit, &targets, time, reason)?;
     let ended = match remove(host, &targets, reason)? {
         None => "no server runs".to_owned(),
         Some(count) => format!("ended {}", sessions(count)),
     };
-    Ok(format!("banned {whom}; {ended}\n"))
+    Ok(format!("banned {banned}; {ended}\n"))
 }
 
 /// Mutes a target.
@@ -220,8 +220,8 @@ fn mute(
 ) -> Result<String, Error> {
     let mut store = open(database)?;
     let targets = muted_targets(host, &mut store, target)?;
-    let whom = forbid(&mut store, BanScope::Talk, &targets, time, reason)?;
-    Ok(format!("muted {whom}\n"))
+    let muted = forbid(&mut store, BanScope::Talk, &targets, time, reason)?;
+    Ok(format!("muted {muted}\n"))
 }
 
 /// Writes a ban for each target, and describes them in words.
@@ -244,10 +244,10 @@ fn forbid(
         };
         store.ban(&ban).map_err(failed)?;
     }
-    let whom: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
+    let names: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
     let time =
         time.map_or("for ever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
-    Ok(format!("{} {time}", whom.join(" and ")))
+    Ok(format!("{} {time}", names.join(" and ")))
 }
 
 /// Ends the bans of a target.

@@ -21,7 +21,7 @@ use cellcaster::game::{Game, Outcome, PlayerId};
 use cellcaster::rng::SplitMix64;
 
 /// How long the standings are shown, in steps.
-pub(super) const STANDINGS: u64 = 10 * SECOND;
+pub(crate) const STANDINGS: u64 = 10 * SECOND;
 /// Hide and seek: the number of members per seeker at the start.
 const MEMBERS_A_SEEKER: usize = 4;
 /// Tag: how long the new "it" stands still, so that the others can get away.

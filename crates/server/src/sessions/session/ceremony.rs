@@ -1,5 +1,5 @@
-//! The ceremony of rounds: what a visitor is shown large in the middle of the picture, at its edge, and about
-//! who passes whom.
+//! The ceremony of rounds: the large text in the middle of the picture, the picture's edge, and the sentence about a
+//! racer who passes another.
 //!
 //! All of it is derived from snapshots of the room. Places come from the room with every snapshot, which takes
 //! one look-up for each member. They are compared four times a second, so that two racers side by side do not

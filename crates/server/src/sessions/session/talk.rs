@@ -61,7 +61,7 @@ impl Talk {
         self.known = None;
     }
 
-    /// Adds the new lines in `said`, except for those of ignored players.
+    /// Adds the new lines in `said` whose speaker is not ignored.
     pub(crate) fn hear(&mut self, said: &[Said], ignored: &Ignored, now: Duration) {
         let Some(last) = said.last().map(|said| said.number) else { return };
         let known = self.known.unwrap_or(last.saturating_sub(EARLIER));

@@ -54,7 +54,7 @@ fn operators_see_visitors_talk_to_them_and_end_their_sessions() {
     assert_eq!(who[0].as_object().unwrap().keys().collect::<Vec<_>>(), keys);
     assert_eq!((&who[0]["address"], &who[0]["key"]), (&json!("127.0.0.1"), &Value::Null));
     let rooms = list(&running.admin_says(&["rooms", "--format", "json"]));
-    let keys = ["difficulty", "level", "members", "mode", "most", "room", "watchers"];
+    let keys = ["difficulty", "is_private", "level", "members", "mode", "most", "room", "watchers"];
     assert_eq!(rooms[0].as_object().unwrap().keys().collect::<Vec<_>>(), keys);
     assert_eq!(running.admin_says(&["say", "closing \u{1b}[31msoon"]), "said to 1 visitor\n");
     visitor.wait_for("closing [31msoon");

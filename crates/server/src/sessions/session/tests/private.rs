@@ -6,7 +6,7 @@ use crate::sessions::session::pages::Page;
 use cellcaster::color::palette::ColorDepth;
 
 /// A visitor in the lobby.
-pub(super) fn in_lobby(rig: &mut Rig, name: &str, size: (u16, u16)) -> usize {
+pub(crate) fn in_lobby(rig: &mut Rig, name: &str, size: (u16, u16)) -> usize {
     let index = rig.visitor_with(name, size, Speaks::Kitty, ColorDepth::True);
     rig.press(index, ENTER);
     assert_eq!(rig.page(index), Page::Lobby, "{}", rig.text(index));
