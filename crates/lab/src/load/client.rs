@@ -43,8 +43,8 @@ const LAMP: &[u8] = b"l";
 const TIMED_PAUSE: (f64, f64) = (0.5, 1.5);
 /// The time between two presses of Enter on the way to a room.
 const ENTER: Duration = Duration::from_millis(900);
-/// The number of half blocks from which a frame counts as a picture of a room.
-const PICTURE: usize = 200;
+/// The title of the map panel, which only a room shows.
+const IN_ROOM: &[u8] = b"map";
 
 /// Plays until the measurement has ended.
 pub(crate) async fn play(
@@ -149,8 +149,7 @@ impl Client {
             self.tally.delays.extend(answered);
             self.tally.bytes += data.len() as u64;
         }
-        let blocks = data.windows(3).filter(|it| *it == "▀".as_bytes() || *it == "▄".as_bytes());
-        self.tally.is_walking |= blocks.count() > PICTURE;
+        self.tally.is_walking |= find(data, IN_ROOM).is_some();
         self.unread.extend_from_slice(data);
         let mut read = 0;
         while let Some(start) = find(&self.unread[read..], b"\x1b") {

@@ -46,6 +46,7 @@ use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{
     BoardRow, HostFacts, Moderation, Profile, Request, SessionEvent, Way,
 };
+use self::stay::Stay;
 use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::load::Rate;
@@ -210,7 +211,7 @@ impl Session {
         if let Some(room) = room {
             ui.look_at(room, now);
         }
-        let rings = ui.stay.as_mut().is_some_and(|stay| stay.take_ring());
+        let rings = ui.stay.as_mut().is_some_and(Stay::take_ring);
         if rings && ui.identity.preferences.bell {
             protocol.ring_bell();
         }
