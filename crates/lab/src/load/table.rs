@@ -52,15 +52,19 @@ pub(crate) fn run(plan: &Load) -> Result<(), Box<dyn Error>> {
 fn row(who: &str, rate: u32, players: usize, measured: &Measured, megabytes: f64) -> Row {
     let figures = &measured.figures;
     let plays = figures.sessions > 0;
-    let of_player = |value: f64| if plays { Value::Number(value) } else { Value::None };
+    let rounded = |value: f64| if plays { Value::Number(value.round()) } else { Value::None };
     let values = vec![
-        of_player(figures.frames[0]),
-        of_player(figures.key_time[0]),
-        of_player(figures.key_time[1]),
-        of_player(figures.kilobytes),
-        of_player(figures.micros_a_frame()),
+        if plays { Value::Number(to_tenths(figures.frames[0])) } else { Value::None },
+        rounded(figures.key_time[0]),
+        rounded(figures.key_time[1]),
+        rounded(figures.kilobytes),
+        rounded(figures.micros_a_frame()),
         Value::Share(figures.busy()),
         Value::Number(megabytes),
     ];
     Row::new([who, &rate.to_string(), &players.to_string()], values)
+}
+
+fn to_tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
 }
