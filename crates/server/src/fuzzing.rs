@@ -249,6 +249,7 @@ impl Hall {
                 self.visitors[visitor].is_inside = true;
                 Some(SessionEvent::Entered { room: ROOM, member: None, code: None })
             }
+            Request::Code(_) => Some(SessionEvent::Refused("No room has this code.".to_owned())),
             Request::Go(_) if self.room.is_full() => {
                 Some(SessionEvent::Refused("The room is full.".to_owned()))
             }
