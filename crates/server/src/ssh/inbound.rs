@@ -7,16 +7,10 @@
 //! The rate limit of a client also applies after decompression. Without it, eight clients that compressed
 //! their input kept two processors busy.
 //!
-//! A held key repeats thirty times a second, and a terminal answers each frame. A session that will wake soon anyway is
-//! not woken by them: they wait, each with its time of arrival. Rejected: waking for each. With 400 players who held
-//! keys, keys took a quarter of the processor.
-//!
 //! A session takes a flood in parts, and other tasks run between two of them. Rejected: whole buffers. Eight
 //! visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
 
-use std::collections::VecDeque;
 use std::mem;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -48,8 +42,6 @@ pub struct Inbound {
     shared: Arc<InboundState>,
     /// Whether the last arrival was one part of several. The session yields to other tasks before the next part.
     yields: bool,
-    /// The time since the beginning at which the last bytes arrived.
-    arrived_at: Duration,
 }
 
 /// The connection's end of the buffer.
@@ -62,8 +54,6 @@ pub(crate) struct Inlet {
 struct InboundState {
     begun: Instant,
     waiting: Mutex<PendingInput>,
-    /// Whether the session wakes soon by itself.
-    wakes_soon: AtomicBool,
     /// Tells the session that something has arrived.
     arrived: Notify,
     /// Tells the connection that there is room.
@@ -75,10 +65,6 @@ struct PendingInput {
     /// The number of bytes that the client may send now.
     bucket: Bucket,
     bytes: Vec<u8>,
-    /// The parts of `bytes`, each with the time of arrival.
-    parts: VecDeque<Part>,
-    /// The latest packets.
-    latest: [Option<Packet>; 2],
     size: Option<WindowSize>,
     drains: bool,
     ended: bool,
@@ -86,37 +72,10 @@ struct PendingInput {
     is_abandoned: bool,
 }
 
-/// Bytes that arrived at one time.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    length: usize,
-    at: Duration,
-    /// Whether the bytes are a repeated packet, for which a session need not wake.
-    is_repeated: bool,
-}
-
-/// A short packet, and the number of times that it has come in quick succession.
-#[derive(Clone, Copy, Debug, Default)]
-struct Packet {
-    bytes: [u8; Packet::MAX_BYTES],
-    length: usize,
-    at: Duration,
-    count: u32,
-}
-
-/// The longest time between two repetitions of a packet. Keyboards repeat a key every 33 to 50 ms. Nobody taps a key
-/// so fast.
-const MAX_REPEAT_INTERVAL: Duration = Duration::from_millis(60);
-/// The number of times that a packet must have come before it counts as repeated. The first repetitions of a key tell
-/// the session that it is held.
-const MIN_REPEATS: u32 = 3;
-/// The maximum number of parts that wait without waking the session.
-const MAX_PARTS: usize = 32;
-
 /// The result of appending bytes to the buffer.
 enum Appended {
-    /// This number of bytes was taken. The flag tells whether the session need not wake for them.
-    Some(usize, bool),
+    /// This number of bytes was taken.
+    Some(usize),
     /// The buffer is full.
     Full,
     /// More bytes may arrive after this time.
@@ -127,11 +86,9 @@ enum Appended {
 pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
     let waiting = PendingInput::new(limits.bucket(Duration::ZERO));
     let [arrived, taken] = [(); 2].map(|()| Notify::new());
-    let (begun, wakes_soon) = (Instant::now(), AtomicBool::new(false));
-    let waiting = Mutex::new(waiting);
-    let shared = Arc::new(InboundState { begun, waiting, wakes_soon, arrived, taken });
-    let inbound = Inbound { shared: shared.clone(), yields: false, arrived_at: Duration::ZERO };
-    (Inlet { shared }, inbound)
+    let begun = Instant::now();
+    let shared = Arc::new(InboundState { begun, waiting: Mutex::new(waiting), arrived, taken });
+    (Inlet { shared: shared.clone() }, Inbound { shared, yields: false })
 }
 
 impl Arrival {
@@ -155,32 +112,13 @@ impl Inbound {
             yield_now().await;
         }
         loop {
-            if let Some(arrival) = self.take() {
+            if let Some(arrival) = locked(&self.shared.waiting, PendingInput::take) {
+                self.yields = arrival.is_full();
+                self.shared.taken.notify_one();
                 return arrival;
             }
             self.shared.arrived.notified().await;
         }
-    }
-}
-
-impl Inbound {
-    /// The next arrival, if there is one.
-    fn take(&mut self) -> Option<Arrival> {
-        let (arrival, at) = locked(&self.shared.waiting, PendingInput::take)?;
-        self.yields = arrival.is_full();
-        self.arrived_at = at.unwrap_or(self.arrived_at);
-        self.shared.taken.notify_one();
-        Some(arrival)
-    }
-
-    /// The time at which the last bytes arrived.
-    pub(crate) fn arrived_at(&self) -> Instant {
-        self.shared.begun + self.arrived_at
-    }
-
-    /// Sets whether the session wakes soon by itself, so that repeated packets need not wake it.
-    pub(crate) fn set_wakes_soon(&self, wakes_soon: bool) {
-        self.shared.wakes_soon.store(wakes_soon, Ordering::Release);
     }
 }
 
@@ -201,10 +139,8 @@ impl Inlet {
             let appended = locked(&self.shared.waiting, |waiting| waiting.append(bytes, now));
             let taken = self.shared.taken.notified();
             match appended {
-                Appended::Some(count, is_repeated) => {
-                    if !(is_repeated && self.shared.wakes_soon.load(Ordering::Acquire)) {
-                        self.shared.arrived.notify_one();
-                    }
+                Appended::Some(count) => {
+                    self.shared.arrived.notify_one();
                     bytes = &bytes[count..];
                 }
                 Appended::Full => taken.await,
@@ -235,42 +171,27 @@ impl Inlet {
 
 impl PendingInput {
     fn new(bucket: Bucket) -> Self {
-        Self {
-            bucket,
-            bytes: Vec::new(),
-            parts: VecDeque::new(),
-            latest: [None; 2],
-            size: None,
-            drains: false,
-            ended: false,
-            is_abandoned: false,
-        }
+        let bytes = Vec::new();
+        Self { bucket, bytes, size: None, drains: false, ended: false, is_abandoned: false }
     }
 
-    /// Takes the next arrival, with its time if it is bytes.
-    fn take(&mut self) -> Option<(Arrival, Option<Duration>)> {
+    fn take(&mut self) -> Option<Arrival> {
         if mem::take(&mut self.drains) {
-            return Some((Arrival::Drains, None));
+            return Some(Arrival::Drains);
         }
         if let Some(size) = self.size.take() {
-            return Some((Arrival::Resized(size), None));
+            return Some(Arrival::Resized(size));
         }
-        if let Some(part) = self.parts.front_mut() {
-            let (count, at) = (part.length.min(Inbound::MAX_AT_ONCE), part.at);
-            part.length -= count;
-            if part.length == 0 {
-                self.parts.pop_front();
-            }
-            let rest = self.bytes.split_off(count);
-            let bytes = mem::replace(&mut self.bytes, rest);
-            return Some((Arrival::Bytes(bytes), Some(at)));
+        if !self.bytes.is_empty() {
+            let rest = self.bytes.split_off(self.bytes.len().min(Inbound::MAX_AT_ONCE));
+            return Some(Arrival::Bytes(mem::replace(&mut self.bytes, rest)));
         }
-        self.ended.then_some((Arrival::Ended, None))
+        self.ended.then_some(Arrival::Ended)
     }
 
     fn append(&mut self, bytes: &[u8], now: Duration) -> Appended {
         if self.is_abandoned || self.ended {
-            return Appended::Some(bytes.len(), false);
+            return Appended::Some(bytes.len());
         }
         let room = bytes.len().min(Inbound::MAX_BYTES - self.bytes.len());
         if room == 0 {
@@ -284,44 +205,7 @@ impl PendingInput {
         let count = room.min(allowed as usize);
         self.bucket.take(count as f64);
         self.bytes.extend_from_slice(&bytes[..count]);
-        let is_repeated = self.is_repeated(bytes, now) && self.parts.len() < MAX_PARTS;
-        match self.parts.back_mut() {
-            Some(part) if !part.is_repeated && !is_repeated => part.length += count,
-            _ => self.parts.push_back(Part { length: count, at: now, is_repeated }),
-        }
-        Appended::Some(count, is_repeated)
-    }
-
-    /// Records a packet. Returns true if the same packet has come several times in quick succession. Between two
-    /// repetitions of a key, the terminal may answer a frame.
-    fn is_repeated(&mut self, bytes: &[u8], now: Duration) -> bool {
-        let Some(packet) = Packet::of(bytes, now) else { return false };
-        let mut known = self.latest.iter_mut().flatten();
-        if let Some(known) = known.find(|known| known.is(&packet)) {
-            let is_quick = now.saturating_sub(known.at) <= MAX_REPEAT_INTERVAL;
-            let count = if is_quick { known.count.saturating_add(1) } else { 1 };
-            *known = Packet { count, ..packet };
-            return count > MIN_REPEATS;
-        }
-        if let Some(oldest) = self.latest.iter_mut().min_by_key(|known| known.map(|it| it.at)) {
-            *oldest = Some(packet);
-        }
-        false
-    }
-}
-
-impl Packet {
-    /// The longest packet that counts: a key with modifiers.
-    const MAX_BYTES: usize = 16;
-
-    fn of(bytes: &[u8], at: Duration) -> Option<Self> {
-        let mut packet = Self { length: bytes.len(), at, count: 1, ..Self::default() };
-        packet.bytes.get_mut(..bytes.len())?.copy_from_slice(bytes);
-        Some(packet)
-    }
-
-    fn is(&self, other: &Self) -> bool {
-        (self.bytes, self.length) == (other.bytes, other.length)
+        Appended::Some(count)
     }
 }
 
@@ -330,8 +214,6 @@ mod tests {
     use std::future::Future;
     use std::pin::pin;
     use std::task::{Context, Poll, Waker};
-
-    use tokio::time::sleep_until;
 
     use super::*;
 
@@ -398,57 +280,6 @@ mod tests {
         tokio::join!(sending, taking);
         // The bytes of the first four seconds arrive at once.
         assert_eq!(begun.elapsed().as_millis().next_multiple_of(100), 16_000);
-    }
-
-    /// Sends packets of one byte at these times, in milliseconds. Returns the times at which a session took them.
-    async fn taken_at(packets: &[(u64, u8)], wakes_soon: bool) -> Vec<u64> {
-        let (inlet, mut inbound) = inbound(LIMITS);
-        inbound.set_wakes_soon(wakes_soon);
-        let begun = Instant::now();
-        let at = |milliseconds| begun + Duration::from_millis(milliseconds);
-        let sending = async {
-            for &(time, byte) in packets {
-                sleep_until(at(time)).await;
-                inlet.bytes(&[byte]).await;
-            }
-            inlet.end();
-        };
-        let taking = async {
-            let mut times = Vec::new();
-            while let Arrival::Bytes(bytes) = inbound.next().await {
-                let (time, byte) = packets[times.len()];
-                assert_eq!((inbound.arrived_at(), bytes), (at(time), vec![byte]));
-                times.push(begun.elapsed().as_millis() as u64);
-            }
-            times
-        };
-        tokio::join!(sending, taking).1
-    }
-
-    #[tokio::test(start_paused = true)]
-    async fn a_held_key_does_not_wake_a_session_that_wakes_soon() {
-        let held = (0..6).map(|count| (33 * count, b'w'));
-        let packets: Vec<(u64, u8)> = held.chain([(180, b'd')]).collect();
-        assert_eq!(taken_at(&packets, false).await, [0, 33, 66, 99, 132, 165, 180]);
-        assert_eq!(taken_at(&packets, true).await, [0, 33, 66, 180, 180, 180, 180]);
-    }
-
-    #[tokio::test(start_paused = true)]
-    async fn answers_between_repetitions_do_not_wake_it_either() {
-        let mut packets: Vec<(u64, u8)> = (0..6).map(|count| (33 * count, b'w')).collect();
-        packets.extend((0..4).map(|count| (50 * count + 7, b'n')));
-        packets.sort_unstable();
-        packets.push((180, b'd'));
-        let times = taken_at(&packets, true).await;
-        assert_eq!(times, [0, 7, 33, 57, 66, 107, 107, 180, 180, 180, 180]);
-    }
-
-    #[tokio::test(start_paused = true)]
-    async fn few_repetitions_wait_without_waking_the_session() {
-        let packets: Vec<(u64, u8)> = (0..60).map(|count| (33 * count, b'w')).collect();
-        let times = taken_at(&packets, true).await;
-        let longest = times.iter().zip(&packets).map(|(taken, packet)| taken - packet.0).max();
-        assert!(longest <= Some(33 * MAX_PARTS as u64), "{longest:?}");
     }
 
     #[test]

@@ -6,7 +6,6 @@
 //!   to any host within a minute gets their place back. If they go elsewhere while the host is looking for
 //!   that place, they have left the room.
 
-use std::mem;
 use std::net::IpAddr;
 use std::num::NonZero;
 use std::sync::Arc;
@@ -70,8 +69,6 @@ pub(crate) struct Driver {
     replied: mpsc::Receiver<Reply>,
     /// The time at which the session was last woken.
     woken_at: Duration,
-    /// The latest time of which the session knows.
-    latest: Duration,
     /// The arrival time of the oldest key that the frame in flight answers.
     answers_key: Option<Duration>,
     /// The time at which the session ends because the server shuts down.
@@ -102,8 +99,6 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(250);
 /// The interval at which a driver wakes while it sends, or while it is in a room but does not wait for
 /// snapshots. The visitor may become idle and the room may close even if nothing is read or acknowledged.
 const WAKE_INTERVAL: Duration = Duration::from_secs(1);
-/// The time within which a driver that wakes by itself need not be woken by repeated keys and answers.
-const SOON: Duration = Duration::from_millis(100);
 /// The maximum number of bytes queued behind a frame. They are only queries, so a few hundred are usual.
 const MAX_WAITING_BYTES: usize = 64 << 10;
 /// The widest message of the day, in columns.
@@ -184,7 +179,6 @@ impl Driver {
             replies,
             replied,
             woken_at: Duration::ZERO,
-            latest: Duration::ZERO,
             answers_key: None,
             ends_at: None,
             is_sending: false,
@@ -228,11 +222,9 @@ impl Driver {
                 self.note_drained(outbox);
             }
             let now = self.shared.now();
-            let before = mem::replace(&mut self.latest, now);
             match event {
                 DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
-                    let at = inbound.arrived_at().saturating_duration_since(self.shared.begun);
-                    self.session.receive(&bytes, at.clamp(before, now));
+                    self.session.receive(&bytes, now);
                     #[cfg(test)]
                     self.shared.load.spend(Work::Arrival(bytes.len()));
                 }
@@ -297,8 +289,7 @@ impl Driver {
     /// The bytes to send: queued bytes, or else a frame if one is due.
     fn frame(&mut self, wakes_at: &mut Option<Duration>) -> Vec<u8> {
         let now = self.shared.now();
-        self.latest = now;
-        let waiting = mem::take(self.session.output(now));
+        let waiting = std::mem::take(self.session.output(now));
         if !waiting.is_empty() {
             return waiting;
         }
@@ -320,7 +311,7 @@ impl Driver {
             self.session.look_at(view);
         }
         *wakes_at = self.after_wake(self.session.wakes_at(view.as_deref(), now));
-        mem::take(self.session.output(now))
+        std::mem::take(self.session.output(now))
     }
 
     /// `time`, or a later time if waking at this time had no effect, for example because the terminal never replies.
@@ -358,8 +349,6 @@ impl Driver {
             self.session.picture_time().filter(|_| is_looking).map(|interval| now + interval);
         let times = [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience, picture];
         let time = times.into_iter().flatten().min();
-        let wakes_soon = time.is_some_and(|time| time <= now + SOON);
-        inbound.set_wakes_soon(wakes_soon && self.place.is_some());
         let begun = self.shared.begun;
         let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
         tokio::select! {
@@ -698,7 +687,7 @@ impl Driver {
 
     /// Handles the result of the search for the visitor's place.
     fn returned(&mut self, place: Result<Place, RoomRefusal>) {
-        if !mem::take(&mut self.is_returning) {
+        if !std::mem::take(&mut self.is_returning) {
             return;
         }
         let sentence = match place {
