@@ -116,9 +116,9 @@ impl KnownPlayers {
             players: BTreeMap::new(),
             is_saved: true,
         };
-        for player in players.into_iter().filter_map(PlayerEntry::player) {
-            known.insert(player);
-        }
+        let players = players.into_iter().filter_map(PlayerEntry::player);
+        known.players.extend(players.map(|player| (player.account.key, player)));
+        known.make_room();
         (known, sentence)
     }
 
