@@ -16,6 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
+use crate::admission::counted_address;
 
 /// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -181,7 +182,7 @@ impl VisitorRow {
             return AccountKey::parse(key).map(BanTarget::Key);
         }
         let address = self.address.parse().ok()?;
-        Some(BanTarget::Addresses(AddressPrefix::around(address, [32, 64])))
+        Some(BanTarget::Addresses(counted_address(address)))
     }
 }
 
