@@ -52,7 +52,7 @@ impl Cell {
 
     /// The neighbours in the west, east, north and south, except neighbours at negative
     /// coordinates.
-    pub(crate) fn beside(self) -> impl Iterator<Item = Self> {
+    pub fn beside(self) -> impl Iterator<Item = Self> {
         let west = self.column.checked_sub(1).map(|column| Self { column, ..self });
         let east = self.column.checked_add(1).map(|column| Self { column, ..self });
         let north = self.row.checked_sub(1).map(|row| Self { row, ..self });

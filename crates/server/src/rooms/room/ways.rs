@@ -50,7 +50,7 @@ impl ExitWays {
                     continue;
                 };
                 ways.lengths[index] = length;
-                for before in beside(cell).filter(|&before| ways.length(before).is_none()) {
+                for before in cell.beside().filter(|&before| ways.length(before).is_none()) {
                     let cost = tile(before).zip(tile(cell)).and_then(|(from, to)| from.cost(to));
                     if let Some(cost) = cost {
                         waiting[bucket(length.saturating_add(cost))].push(before);
@@ -66,7 +66,7 @@ impl ExitWays {
     pub(crate) fn from(&self, position: DVec2) -> Option<f64> {
         let cell = Cell { column: position.x as u32, row: position.y as u32 };
         let length = self.length(cell)?;
-        let next = beside(cell).find(|&next| self.length(next).is_some_and(|it| it + 1 == length));
+        let next = cell.beside().find(|&next| self.length(next).is_some_and(|it| it + 1 == length));
         let ahead =
             next.map_or(0.0, |next| (next.center() - cell.center()).dot(position - cell.center()));
         Some(f64::from(length) - ahead)
@@ -116,13 +116,6 @@ impl TileWay {
             false => (!to.is_wall).then_some(DETOUR),
         }
     }
-}
-
-fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
-    [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().filter_map(move |(columns, rows)| {
-        let column = column.checked_add_signed(columns)?;
-        Some(Cell { column, row: row.checked_add_signed(rows)? })
-    })
 }
 
 #[cfg(test)]
