@@ -22,7 +22,6 @@ mod layers;
 mod lighting;
 mod plan;
 mod projection;
-mod sectors;
 mod span_mapping;
 mod stats;
 mod texture_stepper;
@@ -40,7 +39,6 @@ pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
 pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
-pub(crate) use sectors::{PlaneSide, PlaneSurface};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::StatsCounter;
 pub use stats::{FrameStats, Pass, PassStats, WalkStats};
@@ -85,7 +83,7 @@ pub(crate) fn fill(
     if scene.plan.has_layers {
         layers.make_room(scene.world, width, list);
     }
-    list.sectors.begin(scene);
+    list.sectors.begin(scene.world, walk::top_of_sky(scene));
     list.directions.begin(scene.projection);
     let counts = walk::walk(scene, caster, walk, list);
     let considered = layers::fill(scene, layers, list);

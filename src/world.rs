@@ -9,7 +9,7 @@
 //! and takes keys in its own copy of the world, so a renderer needs nothing else.
 //!
 //! Rendering and collision skip features that a world lacks, such as mirrors. These properties
-//! depend on the kinds of tile and sprite, of which there are few, and not on the cells.
+//! depend on the kinds of tile, which never change, and not on the cells.
 
 pub(crate) mod art;
 mod beam_table;
@@ -22,12 +22,14 @@ mod lamplight;
 mod light;
 mod mission;
 pub(crate) mod scene;
+mod sectors;
 pub mod sprite;
 #[cfg(any(test, debug_assertions))]
 mod tests;
 pub mod texture;
 mod things;
 mod tile;
+mod tile_facts;
 
 use std::sync::Arc;
 
@@ -47,6 +49,9 @@ pub(crate) use mission::Mission;
 pub use mission::{
     Difficulty, Driver, Duty, GuardKind, GuardPost, MovingTile, SwitchId, TileEffect,
 };
+pub(crate) use sectors::{
+    GapObject, PlaneSide, PlaneSurface, Sector, SectorId, Sectors, TileSectors,
+};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
 use things::Things;
@@ -55,6 +60,7 @@ pub use tile::{
     Ceiling, Covering, Gap, Glass, Heights, Line, Outline, Paint, Pattern, PillarRadius, Scale,
     Shape, ShapeHeight, TextureId, Tile, TileKind,
 };
+pub(crate) use tile_facts::TileFacts;
 
 /// The contents of a level.
 ///
@@ -76,7 +82,9 @@ pub struct World {
     grid: Grid,
     /// The grid as seen by rays that stop at uneven cells (only if the map has any).
     level_grid: Option<Grid>,
-    tiles: Vec<Tile>,
+    tiles: Arc<[Tile]>,
+    tile_facts: TileFacts,
+    sectors: Arc<Sectors>,
     textures: Arc<[Texture]>,
     floor: Covering,
     ceiling: Ceiling,
@@ -267,27 +275,31 @@ impl World {
         self.grid.tile_in(cell).map(|id| &self.tiles[usize::from(id.0)])
     }
 
+    /// What all kinds of tile have in common.
+    pub(crate) fn tile_facts(&self) -> &TileFacts {
+        &self.tile_facts
+    }
+
+    /// The sectors. Gaps under the sky have no top.
+    pub(crate) fn sectors(&self) -> &Sectors {
+        &self.sectors
+    }
+
     /// Returns whether all floors are at 0, and all ceilings, walls and shapes reach 1. Every ray
     /// then ends at the first wall or shape.
     pub fn is_level(&self) -> bool {
-        self.tiles.iter().all(Tile::has_level_heights)
+        self.tile_facts.are_level
     }
 
     /// Returns whether any tile is a mirror that shows an image.
     pub fn has_mirrors(&self) -> bool {
-        self.tiles.iter().any(Tile::reflects)
-    }
-
-    /// Returns whether any tile is a shape.
-    pub(crate) fn has_shapes(&self) -> bool {
-        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
+        self.tile_facts.reflect
     }
 
     /// Returns whether every solid tile is a wall, which shows one side and hides everything behind
     /// it.
     pub(crate) fn is_of_walls(&self) -> bool {
-        let is_plain = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Wall(_));
-        self.tiles.iter().all(is_plain)
+        self.tile_facts.are_of_walls
     }
 
     /// Returns whether lamps add light anywhere.
@@ -300,14 +312,6 @@ impl World {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
-    /// Returns whether the sky is above any tile other than a wall.
-    #[cfg(feature = "terminal")]
-    pub(crate) fn has_open_sky(&self) -> bool {
-        let is_open =
-            |tile: &Tile| tile.ceiling == Ceiling::Sky && !matches!(tile.kind, TileKind::Wall(_));
-        self.tiles.iter().any(is_open)
-    }
-
     /// An upper bound on the height that any thing reaches, wherever it stands or hangs; −∞ if
     /// there are no sprites.
     pub(crate) fn limit_of_things(&self) -> f64 {
@@ -315,14 +319,10 @@ impl World {
             let sprites = self.sprites.iter().filter(|sprite| sprite.anchor == anchor);
             sprites.map(|sprite| sprite.height.cells()).fold(f64::NEG_INFINITY, f64::max)
         };
-        let (standing, hanging) = (tallest(Anchor::Floor), tallest(Anchor::Ceiling));
-        let holds_things =
-            |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
-        let top_in = |Tile { heights, .. }: &Tile| {
-            let ceiling = if hanging > 0.0 { heights.ceiling() } else { f64::NEG_INFINITY };
-            ceiling.max(heights.floor() + standing)
-        };
-        self.tiles.iter().filter(holds_things).map(top_in).fold(f64::NEG_INFINITY, f64::max)
+        let TileFacts { highest_floor_of_things, highest_ceiling_of_things, .. } = self.tile_facts;
+        let standing = highest_floor_of_things + tallest(Anchor::Floor);
+        let hangs = tallest(Anchor::Ceiling) > 0.0;
+        if hangs { standing.max(highest_ceiling_of_things) } else { standing }
     }
 
     /// Builds a world of `parts` that fit together:
@@ -346,7 +346,9 @@ impl World {
             goal: parts.goal,
             grid: parts.grid,
             level_grid,
-            tiles: parts.tiles,
+            tile_facts: TileFacts::new(&parts.tiles, parts.floor, parts.ceiling),
+            sectors: Sectors::new(&parts.tiles).into(),
+            tiles: parts.tiles.into(),
             textures: parts.textures.into(),
             floor: parts.floor,
             ceiling: parts.ceiling,
@@ -392,6 +394,8 @@ impl World {
             grid: _,
             level_grid: _,
             tiles: _,
+            tile_facts: _,
+            sectors: _,
             textures: _,
             floor: _,
             ceiling: _,

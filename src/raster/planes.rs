@@ -24,10 +24,12 @@ use super::span_pair::SpanPairs;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
-    Backdrop, DrawList, Faded, FrameContext, Lighting, Pass, PlaneKind, PlaneSide, PlaneSurface,
-    Rows, SpanMapping, VisiblePlane,
+    Backdrop, DrawList, Faded, FrameContext, Lighting, Pass, PlaneKind, Rows, SpanMapping,
+    VisiblePlane,
 };
-use crate::world::{Covering, Light, Paint, Pattern, Tile, TileId, TileKind};
+use crate::world::{
+    Covering, Light, Paint, Pattern, PlaneSide, PlaneSurface, Tile, TileId, TileKind,
+};
 
 /// Memory for drawing planes, one for each thread.
 #[derive(Clone, Debug, Default)]

@@ -72,7 +72,7 @@ pub(crate) fn may_show(
     let covered = projection.columns_between(place.column - half, place.column + half);
     let rays = columns.get(covered.start as usize..covered.end as usize);
     let top = figure.base + sprite.height.cells();
-    world.has_open_sky() && top > Heights::LEVEL.ceiling()
+    world.tile_facts().have_open_sky && top > Heights::LEVEL.ceiling()
         || rays.is_none_or(|rays| rays.iter().any(|ray| place.depth <= ray.distance))
 }
 

@@ -8,11 +8,10 @@ use std::ops::Range;
 
 use super::face::{Face, FaceColumn, Material, Rows};
 use super::fan::Directions;
-use super::sectors::{PlaneSide, SectorId, Sectors};
 use super::{Billboard, Column};
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::world::{Light, Sprite, TileId};
+use crate::world::{Light, PlaneSide, SectorId, Sectors, Sprite, TileId};
 
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]

@@ -18,9 +18,8 @@ use glam::DVec2;
 use super::Projection;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows};
 use super::fan::Border;
-use super::sectors::{Sector, SectorId, TileSectors};
 use super::walk::{BorderGroup, ColumnMemory, SectorWalk, Visit, texture_coordinate_at};
-use crate::world::TileKind;
+use crate::world::{Sector, SectorId, TileKind, TileSectors};
 
 /// The height in the picture of a face on the grid, as a linear function of the column.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,12 +18,11 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::face::CellFace;
-use super::sectors::{SectorId, Sectors};
 use super::{FrameContext, Projection, WalkStats};
 use crate::cast::{
     Caster, CommonOrder, Course, DynCaster, MajorAxisTraversal, MirrorTransform, Order, Ray, Side,
 };
-use crate::world::{Cell, Grid, TileId};
+use crate::world::{Cell, Grid, SectorId, Sectors, TileId};
 
 /// Neighbouring columns whose rays leave a sector through one face.
 #[derive(Clone, Debug)]

@@ -17,11 +17,10 @@ use glam::DVec2;
 
 use super::draw_list::{BillboardPart, DrawList, Layer, RayPart, RaySegment};
 use super::face::Rows;
-use super::sectors::Sector;
 use super::visible_cells::VisibleCells;
 use super::{Billboard, FrameContext};
-use crate::world::World;
 use crate::world::sprite::builtin;
+use crate::world::{Sector, World};
 
 /// The number of mirror images for which memory is reserved in advance.
 pub(crate) const IMAGES_AT_ONCE: usize = 64;

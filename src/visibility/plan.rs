@@ -7,7 +7,7 @@
 use std::fmt;
 
 use crate::color::Rgb;
-use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Paint, Pattern, Sky, World};
 
 /// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,25 +82,17 @@ pub enum ThingLoop {
 impl FramePlan {
     /// The plan for views of `world`.
     pub fn new(world: &World, filter: Filter) -> Self {
-        let tiles = world.tiles();
-        let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
-        let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
-        let open = || tiles.iter().filter(is_open);
+        let tiles = world.tile_facts();
         let is_foggy = world.fog().is_some();
         let is_lamplit = world.has_lamplight();
-        let floor_varies =
-            is_lamplit || open().any(|tile| dims(tile) || tile.floor != world.floor());
-        let ceiling_varies =
-            is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
-        let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
-        let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
         Self {
-            floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
+            floor: PlaneLoop::new(world.floor(), is_lamplit || tiles.floors_differ, is_foggy),
             ceiling: match world.ceiling() {
-                Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
+                Ceiling::Sky if tiles.are_roofless => CeilingLoop::Sky,
                 Ceiling::Sky => CeilingLoop::Plane(PlaneLoop::Tiles),
                 Ceiling::Covered(covering) => {
-                    CeilingLoop::Plane(PlaneLoop::new(covering, ceiling_varies, is_foggy))
+                    let varies = is_lamplit || tiles.ceilings_differ;
+                    CeilingLoop::Plane(PlaneLoop::new(covering, varies, is_foggy))
                 }
             },
             sky: match world.sky() {
@@ -108,9 +100,9 @@ impl FramePlan {
                 Sky::Panorama(_) => SkyLoop::Panorama,
             },
             walls: WallLoop {
-                textured: tiles.iter().any(is_textured),
-                faded: is_foggy || tiles.iter().any(dims),
-                jambs: tiles.iter().any(is_door),
+                textured: tiles.have_textured_walls,
+                faded: is_foggy || tiles.are_dim,
+                jambs: tiles.have_doors,
             },
             things: match (world.things(), world.figures()) {
                 ([], []) => ThingLoop::None,
@@ -119,12 +111,7 @@ impl FramePlan {
             filter,
             has_layers: !world.things().is_empty()
                 || !world.figures().is_empty()
-                || tiles.iter().any(|tile| {
-                    matches!(
-                        tile.kind,
-                        TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_)
-                    )
-                }),
+                || tiles.have_see_through,
         }
     }
 }

@@ -22,13 +22,16 @@ use super::edges::WallBorder;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
 use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
 use super::projection::Rise;
-use super::sectors::{GapObject, PlaneSide, Sector, SectorId, TileSectors};
 use super::{FrameContext, Projection, WalkStats};
 use crate::cast::{
     Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
     is_from_left,
 };
-use crate::world::{Cell, FaceLight, Glass, Paint, Pattern, Sky, Tile, TileId, TileKind};
+use crate::world::sprite::builtin;
+use crate::world::{
+    Camera, Cell, FaceLight, GapObject, Glass, Paint, Pattern, PlaneSide, Sector, SectorId, Sky,
+    Tile, TileId, TileKind, TileSectors,
+};
 
 /// The greatest number of reflections of a ray. The mirror after the last one shows only its tint.
 pub(crate) const MAX_BOUNCES: u32 = 8;
@@ -166,6 +169,19 @@ impl WalkMemory {
             next.entries.reserve(width);
         }
     }
+}
+
+/// The height above which there is only sky; infinite if the eye is above it.
+pub(crate) fn top_of_sky(scene: FrameContext<'_>) -> f64 {
+    let FrameContext { world, projection, .. } = scene;
+    let mut top = world.tile_facts().top.max(world.top_of_figures());
+    if !world.things().is_empty() {
+        top = top.max(world.limit_of_things());
+    }
+    if world.has_mirrors() {
+        top = top.max(projection.eye() - Camera::STANDING + builtin::PLAYER_HEIGHT);
+    }
+    if projection.eye() < top { top } else { f64::INFINITY }
 }
 
 /// Walks from the camera of `scene` to everything in view, and adds it to `list`, whose sectors must be known.

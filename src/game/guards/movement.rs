@@ -158,7 +158,7 @@ impl GuardWorld<'_> {
             world: self.world,
             stature,
             step: 0.0,
-            has_shapes: self.world.has_shapes(),
+            has_shapes: self.world.tile_facts().have_shapes,
             others: &[],
         }
     }

@@ -239,7 +239,13 @@ impl Motion {
 
     fn place<'a>(&self, world: &'a World) -> WorldObstacles<'a> {
         let stature = Stature { feet: self.feet, height: self.stance.height() };
-        WorldObstacles { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
+        WorldObstacles {
+            world,
+            stature,
+            step: 0.0,
+            has_shapes: world.tile_facts().have_shapes,
+            others: &[],
+        }
     }
 
     /// Returns an error if the position is outside `world`, or if the stance or the turns are out

@@ -157,7 +157,7 @@ impl Missile {
             world,
             stature,
             step: 0.0,
-            has_shapes: world.has_shapes(),
+            has_shapes: world.tile_facts().have_shapes,
             others: &[],
         };
         let (position, is_stopped) = fly(&place, self.position, self.velocity * STEP, SIZE);

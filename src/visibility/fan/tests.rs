@@ -33,7 +33,7 @@ fn with_fan<T>(
     let plan = &FramePlan::new(world, Filter::Mip);
     let scene = FrameContext { world, camera, seconds: 0.0, projection, plan };
     let (mut sectors, mut directions) = (Sectors::default(), Directions::default());
-    sectors.begin(scene);
+    sectors.begin(world, f64::INFINITY);
     directions.begin(projection);
     let fan = Fan::new(scene, &sectors, &directions, None, 0);
     let place = [camera.position().x as i64, camera.position().y as i64];

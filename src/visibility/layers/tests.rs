@@ -47,7 +47,7 @@ proptest! {
         let (mut list, mut walked) = (DrawList::default(), WalkMemory::default());
         list.begin(projection.columns());
         walked.make_room(projection.columns());
-        list.sectors.begin(scene);
+        list.sectors.begin(world, walk::top_of_sky(scene));
         list.directions.begin(projection);
         walk::walk(scene, None, &mut walked, &mut list);
         let mut memory = LayerMemory::default();

@@ -2,19 +2,16 @@
 //!
 //! Neighbouring cells whose gaps have the same bottom and the same top look like one room, whatever their
 //! floors look like. There is no face between them, and a ray needs no new clip range from one to the next.
-//! Such gaps share one sector, as neighbouring cells would in a map of Doom. Sectors are found once per frame,
-//! for the height of the eye.
+//! Such gaps share one sector, as neighbouring cells would in a map of Doom. A world finds its sectors once.
 //!
-//! A gap under the sky ends at the height above which the world is empty. It has the same sector as a room with
-//! a ceiling at that height, so a level world that is half roofed is a single sector. If the eye is above that
-//! height, the gap has no top.
+//! A gap under the sky has no top. In a frame, it ends at the height above which the world is empty, and then
+//! has the same sector as a room with a ceiling at that height. A level world that is half roofed is therefore
+//! a single sector. If the eye is above that height, the gap has no top in the frame either.
 
-use super::FrameContext;
-use crate::world::sprite::builtin;
-use crate::world::{Camera, Ceiling, Covering, Gap, Heights, Light, Tile, TileId, TileKind, World};
+use super::{Ceiling, Covering, Gap, Heights, Light, Tile, TileId, TileKind, World};
 
-/// The sectors of a frame.
-#[derive(Clone, Debug, Default)]
+/// The sectors of a world, or of a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sectors {
     list: Vec<Sector>,
     of_tiles: Vec<TileSectors>,
@@ -25,7 +22,7 @@ pub(crate) struct Sectors {
 pub(crate) struct SectorId(u16);
 
 /// All gaps with the same bottom, the same top and the same object.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sector {
     pub(crate) bottom: f64,
     /// The height of the top; infinite if there is none.
@@ -38,7 +35,7 @@ pub(crate) struct Sector {
 }
 
 /// The sectors of the gaps of a tile.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TileSectors {
     pub(crate) lower: SectorId,
     /// The sector above the roof, if the tile has a room below the roof.
@@ -78,43 +75,75 @@ impl SectorId {
     pub(crate) const BEYOND: Self = Self(0);
     /// The sector of an eye that is in no gap.
     pub(crate) const SOLID: Self = Self(1);
+    /// The index of the first sector with cells.
+    const FIRST: usize = 2;
 }
 
 impl Sectors {
-    /// Finds the sectors of the tiles of `scene`.
-    pub(crate) fn begin(&mut self, scene: FrameContext<'_>) {
-        let world = scene.world;
-        self.list.clear();
-        self.of_tiles.clear();
-        // No tile has more than two gaps.
-        self.list.reserve(2 + 2 * world.tiles().len());
-        let top_of_sky = top_of_sky(scene);
-        let ground = PlaneSurface {
-            covering: Some(world.floor()),
-            light: world.ground().light.unwrap_or(Light::FULL),
-        };
+    /// Finds the sectors of `tiles`. The first tile is the map's own floor.
+    pub(crate) fn new(tiles: &[Tile]) -> Self {
+        // Off the map, there is the map's own floor under the sky, and nothing below it.
+        let ground = tiles[0];
+        let covering = Some(ground.floor);
+        let ground = PlaneSurface { covering, light: ground.light.unwrap_or(Light::FULL) };
         let sky = PlaneSurface { covering: None, light: Light::FULL };
-        for bottom in [0.0, BOTTOMLESS] {
-            self.list.push(Sector {
-                bottom,
-                top: top_of_sky,
-                holds: GapObject::Nothing,
-                surfaces: [ground, sky],
-                vary: [false; 2],
-            });
-        }
-        let are_lamplit = world.has_lamplight();
-        let tiles = (0..).map(TileId).zip(world.tiles());
-        self.of_tiles.extend(tiles.map(|(id, tile)| {
+        let off_map = |bottom| Sector {
+            bottom,
+            top: f64::INFINITY,
+            holds: GapObject::Nothing,
+            surfaces: [ground, sky],
+            vary: [false; 2],
+        };
+        let mut list = vec![off_map(0.0), off_map(BOTTOMLESS)];
+        let of_tiles = (0..).map(TileId).zip(tiles).map(|(id, tile)| {
             let mut gaps = tile.gaps().enumerate().map(|(index, gap)| {
                 let surfaces = PlaneSurface::of_gap(tile, gap, index > 0);
-                let holds = GapObject::new(id, tile, gap);
-                let gap = Gap { top: gap.top.min(top_of_sky), ..gap };
-                add(&mut self.list, gap, holds, surfaces, are_lamplit)
+                add(&mut list, gap, GapObject::new(id, tile, gap), surfaces)
             });
-            let lowest = gaps.next().unwrap_or(SectorId::SOLID);
-            TileSectors { lower: lowest, upper: gaps.next() }
-        }));
+            let lower = gaps.next().unwrap_or(SectorId::SOLID);
+            TileSectors { lower, upper: gaps.next() }
+        });
+        Self { of_tiles: of_tiles.collect(), list }
+    }
+
+    /// Makes these the sectors of a frame of `world`, in which gaps under the sky end at `top_of_sky`.
+    pub(crate) fn begin(&mut self, world: &World, top_of_sky: f64) {
+        let Self { list, of_tiles } = world.sectors();
+        self.list.clone_from(list);
+        self.of_tiles.clone_from(of_tiles);
+        let is_lamplit = world.has_lamplight();
+        for sector in &mut self.list {
+            sector.top = sector.top.min(top_of_sky);
+            sector.vary = sector.vary.map(|varies| varies || is_lamplit);
+        }
+        for open in SectorId::FIRST..list.len() {
+            let Sector { bottom, top, .. } = list[open];
+            if top == f64::INFINITY && bottom < top_of_sky && top_of_sky < top {
+                self.merge_with_roofed(list, open, top_of_sky);
+            }
+        }
+    }
+
+    /// Merges the sector at index `open`, which is under the sky in the world's own `list`, with the one that
+    /// has a ceiling at `top_of_sky`.
+    fn merge_with_roofed(&mut self, list: &[Sector], open: usize, top_of_sky: f64) {
+        let Sector { bottom, holds, .. } = list[open];
+        let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (bottom, top_of_sky, holds);
+        let roofed = list[SectorId::FIRST..].iter().position(is_it);
+        let Some(roofed) = roofed.map(|index| SectorId::FIRST + index) else { return };
+        let (kept, merged) = (open.min(roofed), open.max(roofed));
+        let differ = list[kept].differs_from(&list[merged]);
+        for side in [0, 1] {
+            self.list[kept].vary[side] |= differ[side] || list[merged].vary[side];
+        }
+        let (kept, merged) = (SectorId(kept as u16), SectorId(merged as u16));
+        for TileSectors { lower, upper } in &mut self.of_tiles {
+            for id in [Some(lower), upper.as_mut()].into_iter().flatten() {
+                if *id == merged {
+                    *id = kept;
+                }
+            }
+        }
     }
 
     /// The sectors of the gaps of `tile`.
@@ -194,35 +223,20 @@ fn add(
     gap: Gap,
     holds: GapObject,
     surfaces: [PlaneSurface; 2],
-    are_lamplit: bool,
 ) -> SectorId {
-    let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (gap.bottom, gap.top, holds);
-    // The first two sectors, `BEYOND` and `SOLID`, have no cells.
-    let known = list[2..].iter().position(is_it);
-    if let Some(index) = known {
-        let sector = &mut list[2 + index];
-        let differ = sector.surfaces.iter().zip(&surfaces).map(|(one, other)| one != other);
-        for (vary, differ) in sector.vary.iter_mut().zip(differ) {
-            *vary |= differ;
-        }
-        return SectorId(2 + index as u16);
-    }
     let Gap { bottom, top } = gap;
-    list.push(Sector { bottom, top, holds, surfaces, vary: [are_lamplit; 2] });
-    SectorId(list.len() as u16 - 1)
-}
-
-/// The height above which there is only sky; infinite if the eye is above it.
-fn top_of_sky(scene: FrameContext<'_>) -> f64 {
-    let FrameContext { world, projection, .. } = scene;
-    let mut top = world.tiles().iter().map(Tile::top).fold(world.top_of_figures(), f64::max);
-    if !world.things().is_empty() {
-        top = top.max(world.limit_of_things());
+    let new = Sector { bottom, top, holds, surfaces, vary: [false; 2] };
+    let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (bottom, top, holds);
+    let known = list[SectorId::FIRST..].iter().position(is_it);
+    let index = known.map_or(list.len(), |index| SectorId::FIRST + index);
+    match list.get_mut(index) {
+        Some(sector) => {
+            let differ = sector.differs_from(&new);
+            sector.vary = [0, 1].map(|side| sector.vary[side] || differ[side]);
+        }
+        None => list.push(new),
     }
-    if world.has_mirrors() {
-        top = top.max(projection.eye() - Camera::STANDING + builtin::PLAYER_HEIGHT);
-    }
-    if projection.eye() < top { top } else { f64::INFINITY }
+    SectorId(index as u16)
 }
 
 impl TileSectors {
@@ -237,6 +251,11 @@ impl Sector {
     /// Returns true if `height` is between its bottom and its top.
     pub(crate) fn is_inside(&self, height: f64) -> bool {
         self.bottom < height && height < self.top
+    }
+
+    /// Whether the floors, and whether the ceilings, of the first tiles look different.
+    fn differs_from(&self, other: &Self) -> [bool; 2] {
+        [0, 1].map(|side| self.surfaces[side] != other.surfaces[side])
     }
 
     /// Returns true if it has a height in common with `other`.
