@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::DVec2;
 
 #[cfg(feature = "terminal")]
-use super::{Column, Projection};
-use super::{Faded, FrameContext};
+use super::Projection;
+use super::{Column, Faded, FrameContext};
 use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
@@ -87,23 +87,65 @@ enum Pose {
     },
 }
 
+/// An image, and the rays of all columns if it is the direct one.
+pub(crate) type Image<'a> = (MirrorTransform, Option<&'a [Column]>);
+
+/// The place of a billboard on the map, and its columns in the picture.
+struct Placement {
+    center: DVec2,
+    depth: f64,
+    left: f64,
+    width: f64,
+    columns: Range<u32>,
+}
+
+impl Placement {
+    /// The placement of a sprite of this `width`, in cells, with its middle at a point on the map. `None` if it
+    /// is outside the picture, or behind the ends of all rays in its columns. Most things are, so this costs
+    /// less than their whole billboards.
+    fn new(
+        scene: FrameContext<'_>,
+        (image, rays): Image<'_>,
+        center: DVec2,
+        width: f64,
+    ) -> Option<Self> {
+        let projection = scene.projection;
+        let place = projection.place(image.in_image(center));
+        let depth = place.depth;
+        if !(NEAREST..f64::INFINITY).contains(&depth) {
+            return None;
+        }
+        let width = projection.columns_for(width, depth);
+        let left = place.column - width / 2.0;
+        let columns = projection.columns_between(left, left + width);
+        let is_reached = match rays {
+            Some(rays) => {
+                let mut rays = rays[columns.start as usize..columns.end as usize].iter();
+                rays.any(|ray| depth < ray.distance)
+            }
+            None => !columns.is_empty(),
+        };
+        is_reached.then_some(Self { center, depth, left, width, columns })
+    }
+}
+
 impl Billboard {
     /// The billboard of `thing` in an image; `None` if it is outside the picture.
     pub(crate) fn of_thing(
         scene: FrameContext<'_>,
-        image: MirrorTransform,
+        image: Image<'_>,
         thing: Thing,
     ) -> Option<Self> {
         let world = scene.world;
         let sprite = world.sprite(thing.sprite);
+        let place = Placement::new(scene, image, thing.cell.center(), sprite.width())?;
         let base = sprite.base(world.room_in(thing.cell));
         let light = world.light_in(thing.cell);
-        let place = (thing.cell.center(), base);
         let pose = match thing.frame {
             None => Pose::AtTime(scene.seconds),
             Some(frame) => Pose::Fixed { frame: usize::from(frame), heading: sprite.heading },
         };
-        let billboard = Self::new(scene, image, sprite, pose, place, light)?;
+        let billboard = Self::new(scene, image.0, sprite, pose, (place, base), light)?;
         let order = (thing.cell.row, thing.cell.column, thing.sprite.0, 0);
         let (sprite, is_animated) = (Some(thing.sprite), thing.frame.is_none());
         Some(Self { sprite, is_animated, order, ..billboard })
@@ -112,7 +154,7 @@ impl Billboard {
     /// The billboards, in an image, of the figures that are at least partly inside the picture.
     pub(crate) fn of_figures(
         scene: FrameContext<'_>,
-        image: MirrorTransform,
+        image: Image<'_>,
     ) -> impl Iterator<Item = Self> {
         let figures = (1..).zip(scene.world.figures());
         figures.filter_map(move |(number, figure)| Self::of_figure(scene, image, number, figure))
@@ -122,16 +164,17 @@ impl Billboard {
     /// unknown sprite.
     fn of_figure(
         scene: FrameContext<'_>,
-        image: MirrorTransform,
+        image: Image<'_>,
         number: u32,
         figure: &Figure,
     ) -> Option<Self> {
         let world = scene.world;
         let &Figure { position, base, heading, frame, opacity, .. } = figure;
         let sprite = world.sprites().get(usize::from(figure.sprite.0)).filter(|_| opacity > 0)?;
+        let place = Placement::new(scene, image, position, sprite.width())?;
         let pose = Pose::Fixed { frame: usize::from(frame), heading };
         let light = world.light_on(figure);
-        let billboard = Self::new(scene, image, sprite, pose, (position, base), light)?;
+        let billboard = Self::new(scene, image.0, sprite, pose, (place, base), light)?;
         let lighting = billboard.lighting.filter(|_| !sprite.glows);
         let (row, column) = figure.cell().map_or((0, 0), |cell| (cell.row, cell.column));
         let order = (row, column, figure.sprite.0, number);
@@ -141,38 +184,32 @@ impl Billboard {
     /// The billboard of the player in an image, drawn as `figure`.
     pub(crate) fn of_player(
         scene: FrameContext<'_>,
-        image: MirrorTransform,
+        image: Image<'_>,
         figure: &Sprite,
     ) -> Option<Self> {
-        let place = scene.projection.origin();
+        let origin = scene.projection.origin();
+        let place = Placement::new(scene, image, origin, figure.width())?;
         let base = scene.projection.eye() - Camera::STANDING;
-        let cell = Cell::containing(place);
+        let cell = Cell::containing(origin);
         let light = cell.map_or(Light::FULL, |cell| scene.world.light_in(cell));
-        Self::new(scene, image, figure, Pose::AtTime(0.0), (place, base), light)
+        Self::new(scene, image.0, figure, Pose::AtTime(0.0), (place, base), light)
     }
 
-    /// The billboard of `sprite` with its middle at a point on the map, and its base at a height.
+    /// The billboard of `sprite` at a place, with its base at a height.
     fn new(
         scene: FrameContext<'_>,
         image: MirrorTransform,
         sprite: &Sprite,
         pose: Pose,
-        (center, base): (DVec2, f64),
+        (place, base): (Placement, f64),
         light: Light,
     ) -> Option<Self> {
         let FrameContext { world, projection, plan, .. } = scene;
-        let place = projection.place(image.in_image(center));
-        let depth = place.depth;
-        if !(NEAREST..f64::INFINITY).contains(&depth) {
-            return None;
-        }
-        let width = projection.columns_for(sprite.width(), depth);
-        let left = place.column - width / 2.0;
-        let columns = projection.columns_between(left, left + width);
+        let Placement { center, depth, left, width, columns } = place;
         let top = projection.row_at(base + sprite.height.cells(), depth);
         let bottom = projection.row_at(base, depth);
         let rows = projection.rows_between(top, bottom);
-        if columns.is_empty() || rows.is_empty() {
+        if rows.is_empty() {
             return None;
         }
         let to_viewer = image.to_map(projection.origin()) - center;

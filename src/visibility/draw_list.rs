@@ -37,6 +37,8 @@ pub(crate) struct DrawList {
     pub(crate) passed: Vec<Layer>,
     /// The columns of the ray parts in `passed`.
     pub(crate) stretches: Vec<RaySegment>,
+    /// The columns at the corners of the ray parts.
+    pub(crate) corners: Vec<u32>,
     /// The items in front of all planes and opaque faces, in the order of painting.
     pub(crate) layers: Vec<Layer>,
     pub(crate) billboards: Vec<Billboard>,
@@ -89,6 +91,9 @@ pub(crate) struct RayPart {
     pub(crate) columns: Range<u32>,
     /// The index of the first stretch. The others follow.
     pub(crate) first: usize,
+    /// The indices of the columns at the corners of the area that the parts cover on the map. Between two of
+    /// them, the ends of the rays are on a straight line.
+    pub(crate) corners: Range<usize>,
     pub(crate) sector: SectorId,
     /// The height of a pillar's top below the parts. The top hides everything lower.
     pub(crate) top_below: Option<f64>,
@@ -143,6 +148,7 @@ impl DrawList {
         self.face_columns.reserve(width * OF_A_COLUMN);
         self.passed.clear();
         self.stretches.clear();
+        self.corners.clear();
         self.layers.clear();
         self.billboards.clear();
         self.billboard_rows.clear();
@@ -155,6 +161,7 @@ impl DrawList {
         self.see_through.reserve(4 * width);
         self.passed.reserve(8 * width);
         self.stretches.reserve(width * OF_A_COLUMN);
+        self.corners.reserve(width * OF_A_COLUMN);
         self.layers.reserve(8 * width);
         self.billboards.reserve(billboards);
         self.billboard_rows.reserve(width * OF_A_COLUMN);

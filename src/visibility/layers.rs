@@ -89,19 +89,22 @@ fn find_billboards(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &mut
     look(scene, memory, list);
     let mut considered = 0;
     memory.of_image.clear();
-    for (index, &image) in list.images.iter().enumerate() {
-        let start = list.billboards.len();
+    let DrawList { images, columns, billboards, player, .. } = list;
+    for (index, &image) in images.iter().enumerate() {
+        let start = billboards.len();
+        let is_direct = index == 0;
+        let image = (image, is_direct.then_some(columns.as_slice()));
         for &thing in memory.visible[index].things(world) {
             considered += 1;
-            list.billboards.extend(Billboard::of_thing(scene, image, thing));
+            billboards.extend(Billboard::of_thing(scene, image, thing));
         }
         considered += world.figures().len() as u64;
-        list.billboards.extend(Billboard::of_figures(scene, image));
-        if let Some(player) = list.player.as_ref().filter(|_| index > 0 && !has_own_figure(scene)) {
-            list.billboards.extend(Billboard::of_player(scene, image, player));
+        billboards.extend(Billboard::of_figures(scene, image));
+        if let Some(player) = player.as_ref().filter(|_| !is_direct && !has_own_figure(scene)) {
+            billboards.extend(Billboard::of_player(scene, image, player));
         }
-        list.billboards[start..].sort_unstable_by(from_near_to_far);
-        memory.of_image.push(start..list.billboards.len());
+        billboards[start..].sort_unstable_by(from_near_to_far);
+        memory.of_image.push(start..billboards.len());
     }
     considered
 }
@@ -111,7 +114,8 @@ fn look(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &DrawList) {
     let world = scene.world;
     let images = list.images.len();
     memory.make_images(world, images);
-    if memory.visible[..images].iter_mut().all(|visible| visible.shows_all_of(world)) {
+    let mut visible = memory.visible[..images].iter_mut();
+    if visible.all(|visible| visible.shows_all_of(world, images)) {
         return;
     }
     memory.extents.clear();
@@ -130,7 +134,7 @@ fn look(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &DrawList) {
     for_each_edge(scene, list, |image, [one, other]| visible[image].follow(one, other));
 }
 
-/// Calls `follow` with the index of the image and each edge of the area on the map that a ray part covers. It
+/// Calls `follow` with the index of the image and each edge of the area on the map that ray parts cover. It
 /// skips edges whose ends are not finite. In the direct image, it also skips edges at which a part begins,
 /// because another part ends there.
 fn for_each_edge(
@@ -147,14 +151,16 @@ fn for_each_edge(
             let direction = list.directions.of(column);
             [stretch.from, stretch.to].map(|t| part.image.to_map(origin + direction * t))
         };
-        let mut before = ends(part.columns.start);
+        let mut corners = list.corners[part.corners.clone()].iter();
+        let Some(&first) = corners.next() else { continue };
+        let mut before = ends(first);
         let mut follow = |edge: [DVec2; 2]| {
             if edge.iter().all(|end| end.is_finite()) {
                 follow(index, edge);
             }
         };
         follow(before);
-        for column in part.columns.start + 1..part.columns.end {
+        for &column in corners {
             let after = ends(column);
             if index > 0 {
                 follow([before[0], after[0]]);

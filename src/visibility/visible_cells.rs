@@ -47,10 +47,11 @@ impl ColumnInterval {
 }
 
 impl VisibleCells {
-    /// Makes all things of `world` count as visible if they are few. Returns whether they are few.
-    pub(crate) fn shows_all_of(&mut self, world: &World) -> bool {
-        const FEW: usize = 16;
-        self.shows_all = world.things().len() <= FEW;
+    /// Makes all things of `world` count as visible if they are few. `images` is the number of images in which
+    /// each is looked for. Returns whether they are few.
+    pub(crate) fn shows_all_of(&mut self, world: &World, images: usize) -> bool {
+        const FEW: usize = 64;
+        self.shows_all = world.things().len() * images <= FEW;
         self.shows_all
     }
 

@@ -347,7 +347,7 @@ impl SectorWalk<'_> {
         let projection = self.scene.projection;
         let (eye, ground) = (projection.eye(), projection.first_row_of_ground());
         if self.has_things {
-            self.add_part(visit, range.clone(), None);
+            self.add_part(visit, sector, range.clone(), None);
         }
         // At the height of a plane, the eye sees the point of the plane at its own position.
         let shows_floor = eye >= sector.bottom;
@@ -398,7 +398,8 @@ impl SectorWalk<'_> {
         from[indices.clone()].copy_from_slice(&t[indices]);
     }
 
-    /// Extends the distances of the columns in `range` to `t`, if they have open rows.
+    /// Extends the distances of the columns in `range` to `t`, if they have open rows. No billboard behind them
+    /// is in view.
     fn extend_distances(&mut self, range: &Range<u32>) {
         let ColumnMemory { starts, ends, t, .. } = &self.memory.columns;
         for x in range.start as usize..range.end as usize {
@@ -449,7 +450,26 @@ impl SectorWalk<'_> {
     }
 
     /// Adds the parts of the rays in `range` up to the distances `t`, in which billboards may show.
-    fn add_part(&mut self, visit: &Visit, range: Range<u32>, top_below: Option<f64>) {
+    fn add_part(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        range: Range<u32>,
+        top_below: Option<f64>,
+    ) {
+        let first_corner = self.list.corners.len();
+        if sector.holds == GapObject::Standing {
+            // The rays begin or end at an object, which may be round.
+            self.list.corners.extend(range.clone());
+        } else {
+            for Border { columns, .. } in &self.memory.borders {
+                self.list.corners.push(columns.start);
+                if columns.len() > 1 {
+                    self.list.corners.push(columns.end - 1);
+                }
+            }
+        }
+        let corners = first_corner..self.list.corners.len();
         let ColumnMemory { starts, ends, from, t, .. } = &self.memory.columns;
         let first = self.list.stretches.len();
         self.list.stretches.extend(range.clone().map(|column| {
@@ -457,9 +477,14 @@ impl SectorWalk<'_> {
             let rows = Rows { start: starts[x], end: ends[x] };
             RaySegment { rows, from: from[x], to: t[x] }
         }));
-        let part =
-            RayPart { columns: range, first, sector: visit.sector, top_below, image: visit.image };
-        self.list.passed.push(Layer::Part(part));
+        self.list.passed.push(Layer::Part(RayPart {
+            columns: range,
+            first,
+            corners,
+            sector: visit.sector,
+            top_below,
+            image: visit.image,
+        }));
     }
 
     /// Shows the surfaces at the faces through which the rays leave the sector, and stores the visits behind
@@ -876,7 +901,7 @@ impl SectorWalk<'_> {
         while let Some(start) = rest.clone().find(|&column| is_seen(self, column)) {
             let end = (start..rest.end).find(|&column| !is_seen(self, column)).unwrap_or(rest.end);
             rest.start = end;
-            self.look_down_at(visit, start..end, id, tile.top_of_what_stands());
+            self.look_down_at(visit, sector, start..end, (id, tile.top_of_what_stands()));
         }
     }
 
@@ -946,7 +971,13 @@ impl SectorWalk<'_> {
     }
 
     /// Shows the top of a pillar of the tile `id`, as the rays of `range` see it from above.
-    fn look_down_at(&mut self, visit: &Visit, range: Range<u32>, id: TileId, top: f64) {
+    fn look_down_at(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        range: Range<u32>,
+        (id, top): (TileId, f64),
+    ) {
         let projection = self.scene.projection;
         let first = visit.columns.start;
         let WalkMemory { columns, passages, .. } = &mut *self.memory;
@@ -956,7 +987,10 @@ impl SectorWalk<'_> {
         }
         // Things on the top are in front of it.
         if self.has_things {
-            self.add_part(visit, range.clone(), Some(top));
+            self.add_part(visit, sector, range.clone(), Some(top));
+        }
+        if visit.bounces == 0 {
+            self.extend_distances(&range);
         }
         let ColumnMemory { starts, ends, from, t, .. } = &mut self.memory.columns;
         let rows = range.clone().map(|column| {
