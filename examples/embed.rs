@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let panels = [Constraint::Fill(1), Constraint::Length(40)];
             let [picture, map] = Layout::horizontal(panels).areas(frame.area());
             frame.render_stateful_widget(FirstPerson::new(&world, &camera), picture, &mut view);
-            frame.render_widget(Minimap::new(&world, &camera).seen(view.columns()), map);
+            frame.render_widget(Minimap::new(&world, &camera).seen(view.distances()), map);
         })?;
         let Event::Key(key) = event::read()? else { continue };
         camera.heading = match key.code {

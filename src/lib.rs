@@ -94,7 +94,7 @@
 //!     let [left, right] = Layout::horizontal(panels).areas(frame.area());
 //!     let (world, camera) = (game.world(), game.camera(FieldOfView::default()));
 //!     frame.render_stateful_widget(FirstPerson::new(world, &camera), left, &mut view);
-//!     frame.render_widget(Minimap::new(world, &camera).seen(view.columns()), right);
+//!     frame.render_widget(Minimap::new(world, &camera).seen(view.distances()), right);
 //! })?;
 //! # }
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -21,8 +21,8 @@ use std::fmt;
 use std::num::NonZero;
 
 pub use crate::visibility::{
-    CeilingLoop, Column, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect,
-    PlaneLoop, Projection, SkyLoop, Surface, ThingLoop, WalkStats, WallLoop,
+    CeilingLoop, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect, PlaneLoop,
+    Projection, SkyLoop, Surface, ThingLoop, WalkStats, WallLoop,
 };
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};
@@ -153,12 +153,13 @@ impl Renderer {
         figure: &Figure,
     ) -> bool {
         let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        world.has_mirrors() || visibility::may_show(world, &projection, self.columns(), figure)
+        world.has_mirrors() || visibility::may_show(world, &projection, self.distances(), figure)
     }
 
-    /// The hits of the last frame's rays, one for each column of pixels, from left to right.
-    pub fn columns(&self) -> &[Column] {
-        &self.memory.list.columns
+    /// The distances from the camera plane at which the last frame's rays ended, at a wall or at the
+    /// edge of the map, in cells. There is one for each column of pixels, from left to right.
+    pub fn distances(&self) -> &[f64] {
+        &self.memory.list.distances
     }
 
     /// The surface that the pixel `(x, y)` of the last frame shows; `None` if there is no such pixel, or if

@@ -18,7 +18,7 @@
 //!     let panels = [Constraint::Fill(1), Constraint::Length(24)];
 //!     let [picture, map] = Layout::horizontal(panels).areas(frame.area());
 //!     frame.render_stateful_widget(FirstPerson::new(&world, &camera), picture, &mut view);
-//!     frame.render_widget(Minimap::new(&world, &camera).seen(view.columns()), map);
+//!     frame.render_widget(Minimap::new(&world, &camera).seen(view.distances()), map);
 //! };
 //! # let mut terminal = ratatui::Terminal::new(ratatui::backend::TestBackend::new(80, 24))?;
 //! # terminal.draw(draw)?;

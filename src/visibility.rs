@@ -13,7 +13,6 @@
 //! light and a mip level, and a span computes these once for many pixels.
 
 mod billboard;
-mod column;
 mod draw_list;
 mod edges;
 mod face;
@@ -24,6 +23,7 @@ mod plan;
 mod projection;
 mod span_mapping;
 mod stats;
+mod surface;
 mod texture_stepper;
 mod visible_cells;
 mod walk;
@@ -31,7 +31,6 @@ mod walk;
 pub(crate) use billboard::Billboard;
 #[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
-pub use column::{Column, Surface};
 pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, PlaneKind, VisiblePlane};
 pub(crate) use edges::{FaceEdges, SlopedEdge};
 pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
@@ -42,6 +41,7 @@ pub use projection::{FrameSize, PixelAspect};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::StatsCounter;
 pub use stats::{FrameStats, Pass, PassStats, WalkStats};
+pub use surface::Surface;
 pub(crate) use texture_stepper::{FaceTexels, TextureStepper};
 
 use crate::cast::DynCaster;

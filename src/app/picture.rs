@@ -606,7 +606,7 @@ impl MapPanel {
         view: &'a View,
     ) -> Minimap<'a> {
         let map = Minimap::new(game.world(), camera)
-            .seen(view.columns())
+            .seen(view.distances())
             .zoom(self.zoom)
             .offset(self.offset);
         match self.display {

@@ -11,7 +11,7 @@ use super::correction::{Edge, outline};
 use super::{CellAspect, Correction, GlyphSet, ascii, blocks};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
-    Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
+    DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
 };
 use crate::world::World;
 #[cfg(feature = "terminal")]
@@ -254,9 +254,9 @@ impl View {
         self.renderer.may_show(world, camera, &self.frame, figure)
     }
 
-    /// The hits of the last picture's rays, from left to right.
-    pub fn columns(&self) -> &[Column] {
-        self.renderer.columns()
+    /// The distances at which the last picture's rays ended, in cells, from left to right.
+    pub fn distances(&self) -> &[f64] {
+        self.renderer.distances()
     }
 }
 

@@ -19,7 +19,6 @@ use super::glyphs::color_at;
 use super::{GlyphSet, blocks};
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
-use crate::render::Column;
 use crate::world::{Camera, Heading, World};
 
 /// A widget that shows the map from above: walls in their colours, floor by its height, the player as an arrow, and
@@ -31,7 +30,7 @@ use crate::world::{Camera, Heading, World};
 pub struct Minimap<'a> {
     world: &'a World,
     camera: &'a Camera,
-    columns: &'a [Column],
+    distances: &'a [f64],
     explored: Option<&'a Explored>,
     marks: &'a [MapMark],
     ghost: Option<MapMark>,
@@ -47,7 +46,7 @@ impl<'a> Minimap<'a> {
         Self {
             world,
             camera,
-            columns: &[],
+            distances: &[],
             explored: None,
             marks: &[],
             ghost: None,
@@ -58,11 +57,11 @@ impl<'a> Minimap<'a> {
         }
     }
 
-    /// Sets the hits that bound the visible floor. They must come from a picture by the same
-    /// camera.
+    /// Sets the distances of the rays that bound the visible floor. They must come from a picture
+    /// by the same camera.
     #[must_use]
-    pub fn seen(self, columns: &'a [Column]) -> Self {
-        Self { columns, ..self }
+    pub fn seen(self, distances: &'a [f64]) -> Self {
+        Self { distances, ..self }
     }
 
     /// Shows only the cells in `explored`. By default, the whole map is shown.
@@ -123,7 +122,7 @@ impl Minimap<'_> {
             return;
         }
         let window = self.window(area);
-        let seen = (self.columns, self.explored);
+        let seen = (self.distances, self.explored);
         // The width of a pixel in cells of the map.
         let pixel = 1.0 / window.scale.x;
         let top_view = TopView::new(self.world, self.camera, seen, pixel);

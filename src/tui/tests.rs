@@ -123,6 +123,6 @@ fn the_layout_example_works_in_any_window() {
         let panels = [Constraint::Fill(1), Constraint::Length(40)];
         let [picture, map] = Layout::horizontal(panels).areas(buffer.area);
         FirstPerson::new(&world, &camera).render(picture, &mut buffer, &mut view);
-        Minimap::new(&world, &camera).seen(view.columns()).render(map, &mut buffer);
+        Minimap::new(&world, &camera).seen(view.distances()).render(map, &mut buffer);
     }
 }

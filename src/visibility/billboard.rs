@@ -6,7 +6,7 @@ use glam::DVec2;
 
 #[cfg(feature = "terminal")]
 use super::Projection;
-use super::{Column, Faded, FrameContext};
+use super::{Faded, FrameContext};
 use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
@@ -51,14 +51,14 @@ pub(crate) struct Billboard {
     pub(crate) order: (u32, u32, u16, u32),
 }
 
-/// Returns whether `figure`, or its mark on a map of the view, may be seen in a picture with the rays
-/// `columns`. The picture must have no mirrors. The figure may be seen if a part of it is nearer than the end
+/// Returns whether `figure`, or its mark on a map of the view, may be seen in a picture whose rays end at
+/// `distances`. The picture must have no mirrors. The figure may be seen if a part of it is nearer than the end
 /// of a ray, or if it rises above level walls under the sky.
 #[cfg(feature = "terminal")]
 pub(crate) fn may_show(
     world: &World,
     projection: &Projection,
-    columns: &[Column],
+    distances: &[f64],
     figure: &Figure,
 ) -> bool {
     /// The number of columns on each side of the figure that are also checked: more than the rounding error.
@@ -70,10 +70,10 @@ pub(crate) fn may_show(
     }
     let half = projection.columns_for(sprite.width(), place.depth) / 2.0 + MARGIN;
     let covered = projection.columns_between(place.column - half, place.column + half);
-    let rays = columns.get(covered.start as usize..covered.end as usize);
+    let ends = distances.get(covered.start as usize..covered.end as usize);
     let top = figure.base + sprite.height.cells();
     world.tile_facts().have_open_sky && top > Heights::LEVEL.ceiling()
-        || rays.is_none_or(|rays| rays.iter().any(|ray| place.depth <= ray.distance))
+        || ends.is_none_or(|ends| ends.iter().any(|&end| place.depth <= end))
 }
 
 /// The frame and the heading that a billboard shows.
@@ -87,8 +87,8 @@ enum Pose {
     },
 }
 
-/// An image, and the rays of all columns if it is the direct one.
-pub(crate) type Image<'a> = (MirrorTransform, Option<&'a [Column]>);
+/// An image, and the distances at which the rays of all columns end if it is the direct one.
+pub(crate) type Image<'a> = (MirrorTransform, Option<&'a [f64]>);
 
 /// The place of a billboard on the map, and its columns in the picture.
 struct Placement {
@@ -105,7 +105,7 @@ impl Placement {
     /// less than their whole billboards.
     fn new(
         scene: FrameContext<'_>,
-        (image, rays): Image<'_>,
+        (image, distances): Image<'_>,
         center: DVec2,
         width: f64,
     ) -> Option<Self> {
@@ -118,10 +118,10 @@ impl Placement {
         let width = projection.columns_for(width, depth);
         let left = place.column - width / 2.0;
         let columns = projection.columns_between(left, left + width);
-        let is_reached = match rays {
-            Some(rays) => {
-                let mut rays = rays[columns.start as usize..columns.end as usize].iter();
-                rays.any(|ray| depth < ray.distance)
+        let is_reached = match distances {
+            Some(ends) => {
+                let mut ends = ends[columns.start as usize..columns.end as usize].iter();
+                ends.any(|&end| depth < end)
             }
             None => !columns.is_empty(),
         };

@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
+use super::Billboard;
 use super::face::{Face, FaceColumn, Material, Rows};
 use super::fan::Directions;
-use super::{Billboard, Column};
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
 use crate::world::{Light, PlaneSide, SectorId, Sectors, Sprite, TileId};
@@ -16,8 +16,8 @@ use crate::world::{Light, PlaneSide, SectorId, Sectors, Sprite, TileId};
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DrawList {
-    /// The hit of the ray of each column of pixels.
-    pub(crate) columns: Vec<Column>,
+    /// The distance from the camera plane to the end of each column's ray, at a wall or at the edge of the map.
+    pub(crate) distances: Vec<f64>,
     /// The directions of the rays of all columns.
     pub(crate) directions: Directions,
     pub(crate) sectors: Sectors,
@@ -132,8 +132,8 @@ impl DrawList {
     /// columns. A turn of the camera towards more faces then allocates nothing.
     pub(crate) fn begin(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
-        self.columns.clear();
-        self.columns.resize(width, Column::UNKNOWN);
+        self.distances.clear();
+        self.distances.resize(width, 0.0);
         self.images.clear();
         self.images.push(MirrorTransform::default());
         self.backdrops = [None; 2];

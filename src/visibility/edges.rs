@@ -339,7 +339,6 @@ impl SectorWalk<'_> {
         let first = self.list.face_columns.len();
         self.list.face_columns.extend(self.memory.columns.of_face(&columns));
         let light = self.light_on_face(visit, group);
-        self.set_hits(visit, group, columns.start, first);
         self.list.push_face(Face {
             columns: columns.clone(),
             first,
@@ -410,7 +409,6 @@ impl SectorWalk<'_> {
     ) {
         let Border { columns, face, into } = self.memory.borders[border].clone();
         let Some((_, id)) = into else { return };
-        let is_own = columns.contains(&x);
         let group = &BorderGroup { borders: border..border + 1, columns, face };
         let tile = &self.scene.world.tiles()[usize::from(id.0)];
         let paint = self.paint_of_rock(visit, group, tile);
@@ -432,9 +430,6 @@ impl SectorWalk<'_> {
             image: visit.image,
             edges: Some(edges),
         });
-        if is_own {
-            self.set_hits(visit, group, x, first);
-        }
     }
 }
 

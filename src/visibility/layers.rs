@@ -89,11 +89,11 @@ fn find_billboards(scene: FrameContext<'_>, memory: &mut LayerMemory, list: &mut
     look(scene, memory, list);
     let mut considered = 0;
     memory.of_image.clear();
-    let DrawList { images, columns, billboards, player, .. } = list;
+    let DrawList { images, distances, billboards, player, .. } = list;
     for (index, &image) in images.iter().enumerate() {
         let start = billboards.len();
         let is_direct = index == 0;
-        let image = (image, is_direct.then_some(columns.as_slice()));
+        let image = (image, is_direct.then_some(distances.as_slice()));
         for &thing in memory.visible[index].things(world) {
             considered += 1;
             billboards.extend(Billboard::of_thing(scene, image, thing));

@@ -401,11 +401,13 @@ impl SectorWalk<'_> {
     /// Extends the distances of the columns in `range` to `t`, if they have open rows. No billboard behind them
     /// is in view.
     fn extend_distances(&mut self, range: &Range<u32>) {
+        let range = range.start as usize..range.end as usize;
         let ColumnMemory { starts, ends, t, .. } = &self.memory.columns;
-        for x in range.start as usize..range.end as usize {
-            if starts[x] < ends[x] {
-                let column = &mut self.list.columns[x];
-                column.distance = column.distance.max(t[x]);
+        let rows = starts[range.clone()].iter().zip(&ends[range.clone()]);
+        let distances = self.list.distances[range.clone()].iter_mut().zip(&t[range]);
+        for ((distance, &t), (start, end)) in distances.zip(rows) {
+            if start < end && t > *distance {
+                *distance = t;
             }
         }
     }
@@ -717,8 +719,7 @@ impl SectorWalk<'_> {
         self.show_face(visit, group, material, (bottom, top));
     }
 
-    /// Adds a face at `group` in the rows between `tops` and `bottoms`. An opaque face becomes the hit of its
-    /// columns.
+    /// Adds a face at `group` in the rows between `tops` and `bottoms`.
     fn show_face(
         &mut self,
         visit: &Visit,
@@ -737,9 +738,6 @@ impl SectorWalk<'_> {
         }
         let first = self.list.face_columns.len();
         self.list.face_columns.extend(self.memory.columns.of_face(range));
-        if matches!(material, Material::Opaque(_)) {
-            self.set_hits(visit, group, group.columns.start, first);
-        }
         self.list.push_face(Face {
             columns: range.clone(),
             first,
@@ -751,26 +749,6 @@ impl SectorWalk<'_> {
             image: visit.image,
             edges: None,
         });
-    }
-
-    /// Stores the faces of `group` as hits of the columns that show them, from column `x` on. `first` is the
-    /// index of the face column of `x`.
-    pub(crate) fn set_hits(&mut self, visit: &Visit, group: &BorderGroup, x: u32, first: usize) {
-        if visit.bounces > 0 {
-            return;
-        }
-        let mut shown = self.list.face_columns[first..].iter();
-        for Border { columns: range, face, into } in &self.memory.borders[group.borders.clone()] {
-            let columns = range.start.max(x) as usize..range.end.max(x) as usize;
-            for (column, shown) in self.list.columns[columns].iter_mut().zip(&mut shown) {
-                let &FaceColumn { rows, t, u } = shown;
-                // A wall above or below the picture is also a hit.
-                if !rows.is_empty() || column.hit.is_none() {
-                    let hit = into.map(|(cell, _)| Hit { cell, side: face.side, t, u });
-                    column.hit = hit.or(column.hit);
-                }
-            }
-        }
     }
 
     /// Returns true if there is glass or a mask behind `group`.
@@ -953,7 +931,7 @@ impl SectorWalk<'_> {
             image: visit.image,
             edges: None,
         };
-        let shown = range.clone().zip(hits.clone()).map(|(column, Hit { t, u, .. })| {
+        let shown = range.zip(hits).map(|(column, Hit { t, u, .. })| {
             let x = column as usize;
             let above = projection.row_of_height(top, t);
             let start = columns.starts[x].max(above);
@@ -963,11 +941,6 @@ impl SectorWalk<'_> {
         });
         self.list.face_columns.extend(shown);
         self.list.push_face(face);
-        if visit.bounces == 0 {
-            for (column, hit) in range.zip(hits) {
-                self.list.columns[column as usize].hit = Some(hit);
-            }
-        }
     }
 
     /// Shows the top of a pillar of the tile `id`, as the rays of `range` see it from above.

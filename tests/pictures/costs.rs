@@ -85,7 +85,7 @@ fn opaque_tiles_keep_one_hit_per_column() {
         let mut renderer = Renderer::new();
         let stats = renderer.explain(&world, &camera, &mut frame()).stats;
         assert_eq!(stats.see_through, PassStats::default());
-        assert_eq!(renderer.columns().len(), WIDTH as usize, "{name}");
+        assert_eq!(renderer.distances().len(), WIDTH as usize, "{name}");
     }
 }
 

@@ -149,8 +149,8 @@ fn a_distance_of_zero_is_never_negative() {
         let position = DVec2::new(1.0, -0.0);
         let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
         renderer.render(&world, &camera, &mut frame);
-        let distances = renderer.columns().iter().map(|column| column.distance);
-        assert!(distances.clone().any(|distance| distance == 0.0));
-        assert!(distances.clone().all(f64::is_sign_positive), "{degrees}");
+        let distances = renderer.distances();
+        assert!(distances.contains(&0.0));
+        assert!(distances.iter().all(|distance| distance.is_sign_positive()), "{degrees}");
     }
 }

@@ -536,18 +536,18 @@ fn a_ceiling_continues_over_a_step_at_pixel_centres() {
 }
 
 #[test]
-fn a_ray_hits_a_wall_that_is_out_of_the_picture() {
+fn a_ray_ends_at_a_wall_that_is_out_of_the_picture() {
     let text = "grid = '''\n######\n#@...#\n#....#\n######\n'''\n[tiles]\n'#' = { wall = '#808080' }\n[things]\n'@' = { start = 0 }\n";
     let world = map::parse_str(text).unwrap();
     let level = world.start_camera(FieldOfView::default());
     let mut renderer = Renderer::new();
     let mut frame = Frame::new(FrameSize::new(40, 8).unwrap(), PixelAspect::SQUARE);
     renderer.render(&world, &level, &mut frame);
-    let columns = renderer.columns().to_vec();
-    assert!(columns.iter().all(|column| column.hit.is_some() && column.distance > 0.5));
+    let distances = renderer.distances().to_vec();
+    assert!(distances.iter().all(|&distance| distance > 0.5));
     for degrees in [-30.0, 30.0] {
         let camera = level.with_pitch(Pitch::from_degrees(degrees).unwrap());
         renderer.render(&world, &camera, &mut frame);
-        assert!(renderer.columns() == columns, "{degrees}");
+        assert!(renderer.distances() == distances, "{degrees}");
     }
 }

@@ -74,7 +74,7 @@ fn drawing_the_widgets_allocates_nothing_after_the_first_time() {
                     &mut view,
                 );
                 Minimap::new(&world, &camera)
-                    .seen(view.columns())
+                    .seen(view.distances())
                     .glyphs(glyphs)
                     .color_depth(depth)
                     .render(map, &mut buffer);

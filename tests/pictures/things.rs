@@ -217,7 +217,7 @@ impl<'a> Oracle<'a> {
         let up = (f64::from(HEIGHT) / 2.0 - (f64::from(row) + 0.5)) * 2.0 * half / f64::from(WIDTH);
         let from_eye = figure.position - camera.position();
         let depth = from_eye.dot(camera.direction());
-        if depth <= 0.2 || renderer.columns()[column as usize].distance <= depth {
+        if depth <= 0.2 || renderer.distances()[column as usize] <= depth {
             return Some(behind);
         }
         let beside = across * depth - from_eye.dot(camera.direction().perp());

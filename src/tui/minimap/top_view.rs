@@ -12,7 +12,6 @@ use glam::DVec2;
 use super::explored::{Explored, SeenRow};
 use crate::color::Rgb;
 use crate::numeric::rounding::floor_short;
-use crate::render::Column;
 use crate::world::{
     Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileEffect, TileId, TileKind, World,
 };
@@ -44,19 +43,19 @@ const BELOW_GLASS: Rgb = Rgb::new(0x24, 0x24, 0x2c);
 const MIN_GLASS_OPACITY: u8 = 96;
 
 impl<'a> TopView<'a> {
-    /// A top view of `world`. `columns` are the hits of the picture from `camera`, cells that are
-    /// not `explored` are hidden, and `pixel` is the width of a pixel in cells.
+    /// A top view of `world`. The rays of the picture from `camera` end at `distances`, cells that
+    /// are not `explored` are hidden, and `pixel` is the width of a pixel in cells.
     pub(crate) fn new(
         world: &'a World,
         camera: &Camera,
-        (columns, explored): (&'a [Column], Option<&'a Explored>),
+        (distances, explored): (&'a [f64], Option<&'a Explored>),
         pixel: f64,
     ) -> Self {
         let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MAX];
         for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
             *appearance = appearance_of(tile, world, camera.eye());
         }
-        Self { world, visible_floor: VisibleFloor::new(camera, columns), explored, tiles, pixel }
+        Self { world, visible_floor: VisibleFloor::new(camera, distances), explored, tiles, pixel }
     }
 
     /// The row of points at the distance `y` from the map's northern edge.
@@ -197,16 +196,16 @@ struct VisibleFloor<'a> {
     position: DVec2,
     direction: DVec2,
     half_width: f64,
-    columns: &'a [Column],
+    distances: &'a [f64],
 }
 
 impl<'a> VisibleFloor<'a> {
-    fn new(camera: &Camera, columns: &'a [Column]) -> Self {
+    fn new(camera: &Camera, distances: &'a [f64]) -> Self {
         Self {
             position: camera.position(),
             direction: camera.direction(),
             half_width: camera.field_of_view.half_width(),
-            columns,
+            distances,
         }
     }
 
@@ -215,7 +214,7 @@ impl<'a> VisibleFloor<'a> {
     fn contains(&self, point: DVec2) -> bool {
         let to_point = point - self.position;
         let distance = to_point.dot(self.direction);
-        if distance <= 0.0 || self.columns.is_empty() {
+        if distance <= 0.0 || self.distances.is_empty() {
             return false;
         }
         let (across, half_width) =
@@ -225,9 +224,8 @@ impl<'a> VisibleFloor<'a> {
             return false;
         }
         let across = across / half_width;
-        let index = f64::midpoint(across, 1.0) * self.columns.len() as f64;
-        index >= 0.0
-            && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
+        let index = f64::midpoint(across, 1.0) * self.distances.len() as f64;
+        index >= 0.0 && self.distances.get(index as usize).is_some_and(|&end| distance <= end)
     }
 }
 

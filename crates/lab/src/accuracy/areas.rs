@@ -22,7 +22,7 @@ use ratatui::widgets::StatefulWidget;
 
 use super::rays::cameras;
 use crate::report::{Diagram, Row, Table, Value, headings, seconds, time_in_rounds};
-use cellcaster::cast::Side;
+use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::color::Rgb;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::color::srgb::{encoded, linear};
@@ -219,9 +219,6 @@ struct Half {
     is_at_edge: bool,
 }
 
-/// The content of a sample: a surface, and for a wall the grid line on which it stands.
-type Shown = (Option<Surface>, Option<(Side, u32)>);
-
 /// The halves of the cells of a window of `size`, row by row, in the view of `camera`.
 fn truth(world: &World, camera: &Camera, size: Size) -> Vec<Half> {
     let (width, height) = (u32::from(size.width), 2 * u32::from(size.height));
@@ -232,11 +229,24 @@ fn truth(world: &World, camera: &Camera, size: Size) -> Vec<Half> {
     renderer.keep_surfaces(true);
     let mut frame = Frame::new(scaled, PixelAspect::SQUARE);
     renderer.render(world, camera, &mut frame);
+    let lines: Vec<_> = (0..scaled.width.get()).map(|x| line(world, camera, scaled, x)).collect();
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    places.map(|(x, y)| half(&renderer, &frame, x, y)).collect()
+    places.map(|(x, y)| half(&renderer, &lines, &frame, x, y)).collect()
 }
 
-fn half(renderer: &Renderer, frame: &Frame, x: u32, y: u32) -> Half {
+/// A grid line on which a wall stands.
+type GridLine = (Side, u32);
+
+/// The line of the wall that the ray of column `x` hits, in a picture of this size.
+fn line(world: &World, camera: &Camera, size: FrameSize, x: u32) -> Option<GridLine> {
+    let across = (2.0 * f64::from(x) + 1.0) / f64::from(size.width.get()) - 1.0;
+    let plane = camera.direction().perp() * camera.field_of_view.half_width();
+    let ray = Ray::new(camera.position(), camera.direction() + plane * across).ok()?;
+    let Hit { cell, side, .. } = Exact.cast(world.grid(), &ray)?;
+    Some((side, if side == Side::X { cell.column } else { cell.row }))
+}
+
+fn half(renderer: &Renderer, lines: &[Option<GridLine>], frame: &Frame, x: u32, y: u32) -> Half {
     let samples = || {
         let rows = SCALE * y..SCALE * (y + 1);
         rows.flat_map(|y| (SCALE * x..SCALE * (x + 1)).map(move |x| (x, y)))
@@ -247,22 +257,16 @@ fn half(renderer: &Renderer, frame: &Frame, x: u32, y: u32) -> Half {
             *sum += channel;
         }
     }
-    let first = shown(renderer, SCALE * x, SCALE * y);
+    let shown = |x: u32, y: u32| {
+        let surface = renderer.surface(x, y);
+        let is_wall = matches!(surface, Some(Surface::WallX | Surface::WallY));
+        (surface, lines[x as usize].filter(|_| is_wall))
+    };
+    let first = shown(SCALE * x, SCALE * y);
     Half {
         color: light.map(|sum| 255.0 * encoded(sum / f64::from(SCALE * SCALE))),
-        is_at_edge: samples().any(|(x, y)| shown(renderer, x, y) != first),
+        is_at_edge: samples().any(|(x, y)| shown(x, y) != first),
     }
-}
-
-fn shown(renderer: &Renderer, x: u32, y: u32) -> Shown {
-    let surface = renderer.surface(x, y);
-    let is_wall = matches!(surface, Some(Surface::WallX | Surface::WallY));
-    let hit = renderer.columns().get(x as usize).and_then(|column| column.hit);
-    let line = hit.filter(|_| is_wall).map(|hit| match hit.side {
-        Side::X => (hit.side, hit.cell.column),
-        Side::Y => (hit.side, hit.cell.row),
-    });
-    (surface, line)
 }
 
 // The distance between pictures and the reference, summed over the halves of their cells.

@@ -175,12 +175,11 @@ fn a_closed_door_is_a_recessed_wall() {
     let mut renderer = Renderer::new();
     let mut frame = Frame::new(FrameSize::new(41, 41).unwrap(), PixelAspect::SQUARE);
     renderer.render(&world, &camera.unwrap(), &mut frame);
-    let middle = &renderer.columns()[20];
-    assert_eq!(middle.distance, 2.0);
+    let distances = renderer.distances();
+    assert_eq!(distances[20], 2.0);
     assert_eq!(frame.pixel(20, 20), Rgb::new(0, 255, 0));
     // The jamb beside it is neither the door nor the wall. Then comes the wall, nearer by half a
     // cell.
-    let distances: Vec<f64> = renderer.columns().iter().map(|column| column.distance).collect();
     assert!(distances[0] < 2.0 && distances.iter().any(|distance| (1.5..2.0).contains(distance)));
     let colors: Vec<Rgb> = (0..41).map(|x| frame.pixel(x, 20)).collect();
     let is_jamb = |color: &&Rgb| ![Rgb::new(0, 255, 0), Rgb::new(255, 0, 0)].contains(color);

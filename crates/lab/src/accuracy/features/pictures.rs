@@ -88,7 +88,7 @@ impl<'a> Picture<'a> {
 
     /// The distance of the wall in a column of pixels.
     fn distance(&self, x: u32) -> f64 {
-        self.renderer.columns()[x as usize].distance
+        self.renderer.distances()[x as usize]
     }
 }
 

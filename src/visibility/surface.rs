@@ -1,15 +1,6 @@
-//! Columns: the ray hit of each column of pixels.
+//! Surfaces: what a pixel shows.
 
-use crate::cast::{Hit, Side};
-
-/// The ray hit of one column of pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Column {
-    /// The hit; `None` if the ray left the map.
-    pub hit: Option<Hit>,
-    /// The distance from the camera plane to the end of the ray at a wall or at the edge of the map, in cells.
-    pub distance: f64,
-}
+use crate::cast::Side;
 
 /// The kind of surface that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,11 +17,6 @@ pub enum Surface {
     Floor,
     /// A thing in front of the other surfaces.
     Thing,
-}
-
-impl Column {
-    /// A column whose ray has not been followed yet.
-    pub(crate) const UNKNOWN: Self = Self { hit: None, distance: 0.0 };
 }
 
 impl Surface {
