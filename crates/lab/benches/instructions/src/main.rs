@@ -17,9 +17,10 @@ use cellcaster::render::{Filter, Frame, FrameSize, Options, PixelAspect, Rendera
 use cellcaster::tui::GlyphSet;
 use cellcaster::world::{FieldOfView, Heading, World};
 
-const CASES: [Case; 15] = [
+const CASES: [Case; 16] = [
     Case { name: "rooms-80x48", work: Work::Frames("rooms", 80, 48) },
     Case { name: "rooms-160x90", work: Work::Frames("rooms", 160, 90) },
+    Case { name: "levels-80x48", work: Work::Levels(80, 48) },
     Case { name: "area-160x90", work: Work::FramesByArea("rooms", 160, 90) },
     Case { name: "rooms-320x200", work: Work::Frames("rooms", 320, 200) },
     Case { name: "rooms-1920x1080", work: Work::Frames("rooms", 1920, 1080) },
@@ -44,6 +45,8 @@ struct Case {
 enum Work {
     /// Frames of this map and this size, in all directions from the start.
     Frames(&'static str, u32, u32),
+    /// The same from the starts of all built-in levels.
+    Levels(u32, u32),
     /// The same with the area filter.
     FramesByArea(&'static str, u32, u32),
     /// Steps of the game on this level, in which the player runs in circles.
@@ -101,6 +104,13 @@ fn main() {
             let size = FrameSize::new(width, height).expect("a picture has pixels");
             if let Level::Grid(world) = level(map) {
                 draw_world(&world, size, Filter::Area);
+            }
+        }
+        Work::Levels(width, height) => {
+            let size = FrameSize::new(width, height).expect("a picture has pixels");
+            for level in builtin::LEVELS {
+                let world = level.world().expect("a built-in level is sound");
+                draw_world(&world, size, Filter::Mip);
             }
         }
         Work::Frames(map, width, height) => {
