@@ -109,6 +109,7 @@ impl Game {
         let mut game = Self::clone(&saved);
         game.player.health = game.player.health.revived();
         game.player.pressed = self.player.pressed;
+        game.player.has_acted = false;
         game.steps = self.steps;
         game.revision = self.revision + 1;
         game.figure_revision = self.figure_revision;

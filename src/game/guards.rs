@@ -222,7 +222,7 @@ impl Guards {
             GuardActivity::OnDuty | GuardActivity::Returning => {
                 let position = guard.mover.position();
                 let is_near = |target: &PerceivedPlayer| {
-                    target.position.distance_squared(position) < FAR * FAR && target.is_alive
+                    target.position.distance_squared(position) < FAR * FAR && target.is_noticeable
                 };
                 let is_turn = (self.steps + index as u64).is_multiple_of(u64::from(FAR_STRIDE));
                 match targets.iter().any(is_near) {
@@ -304,7 +304,7 @@ impl Guards {
         if self.awake.has_hounds {
             self.trails.resize_with(targets.len(), Trail::default);
             let trails = self.trails.iter_mut().zip(targets);
-            for (trail, target) in trails.filter(|(_, target)| target.is_alive) {
+            for (trail, target) in trails.filter(|(_, target)| target.is_noticeable) {
                 trail.record(world, target.cell(), self.steps);
             }
         }

@@ -207,6 +207,11 @@ impl Intents {
         Self { bits: self.bits & ONCE, look: Look::NONE }
     }
 
+    /// Whether the set has an intent other than to turn, to look or to duck.
+    pub(crate) fn act(self) -> bool {
+        self.bits & !LOOKS != 0
+    }
+
     /// The intents of the set that are not in `others`, without angles.
     pub(crate) fn without(self, others: Self) -> Self {
         Self { bits: self.bits & !others.bits, look: Look::NONE }
@@ -237,6 +242,26 @@ const ONCE: u32 = {
         | bit(Shoot)
         | bit(Smoke)
         | bit(Lamp)
+        | bit(Retry)
+};
+
+/// The bits of the intents with which a player only looks around.
+const LOOKS: u32 = {
+    use Intent::{
+        AboutFace, Aim, Duck, FineLeft, FineRight, LookAhead, LookDown, LookUp, Retry, Run,
+        TurnLeft, TurnRight,
+    };
+    bit(TurnLeft)
+        | bit(TurnRight)
+        | bit(Run)
+        | bit(Aim)
+        | bit(LookUp)
+        | bit(LookDown)
+        | bit(LookAhead)
+        | bit(Duck)
+        | bit(FineLeft)
+        | bit(FineRight)
+        | bit(AboutFace)
         | bit(Retry)
 };
 

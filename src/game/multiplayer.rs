@@ -45,7 +45,7 @@ const NOBODY: PerceivedPlayer = PerceivedPlayer {
     head: 0.0,
     visibility: 0,
     has_light: false,
-    is_alive: false,
+    is_noticeable: false,
 };
 
 /// The players of a multiplayer game.

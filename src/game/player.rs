@@ -28,6 +28,9 @@ pub(crate) struct Player {
     /// The total value of the treasure found.
     pub(crate) treasure: u32,
     pub(crate) has_light: bool,
+    /// `true` if the player has done more than look around since they came into the level or back to life. Until
+    /// then, guards do not notice them.
+    pub(crate) has_acted: bool,
     /// The number of steps until the player can strike again.
     pub(crate) strike_wait: u16,
     /// The intents of the last step that act once for each press.
@@ -61,6 +64,7 @@ impl Player {
             keys: BTreeSet::new(),
             treasure: 0,
             has_light: false,
+            has_acted: false,
             strike_wait: 0,
             pressed: Intents::new(),
             stride: 0.0,
@@ -89,10 +93,10 @@ impl Player {
         self.hearing.check(world)
     }
 
-    /// The same player at another position.
+    /// The same player at another position, where they have not acted yet.
     #[must_use]
     pub(crate) fn at(self, motion: Motion) -> Self {
-        Self { motion, fell_from: motion.feet(), ..self }
+        Self { motion, fell_from: motion.feet(), has_acted: false, ..self }
     }
 
     /// The part of `presses` that begins in this step.

@@ -128,7 +128,7 @@ impl Game {
             head: motion.head(),
             visibility: visibility.min(u8::MAX.into()) as u8,
             has_light: player.has_light,
-            is_alive: !player.health.is_gone(),
+            is_noticeable: !player.health.is_gone() && player.has_acted,
         }
     }
 

@@ -64,6 +64,7 @@ impl Game {
     /// [`Intent::Open`] in place of a jump in front of a door or a handle.
     pub(crate) fn move_one(&mut self, intents: Intents) -> Intents {
         let intents = self.at_a_door(intents);
+        self.player.has_acted |= intents.act();
         let before = self.player.motion;
         self.move_player(intents);
         self.take_finds();

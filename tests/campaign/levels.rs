@@ -1,5 +1,6 @@
 //! Properties of every level of the campaign.
 
+use cellcaster::game::{Game, Intent, Intents, Rules, STEPS_PER_SECOND};
 use cellcaster::map;
 use cellcaster::map::builtin::{self, BuiltinLevel};
 use cellcaster::world::{Difficulty, Driver, ThingKind, World};
@@ -54,5 +55,22 @@ fn titles_differ() {
         builtin::LEVELS.iter().map(|level| world(level).title().to_owned()).collect();
     for (index, title) in titles.iter().enumerate() {
         assert!(!titles[..index].contains(title), "{title} twice");
+    }
+}
+
+#[test]
+fn nobody_is_hurt_at_the_start_before_they_act() {
+    const TWO_MINUTES: u32 = 120 * STEPS_PER_SECOND;
+    let look = [Intent::TurnRight, Intent::Duck].into_iter().collect();
+    for level in builtin::LEVELS {
+        for difficulty in Difficulty::ALL {
+            let rules = Rules { difficulty, seed: 0 };
+            let mut game = Game::with_rules(world(level), rules);
+            let unhurt = game.health();
+            for step in 0..TWO_MINUTES {
+                game.step(if step % 600 < 60 { look } else { Intents::new() });
+            }
+            assert_eq!(game.health(), unhurt, "{} on {}", level.name, difficulty.name());
+        }
     }
 }

@@ -42,7 +42,7 @@ grid = '''
 /// A player who has just been struck, with everything on that can be shown over the picture.
 pub(crate) fn struck() -> Rig {
     let mut rig = playing_own(AMBUSH, Store::in_memory());
-    for key in [Key::Char('.'), Key::Char(',')] {
+    for key in [Key::Char('e'), Key::Char('.'), Key::Char(',')] {
         rig.tap(key, 30);
         rig.wait(100);
     }

@@ -53,8 +53,8 @@ pub(crate) struct PerceivedPlayer {
     pub(crate) visibility: u8,
     /// Whether the player carries a lit lamp, which guards see from afar.
     pub(crate) has_light: bool,
-    /// Whether the player is alive. Guards ignore the dead.
-    pub(crate) is_alive: bool,
+    /// Whether guards can notice the player. They ignore the dead, and players who have not acted yet.
+    pub(crate) is_noticeable: bool,
 }
 
 impl PerceivedPlayer {
@@ -87,7 +87,7 @@ pub(crate) enum Act {
 
 impl Context<'_> {
     pub(crate) fn target(&self, index: usize) -> Option<&PerceivedPlayer> {
-        self.targets.get(index).filter(|target| target.is_alive)
+        self.targets.get(index).filter(|target| target.is_noticeable)
     }
 
     pub(crate) fn ground(&self, gait: Gait) -> GuardWorld<'_> {

@@ -57,7 +57,7 @@ impl Scene {
             head: feet + 0.7,
             visibility: 255,
             has_light: false,
-            is_alive: true,
+            is_noticeable: true,
         };
         let (doors, clouds, acts) = (Doors::default(), Vec::new(), Vec::new());
         Self { world, guards, doors, target, clouds, acts }
@@ -230,7 +230,7 @@ fn doors_and_smoke_hide_a_player_and_glass_and_masks_do_not() {
 fn guards_leave_a_dead_player_alone() {
     let mut scene = corridor(0);
     scene.steps_until(600, Scene::is_alarmed).unwrap();
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     scene.steps_until(60, |scene| !scene.is_alarmed()).unwrap();
     assert_eq!(scene.steps_until(600, Scene::is_alarmed), None);
 }
@@ -241,7 +241,7 @@ fn a_guard_sees_and_wakes_a_fallen_guard() {
         "##########\n#W....L..#\n#.......@#\n##########",
         "\"W\" = { guard = \"warden\", heading = 0 }\n\"L\" = { guard = \"listener\", heading = 0 }",
     );
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     scene.guards.stun(1, 1200);
     assert!(scene.guard(1).is_down);
     scene.steps_until(200, |scene| scene.mood(0) == Mood::Wondering).unwrap();
@@ -252,7 +252,7 @@ fn a_guard_sees_and_wakes_a_fallen_guard() {
 #[test]
 fn a_stunned_guard_gets_up_unaided() {
     let mut scene = corridor(0);
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     scene.guards.stun(0, 100);
     (0..95).for_each(|_| scene.step(&[]));
     assert!(scene.guard(0).is_down);
@@ -304,7 +304,7 @@ fn a_noise_is_heard_through_a_doorway_but_not_through_a_wall() {
 #[test]
 fn a_guard_turns_to_a_noise_then_investigates_and_returns() {
     let mut scene = rooms('W', '.');
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     let at_first = scene.guard(0).position;
     let noise = Sound { by: Source::Object, ..scene.sound(SoundKind::Knock, 8) };
     scene.step(&[noise]);
@@ -324,7 +324,7 @@ fn a_guard_turns_to_a_noise_then_investigates_and_returns() {
 #[test]
 fn only_nearby_noise_wakes_sleepers() {
     let mut scene = rooms('S', '.');
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     scene.steps_until(5, |scene| scene.guards.are_at_rest()).unwrap();
     scene.step(&[scene.sound(SoundKind::Running, 7)]);
     assert_eq!(scene.mood(0), Mood::Asleep);
@@ -401,7 +401,7 @@ fn a_patrol_circles_and_resumes_after_a_noise() {
         "\"W\" = { guard = \"warden\", heading = 0, patrol = \"abc\" }\n\
          \"a\" = { waypoint = true }\n\"b\" = { waypoint = true }\n\"c\" = { waypoint = true }",
     );
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     let stops = [cell(4, 1), cell(9, 3), cell(4, 4)];
     let is_at =
         |stop: Cell| move |scene: &Scene| scene.guard(0).position.distance(stop.center()) < 0.4;
@@ -423,7 +423,7 @@ fn guards_climb_stairs_and_avoid_pits_and_water() {
         "#########\n#W.012h.#\n#.p~~~~.#\n#@......#\n#########",
         "\"W\" = { guard = \"warden\", heading = 0 }",
     );
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     let noise = |cell| Sound { kind: SoundKind::Knock, cell, reach: 20, by: Source::Object };
     scene.step(&[noise(cell(6, 1))]);
     let is_up = |scene: &Scene| scene.guard(0).feet == 0.9;
@@ -446,7 +446,7 @@ fn guards_pass_each_other_in_a_corridor() {
         "##########\n#V......W#\n####@#####\n##########",
         "\"V\" = { guard = \"warden\", heading = 0 }\n\"W\" = { guard = \"archer\", heading = 180 }",
     );
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     for (index, column) in [(0, 8), (1, 1)] {
         scene.guards.list[index].post = cell(column, 1);
     }
@@ -634,7 +634,7 @@ fn a_guard_opens_doors_on_the_way_and_a_hound_does_not() {
     for (name, gets_there) in [("warden", true), ("hound", false)] {
         let things = format!("\"W\" = {{ guard = \"{name}\", heading = 0 }}");
         let mut scene = Scene::new("##########\n#W..+...@#\n##########", &things);
-        scene.target.is_alive = false;
+        scene.target.is_noticeable = false;
         let noise = Sound { by: Source::Object, ..scene.sound(SoundKind::Knock, 24) };
         scene.step(&[noise]);
         let is_there = |scene: &Scene| scene.guard(0).position.x > 7.0;
@@ -647,7 +647,7 @@ fn a_hound_gives_up_the_trail_of_a_player_who_has_left() {
     let hound = r#""H" = { guard = "hound", heading = 180 }"#;
     let mut scene = Scene::new("##########\n#@......H#\n##########", hound);
     let gone = PerceivedPlayer { position: DVec2::new(6.5, 1.5), visibility: 0, ..scene.target };
-    scene.target.is_alive = false;
+    scene.target.is_noticeable = false;
     scene.guards.step(&scene.world, &[scene.target, gone], &[], &[]);
     scene.guards.list[0].state = GuardActivity::Tracking { target: 1, mark: 0, lost: 0 };
     scene.guards.forget_player(1);

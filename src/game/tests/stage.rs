@@ -6,7 +6,7 @@ use crate::game::{Game, GuardView, Intent, Intents, Outcome, Rules, SoundKind};
 use crate::map;
 use crate::world::{Cell, Difficulty, FieldOfView};
 
-/// A game for tests.
+/// A game for tests, whose player has acted, so that guards notice them.
 pub(crate) struct Stage {
     pub(crate) game: Game,
 }
@@ -36,7 +36,9 @@ impl Stage {
             rows.join("\n")
         );
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
-        Self { game: Game::with_rules(world, Rules { difficulty, seed: 1 }) }
+        let mut game = Game::with_rules(world, Rules { difficulty, seed: 1 });
+        game.player.has_acted = true;
+        Self { game }
     }
 
     /// Plays `steps` steps.
