@@ -6,6 +6,7 @@
 mod controls;
 mod detection;
 mod draw;
+mod history;
 mod levels;
 mod page;
 mod picture;
@@ -19,6 +20,7 @@ pub(crate) mod setting;
 mod settings;
 pub(crate) mod status;
 pub mod store;
+mod taking_back;
 mod title;
 
 /// The parts of the program that a server's sessions also use.
@@ -44,6 +46,7 @@ use std::time::Duration;
 pub use controls::Bindings;
 use controls::{Clock, Controls, Pointer};
 use detection::Detection;
+use history::History;
 pub use levels::Levels;
 use page::Pages;
 use picture::{MapPanel, TerminalLook};
@@ -85,6 +88,8 @@ struct App {
     notice: Option<Goal>,
     /// The run since the start of the level.
     log: RunLog,
+    /// Past states of the level; `None` if they are of no use.
+    history: Option<History>,
     /// A replay of the best run of the level.
     ghost: Option<Ghost>,
     /// The improvement from the last level won, once that result is recorded.

@@ -30,7 +30,7 @@ mod report;
 mod rest;
 mod rules;
 mod scratch;
-mod script;
+pub(crate) mod script;
 mod show;
 mod sight;
 mod sound;

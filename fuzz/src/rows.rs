@@ -97,8 +97,15 @@ fn use_all(store: &mut HostStore) {
     let name = Name::new("Ada").expect("it is a name");
     let board = LevelBoard::new("cellar", Difficulty::Normal).expect("it is built in");
     let share = Share { found: 1, total: 2 };
-    let tally =
-        Tally { steps: 7, treasure: share, secrets: share, alarms: 1, deaths: 2, stunned: 3 };
+    let tally = Tally {
+        steps: 7,
+        treasure: share,
+        secrets: share,
+        alarms: 1,
+        deaths: 2,
+        stunned: 3,
+        taken_back: 0,
+    };
     let run = VerifiedRun::made_up(board.clone(), tally, Rank::ALL[0], "4 s forward\n");
     check(store.bans(BanScope::Visit, now));
     check(store.bans(BanScope::Talk, now));

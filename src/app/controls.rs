@@ -50,6 +50,8 @@ pub enum Action {
     ToggleCompass,
     /// Show or hide the ghost of the best run.
     ToggleGhost,
+    /// Take the last seconds back.
+    TakeBack,
     /// Leave the game.
     Leave,
 }
@@ -70,7 +72,7 @@ pub enum MapChange {
 impl Action {
     /// Every action with its name in a configuration file, a short description, and its keys on a
     /// QWERTY keyboard.
-    pub(crate) const ALL: [(&'static str, &'static str, Self, &'static [Key]); 42] = [
+    pub(crate) const ALL: [(&'static str, &'static str, Self, &'static [Key]); 43] = [
         ("forward", "walk", Self::Want(Intent::Forward), &[Key::Char('w'), Key::Up]),
         ("back", "walk back", Self::Want(Intent::Back), &[Key::Char('s'), Key::Down]),
         ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft), &[Key::Char('a')]),
@@ -92,6 +94,8 @@ impl Action {
         ("shoot", "shoot a dart", Self::Want(Intent::Shoot), &[Key::Char('n')]),
         ("smoke", "throw smoke", Self::Want(Intent::Smoke), &[Key::Char('y')]),
         ("lamp", "lamp on or off", Self::Want(Intent::Lamp), &[Key::Char('l')]),
+        // On every keyboard, and free in all presets.
+        ("take-back", "take back 10 s", Self::TakeBack, &[Key::Backspace]),
         ("look-up", "look up", Self::Want(Intent::LookUp), &[Key::PageUp]),
         ("look-down", "look down", Self::Want(Intent::LookDown), &[Key::PageDown]),
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead), &[Key::Home]),

@@ -93,6 +93,7 @@ impl App {
 
     fn draw_status(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let signs = HealthSigns::for_picture(self.settings.glyphs, self.depth());
+        let take_back = self.useful_take_back_key();
         let Self { game, goal, notice, levels, map, controls, pointer, settings, .. } = self;
         let (grid, level) = (game.grid(), levels.number);
         let player = grid.and_then(|game| game.seen_by(PlayerId::FIRST));
@@ -115,6 +116,9 @@ impl App {
             let lamp = mission.is_some_and(|(_, player)| player.lamp_is_lit());
             line.write_modes(controls.toggles, pointer.is_on(), lamp)?;
             line.write_keys(grid.into_iter().flat_map(Game::keys))?;
+            if let Some(key) = take_back {
+                line.both(Part::TakeBack, format_args!("{key}: 10 s back"))?;
+            }
             if let (None, Some(message)) = (notice, grid.and_then(Game::message)) {
                 line.both(Part::Notice, format_args!("{message}"))?;
             } else if let Some(goal) = notice.or(Some(goal)).filter(|goal| goal.is_shown()) {

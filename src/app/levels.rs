@@ -263,6 +263,7 @@ impl App {
         let retry: Intents = [Intent::Retry].into_iter().collect();
         self.game.step(retry);
         self.record(retry, 1);
+        self.remember();
         self.watch = Watch::begin(self.game.grid());
         self.release_keys();
         self.show(AppScreen::Playing);
@@ -296,6 +297,7 @@ impl App {
         self.notice = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
+        self.begin_history();
         self.release_keys();
         self.show(AppScreen::Playing);
     }
@@ -324,6 +326,8 @@ impl App {
                 reload.fault = None;
                 self.game = self.game.begun_again_in(level.clone());
                 self.levels.stage = Stage::Level(level);
+                // The run up to now was in another level.
+                self.history = None;
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
                 if self.shows_result() {

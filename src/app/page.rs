@@ -572,7 +572,8 @@ fn how_to_leave(bindings: &Bindings, most_columns: usize) -> String {
 }
 
 /// Groups of actions that share a line. The line stands in the place of the first action.
-const TOGETHER: [(&[Action], &str); 4] = [
+const TOGETHER: [(&[Action], &str); 5] = [
+    (&[Action::Want(Intent::StrafeLeft), Action::Want(Intent::StrafeRight)], "strafe"),
     (&[Action::Want(Intent::FineLeft), Action::Want(Intent::FineRight)], "turn by 5°"),
     (
         &[Action::ChangeMap(MapChange::Larger), Action::ChangeMap(MapChange::Smaller)],

@@ -2,14 +2,17 @@
 //!
 //! The ghost is a second game that runs beside the player's. Rejected: recorded positions. A script
 //! is a hundredth of their size, and the store keeps it anyway.
+//!
+//! If the player takes time back, the run loses that time, and counts how often it did.
 
 use std::io::Write;
 use std::iter::{self, FlatMap, RepeatN};
 use std::{fmt, vec};
 
 use crate::app::App;
+use crate::app::history::History;
 use crate::app::played::Goal;
-use crate::game::{self, Game, Intents, Script, Stretch};
+use crate::game::{self, Game, Intents, Script, Stretch, script};
 use crate::terminal;
 use crate::tui::MapMark;
 use crate::world::{Camera, FieldOfView, Figure, SpriteId};
@@ -54,11 +57,15 @@ impl App {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RunLog {
     stretches: Vec<Stretch>,
+    steps: u64,
+    /// The number of times that the player has taken time back.
+    pub(crate) taken_back: u32,
 }
 
 impl RunLog {
     /// Records that the player wants `intents` for `steps` more steps.
     pub(crate) fn record(&mut self, intents: Intents, mut steps: u64) {
+        self.steps += steps;
         while steps > 0 {
             let last = self.stretches.last_mut().filter(|last| last.intents == intents);
             let room = last.map_or(0, |last| {
@@ -82,7 +89,24 @@ impl RunLog {
 
     /// The number of recorded steps.
     pub(crate) fn steps(&self) -> u64 {
-        self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
+        self.steps
+    }
+
+    /// The intents of each step from step `first` on.
+    pub(crate) fn since(&self, first: u64) -> impl Iterator<Item = Intents> {
+        let mut skipped = first;
+        self.stretches.iter().flat_map(move |stretch| {
+            let before = skipped.min(stretch.steps.into());
+            skipped -= before;
+            iter::repeat_n(stretch.intents, stretch.steps as usize - before as usize)
+        })
+    }
+
+    /// Takes back the last `steps` steps.
+    pub(crate) fn take_back(&mut self, steps: u32) {
+        let missing = script::taken_back(&mut self.stretches, steps);
+        self.steps -= u64::from(steps - missing);
+        self.taken_back = self.taken_back.saturating_add(1);
     }
 
     pub(crate) fn stretches(&self) -> &[Stretch] {
@@ -113,9 +137,12 @@ const OPACITY: u8 = 96;
 #[derive(Debug)]
 pub(crate) struct Ghost {
     game: Game,
+    /// The intents of the whole run, and of the rest of it.
+    run: Steps,
     steps: Steps,
     /// The intents of the next step; `None` at the end of the script.
     next: Option<Intents>,
+    history: History,
 }
 
 impl App {
@@ -137,9 +164,10 @@ impl App {
 
 impl Ghost {
     /// The best run at its start. `game` must be at its start too.
-    pub(crate) fn new(game: Game, mut steps: Steps) -> Self {
+    pub(crate) fn new(game: Game, run: Steps) -> Self {
+        let mut steps = run.clone();
         let next = steps.next();
-        Self { game, steps, next }
+        Self { history: History::new(game.clone(), 0), game, run, steps, next }
     }
 
     /// Advances by one step.
@@ -147,6 +175,18 @@ impl Ghost {
         if let Some(intents) = self.next {
             self.game.step(intents);
             self.next = self.steps.next();
+            self.history.record(self.history.steps() + 1, &self.game);
+        }
+    }
+
+    /// Goes back to the state after `steps` steps.
+    pub(crate) fn go_back_to(&mut self, steps: u64) {
+        if steps < self.history.steps() {
+            let run = |first| self.run.clone().skip(first as usize);
+            self.game = self.history.at(steps, run);
+            self.history.forget_after(steps);
+            self.steps = self.run.clone();
+            self.next = self.steps.nth(steps as usize);
         }
     }
 

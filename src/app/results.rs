@@ -20,7 +20,7 @@ impl App {
         }
         let game = self.game.grid()?;
         let Some(level) = self.levels.stage.name() else { return Some(Improved::default()) };
-        let (level, tally) = (level.to_owned(), game.tally());
+        let (level, tally) = (level.to_owned(), self.tally(game));
         let run =
             Run { tally, rank: tally.rank(game.world().par()), script: self.run_script(game) };
         Some(self.store.record(&level, self.difficulty, run))
@@ -34,9 +34,18 @@ impl App {
         } else {
             self.levels.stage.name().and_then(LevelName::new)
         };
-        let header =
-            Header { level, difficulty: Some(self.difficulty), seed: Some(game.rules().seed) };
+        let header = Header {
+            level,
+            difficulty: Some(self.difficulty),
+            seed: Some(game.rules().seed),
+            taken_back: self.log.taken_back,
+        };
         format!("{header}\n{}", self.log.script())
+    }
+
+    /// The player's results up to now.
+    fn tally(&self, game: &Game) -> Tally {
+        Tally { taken_back: self.log.taken_back, ..game.tally() }
     }
 
     /// A line about the current game: the level, the time, and the main counts.
@@ -49,7 +58,7 @@ impl App {
         let Some(game) = self.game.grid().filter(|game| game.is_mission()) else {
             return Some(format!("{title}: {seconds}"));
         };
-        let Tally { treasure, alarms, .. } = game.tally();
+        let Tally { treasure, alarms, taken_back, .. } = self.tally(game);
         let alarms = match alarms {
             1 => "1 alarm".to_owned(),
             alarms => format!("{alarms} alarms"),
@@ -58,7 +67,12 @@ impl App {
             0 => String::new(),
             total => format!(", {} of {total} gold", treasure.found),
         };
-        Some(format!("{title} on {}: {seconds}, {alarms}{gold}", self.difficulty.name()))
+        let taken_back =
+            if taken_back > 0 { format!(", {taken_back} taken back") } else { String::new() };
+        Some(format!(
+            "{title} on {}: {seconds}, {alarms}{gold}{taken_back}",
+            self.difficulty.name()
+        ))
     }
 
     /// Ends the current game, stores a line about it, and saves it so that the player can continue
@@ -106,7 +120,9 @@ impl App {
     pub(crate) fn level_done_menu(&self) -> Menu<MenuChoice> {
         let is_fastest = self.improved.is_some_and(|improved| improved.time);
         let fastest = if is_fastest { " (your fastest)" } else { "" };
-        let result = self.improved.zip(self.game.grid()).map(result_lines);
+        let game = self.game.grid();
+        let result = self.improved.zip(game.map(|game| (self.tally(game), game.world().par())));
+        let result = result.map(|(improved, (tally, par))| result_lines(improved, tally, par));
         let menu = Menu::new("you found the way out")
             .lines(self.level_lines())
             .line(format!("in {}{fastest}", tenths(self.game.elapsed())))
@@ -131,6 +147,7 @@ impl App {
         let menu = menu
             .lines((deaths > 1).then(|| format!("for the {} time", ordinal(deaths))))
             .entry("Try again", MenuChoice::Retry)
+            .entries(self.take_back_entry())
             .entry("Restart the level", MenuChoice::Restart);
         self.with_leaving(menu)
     }
@@ -162,10 +179,17 @@ fn ordinal(number: u32) -> String {
 }
 
 /// The lines of the result. The rank comes first, because a small window shows only the first line.
-fn result_lines((improved, game): (Improved, &Game)) -> impl Iterator<Item = String> {
-    let (tally, par) = (game.tally(), game.world().par());
+fn result_lines(
+    improved: Improved,
+    tally: Tally,
+    par: Option<u32>,
+) -> impl Iterator<Item = String> {
     let best = if improved.rank { " (your best)" } else { "" };
-    let lines = [format!("rank: {}{best}", tally.rank(par)), counts(&tally)];
+    let taken_back = match tally.taken_back {
+        0 => String::new(),
+        count => format!(" with {count} taken back"),
+    };
+    let lines = [format!("rank: {}{taken_back}{best}", tally.rank(par)), counts(&tally)];
     lines.into_iter().chain(par.map(|par| {
         let seconds = tally.steps as f64 * STEP;
         let compared = if seconds <= f64::from(par) { "within" } else { "over" };

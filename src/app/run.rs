@@ -365,6 +365,7 @@ impl App {
         self.goal.moved(acted);
         self.notice.iter_mut().for_each(|notice| notice.moved(acted));
         self.record(intents, steps);
+        self.remember();
         self.follow_outcome();
         steps
     }
@@ -375,7 +376,7 @@ impl App {
     }
 
     /// Shows the result if the player has won the level or died.
-    fn follow_outcome(&mut self) {
+    pub(crate) fn follow_outcome(&mut self) {
         if self.game.is_finished() {
             self.improved = self.record_result();
             self.show(AppScreen::LevelDone);

@@ -252,7 +252,9 @@ impl App {
         if save.checksum.is_some() && save.checksum != checksum {
             return self.show_outdated(save);
         }
+        self.log.taken_back = script.header().taken_back;
         if let Some(script) = &mut self.script {
+            script.set_taken_back(self.log.taken_back);
             for stretch in self.log.stretches() {
                 // As during play, the owner of the file asks for the error later.
                 _ = script.record(stretch.intents, stretch.steps.into());
@@ -276,6 +278,7 @@ impl App {
         }
         self.game.step(intents);
         self.log.record(intents, 1);
+        self.remember();
         if let Some(ghost) = &mut self.ghost {
             ghost.step();
         }

@@ -9,7 +9,7 @@ use crate::app::controls::{Action, KeyContext};
 use crate::app::page::{Effect, Menu, Page, PageKind};
 use crate::app::picture::widened;
 use crate::app::status::{of_steps, whole_seconds};
-use crate::app::store::{Preferences, SaveId};
+use crate::app::store::{Best, Preferences, SaveId};
 use crate::game::{Game, Intents};
 use crate::map::builtin;
 use crate::terminal::{Key, KeyEvent, MouseEvent};
@@ -86,6 +86,8 @@ pub(crate) enum MenuChoice {
     GoOn,
     /// Continues from the last checkpoint.
     Retry,
+    /// Takes the last seconds back.
+    TakeBack,
     /// Begins the level again.
     Restart,
     /// Continues with the next level.
@@ -219,6 +221,7 @@ impl App {
             MenuChoice::Back => self.close(),
             MenuChoice::Change(setting) => self.change_setting(setting, true),
             MenuChoice::Retry => self.retry(),
+            MenuChoice::TakeBack => self.take_back(),
             MenuChoice::GoOn => self.show(AppScreen::Playing),
             MenuChoice::Restart => self.restart_level(),
             MenuChoice::NextLevel => self.next_level(),
@@ -257,7 +260,13 @@ impl App {
     fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
         self.store.best(name, difficulty).map_or_else(
             || "-".to_owned(),
-            |best| format!("{} {:>7}", of_steps(best.tally.steps), best.rank),
+            |Best { tally, rank }| {
+                let taken_back = match tally.taken_back {
+                    0 => String::new(),
+                    count => format!("{count} taken back  "),
+                };
+                format!("{taken_back}{} {rank:>7}", of_steps(tally.steps))
+            },
         )
     }
 
@@ -354,9 +363,14 @@ impl App {
         self.carry_out(effect);
     }
 
+    /// Returns true while the game runs and is not paused.
+    fn plays(&self) -> bool {
+        self.screen() == AppScreen::Playing
+    }
+
     pub(crate) fn key_context(&self) -> KeyContext {
         KeyContext {
-            plays: self.screen() == AppScreen::Playing,
+            plays: self.plays(),
             is_airborne: self.game.grid().is_some_and(Game::is_airborne),
             flies: self.game.grid().is_none(),
         }
@@ -377,7 +391,12 @@ impl App {
 
     fn carry_out(&mut self, effect: Effect) {
         match effect {
-            Effect::None | Effect::Answer(_) | Effect::Other => {}
+            Effect::Answer(key) => {
+                if self.plays() && self.settings.bindings.action(key) == Some(Action::TakeBack) {
+                    self.take_back();
+                }
+            }
+            Effect::None | Effect::Other => {}
             Effect::Redraw => self.shown = None,
             Effect::Change { forward } => self.change_value(forward),
             Effect::Choose => self.choose(),
@@ -391,6 +410,11 @@ impl App {
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),
             Some(Action::NarrowView) => self.widen_view(false),
+            Some(Action::TakeBack) if self.plays() => {
+                let bindings = &self.settings.bindings;
+                let effect = self.pages.press_to_answer(key, press, bindings, self.now);
+                self.carry_out(effect);
+            }
             Some(action) if press != Press::Repeat => self.command(key, action),
             _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
             _ => {}
@@ -421,6 +445,7 @@ impl App {
             }
             (_, Action::ToggleHelp) => self.open(AppScreen::Help),
             (AppScreen::Playing, Action::TogglePause) => self.open(AppScreen::Paused),
+            (_, Action::TakeBack) if key == Key::Backspace => self.go_back(),
             _ if self.demo.is_some() => {}
             (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
             (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),

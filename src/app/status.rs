@@ -52,6 +52,8 @@ pub enum Part {
     Modes,
     /// The keys that the player carries.
     Keys,
+    /// The key that takes time back.
+    TakeBack,
     /// The latest notice, or the goal.
     Notice,
     /// The statistics about frames and the link.
@@ -66,7 +68,7 @@ pub enum Part {
     Help,
 }
 
-const PARTS: usize = 15;
+const PARTS: usize = 16;
 /// The first part at the right end of the line.
 const FIRST_TO_THE_RIGHT: usize = Part::Stats as usize;
 
@@ -78,7 +80,7 @@ enum PartLength {
 }
 
 /// The order in which forms receive space, the most important first.
-const PRIORITIES: [(Part, PartLength); 21] = [
+const PRIORITIES: [(Part, PartLength); 22] = [
     (Part::Help, PartLength::Short),
     (Part::Health, PartLength::Short),
     (Part::Alarm, PartLength::Short),
@@ -86,6 +88,7 @@ const PRIORITIES: [(Part, PartLength); 21] = [
     (Part::Light, PartLength::Short),
     (Part::Supplies, PartLength::Short),
     (Part::Alarm, PartLength::Long),
+    (Part::TakeBack, PartLength::Short),
     (Part::Title, PartLength::Short),
     (Part::Help, PartLength::Long),
     (Part::Keys, PartLength::Short),

@@ -105,10 +105,11 @@ impl Store {
 
     /// Records a run that reached the exit, and returns the improvements.
     pub fn record(&mut self, level: &str, difficulty: Difficulty, run: Run) -> Improved {
-        let best = self.best(level, difficulty);
+        let of_run = Best::of(&run);
+        let best = self.best(level, difficulty).map(|&known| (known, known.and(of_run)));
         let improved = Improved {
-            time: best.is_none_or(|best| run.tally.steps < best.tally.steps),
-            rank: best.is_none_or(|best| run.rank > best.rank),
+            time: best.is_none_or(|(known, best)| best.tally != known.tally),
+            rank: best.is_none_or(|(known, best)| best.rank != known.rank),
         };
         if improved.time || improved.rank {
             self.change(Change::Won { level: level.to_owned(), difficulty, run });

@@ -12,6 +12,7 @@ mod redraws;
 mod saved;
 mod screens;
 mod table;
+mod taking_back;
 mod titles;
 mod tmux_offers;
 

@@ -69,7 +69,11 @@ fn table(entries: &[LevelEntry]) -> String {
         let par = entry.world.par().map_or("-".to_owned(), |seconds| tenths(seconds.into()));
         let [easy, normal, hard] = entry.bests.map(|best| {
             best.map_or("-".to_owned(), |best| {
-                format!("{} {}", of_steps(best.tally.steps), best.rank)
+                let taken_back = match best.tally.taken_back {
+                    0 => String::new(),
+                    count => format!(" ({count} taken back)"),
+                };
+                format!("{} {}{taken_back}", of_steps(best.tally.steps), best.rank)
             })
         });
         let title = entry.world.title().to_owned();
@@ -96,6 +100,7 @@ fn object(entry: &LevelEntry) -> Value {
             "alarms": tally.alarms,
             "deaths": tally.deaths,
             "stunned": tally.stunned,
+            "taken_back": tally.taken_back,
             "rank": best.rank.name(),
         })
     };

@@ -21,6 +21,12 @@
 //! `seed` of the game. The program that plays the script chooses the settings that they leave out.
 //! The same script in the same map produces the same states, bit for bit.
 //!
+//! A player may take time back. `10 s taken-back` removes the ten seconds before it: such a line is
+//! appended while the game is played. The script that is read contains what remains, and counts
+//! these lines. A line `taken-back 2` at the top says how often the script was shortened before it
+//! was written. Rejected: a step that replays would have to undo. Each reader of a script would need
+//! earlier states of the game.
+//!
 //! Rejected: lists of presses and releases with times. Authors would have to add up times, and a
 //! missing line would hold a key forever.
 
@@ -164,14 +170,18 @@ impl fmt::Display for Script {
 impl fmt::Display for Stretch {
     /// Writes the line without a line break.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let duration = match self.steps {
-            1 => "1 step".to_owned(),
-            steps if steps.is_multiple_of(STEPS_PER_TENTH) => {
-                format!("{} s", f64::from(steps) / f64::from(STEPS_PER_SECOND))
-            }
-            steps => format!("{steps} steps"),
-        };
-        write!(f, "{duration:<9} {}", self.intents.words())
+        write!(f, "{:<9} {}", duration(self.steps), self.intents.words())
+    }
+}
+
+/// The first words of a line that lasts `steps` steps.
+fn duration(steps: u32) -> String {
+    match steps {
+        1 => "1 step".to_owned(),
+        steps if steps.is_multiple_of(STEPS_PER_TENTH) => {
+            format!("{} s", f64::from(steps) / f64::from(STEPS_PER_SECOND))
+        }
+        steps => format!("{steps} steps"),
     }
 }
 
@@ -212,6 +222,8 @@ pub struct Header {
     /// from maps are played with the seed 0, so that they are the same for everyone and a route can
     /// be learnt.
     pub seed: Option<u64>,
+    /// The number of times that the player has taken time back. The script lacks that time.
+    pub taken_back: u32,
 }
 
 /// The name of a level in a header: the name of a built-in level, `floor` and a number for a
@@ -221,10 +233,12 @@ pub struct Header {
 pub struct LevelName(String);
 
 /// The first words of the lines of a header.
-const WORDS: [&str; 3] = [LEVEL, DIFFICULTY, SEED];
+const WORDS: [&str; 4] = [LEVEL, DIFFICULTY, SEED, TAKEN_BACK];
 const LEVEL: &str = "level";
 const DIFFICULTY: &str = "difficulty";
 const SEED: &str = "seed";
+/// Also the word after the duration that a line takes back.
+const TAKEN_BACK: &str = "taken-back";
 /// The word before the number of a floor.
 const FLOOR: &str = "floor ";
 
@@ -265,6 +279,9 @@ impl fmt::Display for Header {
         if let Some(seed) = self.seed {
             writeln!(f, "{SEED:<10} {seed}")?;
         }
+        if self.taken_back > 0 {
+            writeln!(f, "{TAKEN_BACK:<10} {}", self.taken_back)?;
+        }
         Ok(())
     }
 }
@@ -272,7 +289,7 @@ impl fmt::Display for Header {
 impl Header {
     /// The header of a game in `level` with these rules.
     pub fn of(level: Option<LevelName>, rules: Rules) -> Self {
-        Self { level, difficulty: Some(rules.difficulty), seed: Some(rules.seed) }
+        Self { level, difficulty: Some(rules.difficulty), seed: Some(rules.seed), taken_back: 0 }
     }
 
     /// The rules, with defaults for missing values.
@@ -300,6 +317,7 @@ impl Header {
         let is_said = match word {
             LEVEL => self.level.is_some(),
             DIFFICULTY => self.difficulty.is_some(),
+            TAKEN_BACK => self.taken_back > 0,
             _ => self.seed.is_some(),
         };
         if is_said {
@@ -321,6 +339,10 @@ impl Header {
                 self.difficulty = Difficulty::named(value);
                 self.difficulty.is_some()
             }
+            TAKEN_BACK => {
+                self.taken_back = value.parse().unwrap_or(0);
+                self.taken_back > 0
+            }
             _ => {
                 self.seed = value.parse().ok();
                 self.seed.is_some()
@@ -334,6 +356,7 @@ fn no_value(word: &str, value: &str, place: Range<usize>) -> Fault {
     let message = match word {
         LEVEL => "a level's name has no control characters".to_owned(),
         DIFFICULTY => format!("there is no difficulty {}", quoted(value)),
+        TAKEN_BACK => "time is taken back once or more often".to_owned(),
         _ => "a seed is a whole number from 0 to 18446744073709551615".to_owned(),
     };
     let names = Difficulty::ALL.map(Difficulty::name);
@@ -349,6 +372,7 @@ fn example(word: &str) -> String {
     match word {
         LEVEL => "write level cellar, level floor 3 or level my.toml".to_owned(),
         DIFFICULTY => "write difficulty easy, difficulty normal or difficulty hard".to_owned(),
+        TAKEN_BACK => "write taken-back 2".to_owned(),
         _ => "write seed 7".to_owned(),
     }
 }
@@ -401,6 +425,21 @@ impl<W: Write> ScriptWriter<W> {
         Ok(())
     }
 
+    /// Sets the number of times that time was taken back before the script begins. Has no effect
+    /// once a stretch has been written.
+    pub fn set_taken_back(&mut self, count: u32) {
+        self.header.iter_mut().for_each(|header| header.taken_back = count);
+    }
+
+    /// Records that the player takes back the last `steps` steps, at most an hour.
+    ///
+    /// # Errors
+    /// If `output` fails.
+    pub fn take_back(&mut self, steps: u32) -> io::Result<()> {
+        self.write_current()?;
+        self.output.write_all(format!("{:<9} {TAKEN_BACK}\n", duration(steps)).as_bytes())
+    }
+
     /// Writes the last stretch.
     ///
     /// # Errors
@@ -434,6 +473,28 @@ struct ScriptReader<'t> {
     faults: Vec<Fault>,
 }
 
+/// A line that begins with a duration.
+enum ScriptLine {
+    Stretch(Stretch),
+    /// The number of steps before the line that are removed.
+    TakenBack(u32),
+}
+
+/// Removes the last `steps` steps of `stretches`. Returns the number of steps that were missing.
+pub(crate) fn taken_back(stretches: &mut Vec<Stretch>, mut steps: u32) -> u32 {
+    while steps > 0
+        && let Some(last) = stretches.last_mut()
+    {
+        let removed = steps.min(last.steps);
+        last.steps -= removed;
+        steps -= removed;
+        if last.steps == 0 {
+            stretches.pop();
+        }
+    }
+    steps
+}
+
 /// A section, and the place of its name.
 struct PlacedSection {
     section: Section,
@@ -455,7 +516,8 @@ impl ScriptReader<'_> {
             return self.read_header(line);
         }
         match self.stretch(line) {
-            Ok(stretch) => self.section().stretches.push(stretch),
+            Ok(ScriptLine::Stretch(stretch)) => self.section().stretches.push(stretch),
+            Ok(ScriptLine::TakenBack(steps)) => self.take_back(steps),
             Err(fault) => {
                 // One fault is enough. If this line were correct, the section would not be empty.
                 self.faults.push(fault);
@@ -472,6 +534,18 @@ impl ScriptReader<'_> {
                 .help("move this line to the top"))
         };
         self.faults.extend(read.err());
+    }
+
+    /// Removes the last `steps` steps, and the sections that then have none.
+    fn take_back(&mut self, mut steps: u32) {
+        self.header.taken_back = self.header.taken_back.saturating_add(1);
+        while let Some(PlacedSection { section, .. }) = self.sections.last_mut() {
+            steps = taken_back(&mut section.stretches, steps);
+            if !section.stretches.is_empty() {
+                break;
+            }
+            self.sections.pop();
+        }
     }
 
     /// The current section.
@@ -505,15 +579,18 @@ impl ScriptReader<'_> {
         }
     }
 
-    fn stretch(&self, line: Range<usize>) -> Result<Stretch, Fault> {
+    fn stretch(&self, line: Range<usize>) -> Result<ScriptLine, Fault> {
         let (steps, rest) = self.duration(line.clone())?;
-        let words = words(self.text, rest);
+        let words = words(self.text, rest.clone());
+        if &self.text[trimmed(self.text, rest)] == TAKEN_BACK {
+            return Ok(ScriptLine::TakenBack(steps));
+        }
         if words.is_empty() {
             return Err(Fault::new(line, "a line needs an intent after its duration")
                 .label("an intent is missing")
                 .help(format!("write {STAND:?} to do nothing")));
         }
-        Ok(Stretch { steps, intents: self.intents(&words)? })
+        Ok(ScriptLine::Stretch(Stretch { steps, intents: self.intents(&words)? }))
     }
 
     /// The number of steps of a line, and the rest of the line.
@@ -686,8 +763,14 @@ mod tests {
             (1..9_u32).prop_map(LevelName::of_floor),
         ];
         let difficulty = prop::sample::select(&Difficulty::ALL);
-        (prop::option::of(level), prop::option::of(difficulty), any::<Option<u64>>())
-            .prop_map(|(level, difficulty, seed)| Header { level, difficulty, seed })
+        let settings =
+            (prop::option::of(level), prop::option::of(difficulty), any::<Option<u64>>());
+        (settings, 0..9_u32).prop_map(|((level, difficulty, seed), taken_back)| Header {
+            level,
+            difficulty,
+            seed,
+            taken_back,
+        })
     }
 
     fn script() -> impl Strategy<Value = Script> {
@@ -765,6 +848,39 @@ mod tests {
             let each = |&(want, steps): &(usize, u64)| (0..steps).map(move |_| wants[want]);
             prop_assert!(script.iter().map(|(_, intents)| intents).eq(happened.iter().flat_map(each)));
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_recording_reads_back_without_the_time_taken_back(
+            happened in prop::collection::vec((0..3_usize, 1..400_u32, any::<bool>()), 1..20)
+        ) {
+            let wants = [Intents::new(), [Intent::Run].into_iter().collect(), Intent::ALL.into_iter().collect()];
+            let (mut text, mut remaining, mut count) = (Vec::new(), Vec::new(), 0);
+            let mut recorder = ScriptWriter::new(&mut text);
+            for &(want, steps, is_taken_back) in &happened {
+                if is_taken_back && !remaining.is_empty() {
+                    recorder.take_back(steps)?;
+                    remaining.truncate(remaining.len().saturating_sub(steps as usize));
+                    count += 1;
+                } else {
+                    recorder.record(wants[want], steps.into())?;
+                    remaining.extend(std::iter::repeat_n(wants[want], steps as usize));
+                }
+            }
+            drop(recorder);
+            prop_assume!(!remaining.is_empty());
+            let script = Script::parse(&String::from_utf8(text)?, "it").unwrap();
+            prop_assert!(script.iter().map(|(_, intents)| intents).eq(remaining));
+            prop_assert_eq!(script.header().taken_back, count);
+        }
+    }
+
+    #[test]
+    fn time_is_taken_back_across_sections() {
+        let text = "taken-back 2\n2 s run\n[b]\n1 s jump\n1.5 s taken-back\n1 s duck\n";
+        let script = Script::parse(text, "it").unwrap();
+        assert_eq!(script.to_string(), "taken-back 3\n\n1.5 s     run\n1 s       duck\n");
     }
 
     #[test]

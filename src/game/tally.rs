@@ -38,6 +38,10 @@ pub struct Tally {
     pub deaths: u32,
     /// The number of guards that the player has stunned.
     pub stunned: u32,
+    /// The number of times that the player has taken time back. A game does not count that: the
+    /// script of the run does.
+    #[serde(default)]
+    pub taken_back: u32,
 }
 
 /// A rank for a level, from the worst to the best.
@@ -120,7 +124,7 @@ impl Game {
     pub fn tally(&self) -> Tally {
         let Counts { alarms, deaths, stunned } = self.player.counts;
         let (treasure, secrets) = (self.treasure(), self.secrets());
-        Tally { steps: self.steps, treasure, secrets, alarms, deaths, stunned }
+        Tally { steps: self.steps, treasure, secrets, alarms, deaths, stunned, taken_back: 0 }
     }
 }
 

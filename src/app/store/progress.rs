@@ -245,7 +245,8 @@ pub struct Run {
 pub struct Best {
     /// The tally of the fastest run.
     pub tally: Tally,
-    /// The highest rank of all runs.
+    /// The highest rank of all runs. If the player has taken time back in the fastest run, then also
+    /// in the run with this rank.
     pub rank: Rank,
 }
 
@@ -300,8 +301,14 @@ impl Best {
         Self { tally: run.tally, rank: run.rank }
     }
 
-    /// The better value of each. If both runs are equally fast, the tally of `self` stays.
+    /// The better value of each. If both runs are equally fast, the tally of `self` stays. The
+    /// results of runs without time taken back replace the results of runs with it.
     pub fn and(self, other: Self) -> Self {
+        match (self.tally.taken_back, other.tally.taken_back) {
+            (0, 1..) => return self,
+            (1.., 0) => return other,
+            _ => {}
+        }
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
     }

@@ -65,6 +65,7 @@ fn run(steps: u64, rank: Rank) -> Run {
         alarms: 4,
         deaths: 5,
         stunned: 6,
+        taken_back: 0,
     };
     Run { tally, rank, script: format!("{steps} steps forward\n") }
 }

@@ -31,6 +31,9 @@ const OLDEST: u64 = 1;
 /// if they differ from the default.
 const OLDEST_PREFERENCES: usize = 5;
 
+/// The key of the number of times that time was taken back, which is left out if it is 0.
+const TAKEN_BACK: &str = "taken-back";
+
 /// The table of saved games. Its sections have numbers, and the newest game has the largest one.
 const SAVES: &str = "saves";
 /// The sections for the only saved level and the only saved descent in older versions.
@@ -139,6 +142,7 @@ fn best(section: &Entry<'_, '_>) -> Option<Best> {
             alarms: values.take("alarms", number)?,
             deaths: values.take("deaths", number)?,
             stunned: values.take("stunned", number)?,
+            taken_back: values.take(TAKEN_BACK, number).unwrap_or(0),
         };
         Some(Best { tally, rank: values.take("rank", |entry| Rank::named(text(entry)?))? })
     })
@@ -284,6 +288,9 @@ fn write_best(f: &mut fmt::Formatter<'_>, best: &Best) -> fmt::Result {
         writeln!(f, "{name} = [{found}, {total}]")?;
     }
     writeln!(f, "alarms = {}\ndeaths = {}", tally.alarms, tally.deaths)?;
+    if tally.taken_back > 0 {
+        writeln!(f, "{TAKEN_BACK} = {}", tally.taken_back)?;
+    }
     writeln!(f, "stunned = {}\nrank = \"{}\"", tally.stunned, rank.name())
 }
 

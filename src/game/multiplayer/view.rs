@@ -190,6 +190,7 @@ impl<'a> PlayerView<'a> {
             alarms: self.player.counts.alarms,
             deaths: self.player.counts.deaths,
             stunned: self.player.counts.stunned,
+            taken_back: 0,
         }
     }
 

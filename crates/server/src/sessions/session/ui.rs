@@ -373,5 +373,6 @@ impl Ui {
 /// The key bindings without the keys that have another meaning in a room.
 pub(crate) fn bindings_of(configuration: &Configuration) -> Bindings {
     let keys = ['/', ';', '1', '7'].map(Key::Char);
-    configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
+    let others = [Key::Enter, Key::Tab, Key::Backspace];
+    configuration.bindings.clone().without(&keys).without(&others)
 }
