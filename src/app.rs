@@ -49,7 +49,7 @@ use detection::Detection;
 use history::History;
 pub use levels::Levels;
 use page::Pages;
-use picture::{MapPanel, TerminalLook};
+use picture::{MapPanel, Suspicion, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views, Watch};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder, Steps};
@@ -73,6 +73,8 @@ struct Shown {
     revision: u64,
     /// The figures in view.
     figures: Vec<Figure>,
+    /// The suspicion of each guard.
+    suspicions: Vec<Option<Suspicion>>,
 }
 
 #[derive(Default)]

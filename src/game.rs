@@ -69,6 +69,7 @@ pub use rules::{
     Strikes,
 };
 pub use script::{Header, LevelName, Script, ScriptWriter, Section, Stretch};
+pub use sight::SightCone;
 pub use sound::{Heard, Sound, SoundKind, Source};
 pub use stored::{RULES_VERSION, Unrestorable};
 pub use tally::{Rank, Share, Tally};

@@ -15,7 +15,7 @@ use std::time::Duration;
 use ratatui::layout::{Rect, Size};
 
 use crate::app::controls::{Action, Bindings};
-use crate::app::picture::{DrawOptions, Overlay};
+use crate::app::picture::{DrawOptions, Overlay, Suspicion};
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::AppScreen;
@@ -184,9 +184,10 @@ impl App {
 impl App {
     /// Returns true if the screen is out of date.
     pub(crate) fn is_stale(&self) -> bool {
-        let Some(Shown { viewpoint, revision, figures }) = &self.shown else { return true };
-        (*viewpoint, *revision) != self.surroundings()
-            || !self.figures_in_view().eq(figures)
+        let Some(shown) = &self.shown else { return true };
+        (shown.viewpoint, shown.revision) != self.surroundings()
+            || !self.figures_in_view().eq(&shown.figures)
+            || !self.suspicions().eq(shown.suspicions.iter().copied())
             || self.steps_to_animation() == Some(0)
     }
 
@@ -208,6 +209,12 @@ impl App {
         in_view.map(|(.., figure)| figure)
     }
 
+    /// The suspicion of each guard, in view or not.
+    fn suspicions(&self) -> impl Iterator<Item = Option<Suspicion>> {
+        let guards = self.game.grid().into_iter().flat_map(Game::guards);
+        guards.map(|guard| Suspicion::of(&guard))
+    }
+
     /// The number of steps until the next animation; `None` for never.
     fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
@@ -218,7 +225,8 @@ impl App {
     pub(crate) fn drawn(&mut self) {
         let (viewpoint, revision) = self.surroundings();
         let figures = self.figures_in_view().copied().collect();
-        self.shown = Some(Shown { viewpoint, revision, figures });
+        let suspicions = self.suspicions().collect();
+        self.shown = Some(Shown { viewpoint, revision, figures, suspicions });
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));
     }

@@ -11,6 +11,8 @@
 //!   marks work without colours. If a guard notices the player or strikes, a word says so. If two
 //!   marks would overlap, a threat or the louder sound keeps its place, and the other mark moves
 //!   aside.
+//! - **Suspicion.** A guard in view who has noticed something has a mark above the head: `?` to `???`
+//!   the surer they are, `<?>` while they search, and `!!!` while they follow the player.
 //! - **The flash.** It is red on the side of the blow when the player is hurt, and golden when the
 //!   player finds something. It tints the pixels before they are painted, so every colour depth
 //!   shows it. Without colours, the edge is drawn in characters.
@@ -25,12 +27,15 @@ use crate::app::page::{self, BORDERS, PADDING, framed, panel, wrapped};
 use crate::app::setting::{MapDisplay, Preferences};
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::game::{Flash, FlashKind, Game, Heard, PlayerId, PlayerView, SoundKind};
+use crate::game::{
+    Flash, FlashKind, Game, GuardView, Heard, Mood, PlayerId, PlayerView, SightCone, SoundKind,
+};
 use crate::render::{Filter, Frame, Renderable};
 use crate::sort;
 use crate::terminal::Protocol;
 use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, Explored, FirstPerson, GlyphSet, MapMark, Minimap, View};
+use crate::visibility::{FrameSize, Projection};
 use crate::world::{Camera, FieldOfView, Heading};
 
 /// The known properties of the terminal that affect the picture.
@@ -182,11 +187,40 @@ impl<'a> Overlay<'a> {
             draw_compass(canvas, area, heading);
         }
         if shows_events {
-            draw_sounds(canvas, area, player.heard(), heading, options.depth);
+            let marks = self.preferences.marks;
+            let taken = if marks { self.draw_suspicions(canvas, area) } else { Vec::new() };
+            draw_sounds(canvas, area, (player.heard(), taken), heading, options.depth);
             if let Some(note) = player.note() {
                 draw_note(canvas, area, note);
             }
         }
+    }
+
+    /// Draws the suspicion of each guard in view above the guard's head. Returns the areas.
+    fn draw_suspicions(&self, canvas: &mut impl Canvas, area: Rect) -> Vec<Rect> {
+        let Self { player, options, .. } = self;
+        let (width, height) = (area.width.into(), area.height.into());
+        let mut taken = Vec::new();
+        let Some(size) = FrameSize::new(width, height) else { return taken };
+        let camera = player.camera(options.field_of_view);
+        let cell = options.cell_aspect.of_pixels(GlyphSet::Ascii);
+        let projection = Projection::new(&camera, size, cell);
+        for guard in player.guards_in_sight(&camera) {
+            let Some(suspicion) = Suspicion::of(&guard) else { continue };
+            let text = suspicion.text();
+            let place = projection.place(guard.position);
+            let head = projection.row_at(guard.feet + guard.kind.height(), place.depth);
+            let columns = text.len() as u16;
+            let last = area.width.saturating_sub(columns);
+            let x = (place.column - f64::from(columns) / 2.0).round().clamp(0.0, last.into());
+            let y = (head - 1.0).floor().max(ROWS_ABOVE_MARKS).min(f64::from(area.height - 1));
+            let mark = Line::raw(text).style(suspicion.style(options.depth));
+            let (x, y) = (area.x + x as u16, area.y + y as u16);
+            let place = Rect { x, y, width: columns, height: 1 }.intersection(area);
+            canvas.draw_widget(mark, place);
+            taken.push(place);
+        }
+        taken
     }
 
     /// Draws the map panel, if it is shown, and the ghost on it, if there is one. `view` must hold
@@ -210,8 +244,15 @@ impl<'a> Overlay<'a> {
         let others = player.others_on_map();
         let others = others.map(|it| MapMark { position: it.position, heading: it.heading });
         let marks: Vec<MapMark> = guards.chain(others).collect();
+        let seen = player.guards_in_sight(camera);
+        let cones: Vec<SightCone> = seen.filter_map(|guard| game.sight_cone(&guard)).collect();
         let map = panel.minimap(game, camera, view);
-        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(ghost);
+        let map = map
+            .glyphs(options.glyphs)
+            .color_depth(options.depth)
+            .marks(&marks)
+            .cones(&cones)
+            .ghost(ghost);
         if let Some(place) = page::minimap(area, &map, panel.is_narrow) {
             let inside = framed(canvas, place, "map");
             map.paint(inside, canvas);
@@ -266,11 +307,12 @@ const ROWS_ABOVE: u16 = 1;
 /// The minimum width of a picture with room for words, in columns.
 const COLUMNS_FOR_WORDS: u16 = 40;
 
-/// Draws a mark for each of `heard`, relative to the direction of view `heading`.
+/// Draws a mark for each of `heard`, relative to the direction of view `heading`, outside the areas
+/// that are `taken`.
 fn draw_sounds(
     canvas: &mut impl Canvas,
     picture: Rect,
-    heard: &[Heard],
+    (heard, mut taken): (&[Heard], Vec<Rect>),
     heading: Heading,
     depth: ColorDepth,
 ) {
@@ -280,7 +322,6 @@ fn draw_sounds(
     let ring = Rect { y: picture.y + ROWS_ABOVE, height: picture.height - ROWS_ABOVE, ..picture };
     let mut loudest: Vec<&Heard> = heard.iter().collect();
     sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
-    let mut taken: Vec<Rect> = Vec::new();
     for heard in loudest.into_iter().take(MAX) {
         let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
         let Some(area) = free_place(ring, angle(heard, heading), &text, &taken) else { continue };
@@ -411,6 +452,66 @@ fn style(kind: SoundKind, depth: ColorDepth) -> Style {
         (ColorDepth::Indexed256, true) => bold.fg(Color::Indexed(203)),
         (ColorDepth::True, false) => Style::new().fg(Color::Rgb(0xa8, 0xd0, 0xf0)),
         (ColorDepth::True, true) => bold.fg(Color::Rgb(0xff, 0x60, 0x50)),
+    }
+}
+
+/// What a guard suspects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Suspicion {
+    /// The guard notices something, or wonders. The number of thirds of what raises the alarm.
+    Wary(u8),
+    /// The guard has lost a player, and looks for them.
+    Searching,
+    /// The guard follows a player.
+    Alarmed,
+}
+
+/// The number of rows at the top without marks: for the compass, and for sounds from ahead.
+const ROWS_ABOVE_MARKS: f64 = 2.0;
+/// Less awareness than this shows no mark.
+const LEAST_AWARENESS: u16 = 30;
+
+impl Suspicion {
+    /// What `guard` suspects; `None` if the guard is calm.
+    pub(crate) fn of(guard: &GuardView) -> Option<Self> {
+        let awareness = guard.awareness.min(GuardView::SURE - 1);
+        let thirds = (3 * awareness / GuardView::SURE) as u8 + 1;
+        match guard.mood {
+            Mood::Chasing | Mood::Attacking => Some(Self::Alarmed),
+            Mood::Searching => Some(Self::Searching),
+            Mood::Wondering => Some(Self::Wary(thirds)),
+            Mood::OnDuty | Mood::Returning if awareness >= LEAST_AWARENESS => {
+                Some(Self::Wary(thirds))
+            }
+            Mood::OnDuty | Mood::Returning | Mood::Asleep | Mood::Down => None,
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Wary(1) => "?",
+            Self::Wary(2) => "??",
+            Self::Wary(_) => "???",
+            Self::Searching => "<?>",
+            Self::Alarmed => "!!!",
+        }
+    }
+
+    /// The colours from pale yellow to red.
+    fn style(self, depth: ColorDepth) -> Style {
+        let (of_16, of_256, color) = match self {
+            Self::Wary(1) => (15, 230, (0xff, 0xf0, 0xc0)),
+            Self::Wary(_) => (11, 221, (0xff, 0xd8, 0x50)),
+            Self::Searching => (14, 215, (0xff, 0xa8, 0x48)),
+            Self::Alarmed => (9, 203, (0xff, 0x60, 0x50)),
+        };
+        let bold = Style::new().add_modifier(Modifier::BOLD);
+        match depth {
+            ColorDepth::Mono => bold.add_modifier(Modifier::REVERSED),
+            ColorDepth::Indexed16 => bold.fg(Color::Indexed(of_16)),
+            ColorDepth::Indexed256 => bold.fg(Color::Indexed(of_256)),
+            ColorDepth::True => bold.fg(Color::Rgb(color.0, color.1, color.2)),
+        }
     }
 }
 

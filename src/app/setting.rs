@@ -442,6 +442,8 @@ pub struct Preferences {
     pub bell: bool,
     /// `true` to show the ghost of the best run.
     pub ghost: bool,
+    /// `true` to mark the guards who suspect something.
+    pub marks: bool,
     /// The difficulty of new games.
     pub difficulty: Difficulty,
     /// The glyph set; `None` for the best set that the terminal supports.
@@ -461,6 +463,7 @@ impl Default for Preferences {
             compass: false,
             bell: false,
             ghost: true,
+            marks: true,
             difficulty: Difficulty::Normal,
             glyphs: None,
             colors: None,
@@ -488,7 +491,7 @@ impl Preferences {
 }
 
 /// The preferences, in the order of the file.
-pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
+pub(crate) const PREFERENCES: [Setting<Preferences>; 10] = [
     Setting::CROSSHAIR,
     Setting::COMPASS,
     Setting::BELL,
@@ -498,6 +501,7 @@ pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
     Setting::COLORS,
     Setting::CORRECTION,
     Setting::FRAME_RATE,
+    Setting::MARKS,
 ];
 
 /// The preferences as settings of any type that contains them, with their labels on a settings
@@ -515,6 +519,9 @@ impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// Whether the ghost of the best run is shown.
     pub const GHOST: Self =
         Self::new("ghost", "Ghost of the best run", &At(|it: &mut C| &mut it.as_mut().ghost));
+    /// Whether marks show what guards suspect.
+    pub const MARKS: Self =
+        Self::new("marks", "Marks above guards", &At(|it: &mut C| &mut it.as_mut().marks));
     /// The difficulty of new games.
     pub const DIFFICULTY: Self =
         Self::new("difficulty", "Difficulty", &At(|it: &mut C| &mut it.as_mut().difficulty));

@@ -420,11 +420,12 @@ impl<C: AsMut<Choices> + Clone> Setting<C> {
 }
 
 /// The rows, in the order of the page.
-const ROWS: [Setting<Choices>; 11] = [
+const ROWS: [Setting<Choices>; 12] = [
     Setting::DIFFICULTY,
     Setting::CROSSHAIR,
     Setting::COMPASS,
     Setting::GHOST,
+    Setting::MARKS,
     Setting::BELL,
     Setting::MAP,
     Setting::MOUSE,

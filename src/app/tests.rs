@@ -2,6 +2,7 @@
 
 mod colours;
 mod gestures;
+mod guards;
 mod interruption;
 mod kept;
 mod levels;

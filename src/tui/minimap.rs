@@ -19,6 +19,7 @@ use super::glyphs::color_at;
 use super::{GlyphSet, blocks};
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
+use crate::game::SightCone;
 use crate::world::{Camera, Heading, World};
 
 /// A widget that shows the map from above: walls in their colours, floor by its height, the player as an arrow, and
@@ -33,6 +34,7 @@ pub struct Minimap<'a> {
     distances: &'a [f64],
     explored: Option<&'a Explored>,
     marks: &'a [MapMark],
+    cones: &'a [SightCone],
     ghost: Option<MapMark>,
     glyphs: GlyphSet,
     depth: ColorDepth,
@@ -49,6 +51,7 @@ impl<'a> Minimap<'a> {
             distances: &[],
             explored: None,
             marks: &[],
+            cones: &[],
             ghost: None,
             glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
@@ -74,6 +77,13 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn marks(self, marks: &'a [MapMark]) -> Self {
         Self { marks, ..self }
+    }
+
+    /// Sets the floor that guards look at, which is tinted. A cone shows only if its guard is where the floor is
+    /// visible.
+    #[must_use]
+    pub fn cones(self, cones: &'a [SightCone]) -> Self {
+        Self { cones, ..self }
     }
 
     /// Sets the mark of a ghost. It shows wherever it is on the map.
@@ -125,7 +135,7 @@ impl Minimap<'_> {
         let seen = (self.distances, self.explored);
         // The width of a pixel in cells of the map.
         let pixel = 1.0 / window.scale.x;
-        let top_view = TopView::new(self.world, self.camera, seen, pixel);
+        let top_view = TopView::new(self.world, self.camera, seen, pixel).watched(self.cones);
         let picture = MapPicture { top_view, window };
         match self.glyphs {
             GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
@@ -137,12 +147,8 @@ impl Minimap<'_> {
                 (point.look().character, colors.map(|color| color_at(self.depth, color)))
             }),
         }
-        // Pointers to the east, south, west and north, and for the player also between these.
-        let (mark_pointers, ghost_pointers) = if self.glyphs.has_blocks() {
-            (['▸', '▾', '◂', '▴'], ['▹', '▿', '◃', '▵'])
-        } else {
-            ([')', 'u', '(', 'n'], ['g'; 4])
-        };
+        let ghost_pointers =
+            if self.glyphs.has_blocks() { ['▹', '▿', '◃', '▵'] } else { ['g'; 4] };
         let mut draw = |mark: &MapMark, pointers: &[char], colors: [Color; 2]| {
             window.draw(canvas, area, mark, pointers, colors);
         };
@@ -152,7 +158,7 @@ impl Minimap<'_> {
         }
         let colors = self.colors([MARK_TEXT, MARK], [15, 9]);
         for mark in self.marks.iter().filter(|mark| picture.top_view.is_visible(mark.position)) {
-            draw(mark, &mark_pointers, colors);
+            draw(mark, self.pointers(), colors);
         }
         let player = MapMark { position: self.camera.position(), heading: self.camera.heading };
         draw(&player, self.arrows(), self.colors([Rgb::BLACK, PLAYER], [0, 11]));
@@ -165,6 +171,11 @@ impl Minimap<'_> {
             let colors = [Rgb::BLACK, ground].map(|color| color_at(self.depth, color));
             self.window(area).draw(canvas, area, mark, self.arrows(), colors);
         }
+    }
+
+    /// Pointers to the east, south, west and north, for guards.
+    fn pointers(&self) -> &'static [char] {
+        if self.glyphs.has_blocks() { &['▸', '▾', '◂', '▴'] } else { &[')', 'u', '(', 'n'] }
     }
 
     /// Arrows to the east, south-east, south and so on.

@@ -28,7 +28,8 @@ fn heard(degrees: f64, kind: SoundKind, strength: u8) -> Heard {
 fn shown(heard: &[Heard], heading: f64, (columns, rows): (u16, u16)) -> String {
     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
     let heading = Heading::from_degrees(heading).unwrap();
-    draw_sounds(&mut buffer, Rect::new(0, 0, columns, rows), heard, heading, ColorDepth::Mono);
+    let area = Rect::new(0, 0, columns, rows);
+    draw_sounds(&mut buffer, area, (heard, Vec::new()), heading, ColorDepth::Mono);
     let lines = buffer.content().chunks(columns.into());
     lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
 }

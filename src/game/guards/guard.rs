@@ -211,6 +211,26 @@ pub struct GuardView {
     pub mood: Mood,
     /// Whether the guard lies on the floor.
     pub is_down: bool,
+    /// How sure the guard is of a player, from 0 to [`GuardView::SURE`].
+    pub awareness: u16,
+}
+
+impl GuardView {
+    /// The awareness at which a guard raises the alarm.
+    pub const SURE: u16 = ALARMED;
+
+    /// The range in cells and the cosine of half the angle of the guard's sight on duty; `None` if
+    /// the guard does not look.
+    pub(crate) fn sight(&self) -> Option<(f64, f64)> {
+        let looks = !self.is_down && self.mood != Mood::Asleep;
+        let sight = abilities(self.kind).sight.filter(|_| looks)?;
+        Some((sight.range, sight.least_cosine))
+    }
+
+    /// The guard's eye.
+    pub(crate) fn eye(&self) -> Point {
+        Point { position: self.position, height: self.feet + abilities(self.kind).eye }
+    }
 }
 
 impl Guard {
@@ -383,6 +403,7 @@ impl Guard {
             heading: self.mover.heading,
             mood: self.state.mood(),
             is_down: self.state.is_down(),
+            awareness: self.awareness,
         }
     }
 

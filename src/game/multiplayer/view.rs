@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::game::player::{Motion, Player};
 use crate::game::rules::{PlayerId, Sees};
 use crate::game::sight::{Point, is_in_sight};
-use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
+use crate::game::{Flash, Game, GuardView, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Camera, FieldOfView, Heading, Supply};
 
@@ -230,6 +230,28 @@ impl<'a> PlayerView<'a> {
         let eye = Point { position: motion.position(), height: motion.head() - EYE };
         let middle = Point { position, height: feet + MIDDLE };
         is_in_sight(&game.world, game.smoke.clouds(), eye, middle)
+    }
+
+    /// The guards in the picture of `camera`, which is this player's, unless something hides both
+    /// the middle and the top of their bodies.
+    pub fn guards_in_sight(&self, camera: &Camera) -> impl Iterator<Item = GuardView> + use<'a> {
+        let Self { game, player, .. } = *self;
+        let (direction, half_width) = (camera.direction(), camera.field_of_view.half_width());
+        let eye = player.motion.position();
+        let from = Point { position: eye, height: player.motion.head() - EYE };
+        let in_picture = game.guards().filter(move |guard| {
+            let way = guard.position - eye;
+            let depth = way.dot(direction);
+            depth > 0.0 && way.dot(direction.perp()).abs() <= depth * half_width
+        });
+        in_picture.filter(move |guard| {
+            let parts = [0.5, 0.95].map(|part| Point {
+                position: guard.position,
+                height: guard.feet + guard.kind.height() * part,
+            });
+            let clouds = game.smoke.clouds();
+            parts.iter().any(|&to| is_in_sight(&game.world, clouds, from, to))
+        })
     }
 
     fn member(&self) -> Option<&'a super::Member> {

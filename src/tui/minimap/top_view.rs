@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::explored::{Explored, SeenRow};
 use crate::color::Rgb;
+use crate::game::SightCone;
 use crate::numeric::rounding::floor_short;
 use crate::world::{
     Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileEffect, TileId, TileKind, World,
@@ -21,6 +22,8 @@ pub(crate) struct TopView<'a> {
     world: &'a World,
     visible_floor: VisibleFloor<'a>,
     explored: Option<&'a Explored>,
+    /// The cones of the guards in view.
+    cones: Vec<&'a SightCone>,
     /// The appearance of each tile.
     tiles: [TileAppearance; TileId::MAX],
     /// The width of a pixel in cells.
@@ -55,7 +58,15 @@ impl<'a> TopView<'a> {
         for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
             *appearance = appearance_of(tile, world, camera.eye());
         }
-        Self { world, visible_floor: VisibleFloor::new(camera, distances), explored, tiles, pixel }
+        let visible_floor = VisibleFloor::new(camera, distances);
+        Self { world, visible_floor, explored, cones: Vec::new(), tiles, pixel }
+    }
+
+    /// The same view, with the floor tinted that guards in view look at.
+    #[must_use]
+    pub(crate) fn watched(mut self, cones: &'a [SightCone]) -> Self {
+        self.cones = cones.iter().filter(|cone| self.is_visible(cone.position())).collect();
+        self
     }
 
     /// The row of points at the distance `y` from the map's northern edge.
@@ -127,6 +138,9 @@ impl MapRow<'_> {
         match self.thing(cell) {
             Some(ThingKind::Exit) => MapPoint::Exit,
             Some(kind) if self.is_on_dot(point, cell) => dot(kind),
+            _ if self.view.cones.iter().any(|cone| cone.contains(point)) => {
+                MapPoint::Watched(floor)
+            }
             _ if self.view.visible_floor.contains(point) => MapPoint::InView(floor),
             _ => MapPoint::Floor(floor),
         }
@@ -240,6 +254,8 @@ pub(crate) enum MapPoint {
     Floor(Floor),
     /// Floor in the field of view.
     InView(Floor),
+    /// Floor that a guard in view looks at.
+    Watched(Floor),
     Exit,
     Key,
     /// Something that the player can take or read.
@@ -254,6 +270,8 @@ pub(crate) struct Floor {
     color: Rgb,
     /// The floor's colour if it is visible.
     lit: Rgb,
+    /// The floor's colour if a guard looks at it.
+    watched: Rgb,
 }
 
 /// The kinds of floor.
@@ -277,6 +295,8 @@ const WATER: Rgb = Rgb::new(0x10, 0x48, 0x80);
 /// The tint of visible floor, and its share.
 const TINT: Rgb = Rgb::new(0x7a, 0x72, 0x50);
 const TINT_SHARE: f64 = 0.7;
+/// The tint of floor that a guard looks at.
+const WATCHED: Rgb = Rgb::new(0xa8, 0x64, 0x10);
 /// Points outside of the map.
 const VOID: Rgb = Rgb::BLACK;
 /// The cell to reach.
@@ -316,7 +336,8 @@ impl Floor {
     }
 
     fn of(kind: FloorKind, color: Rgb) -> Self {
-        Self { kind, color, lit: mix(color, TINT, TINT_SHARE) }
+        let [lit, watched] = [TINT, WATCHED].map(|tint| mix(color, tint, TINT_SHARE));
+        Self { kind, color, lit, watched }
     }
 }
 
@@ -355,6 +376,7 @@ impl MapPoint {
             Self::Wall(color) | Self::Door(color) => color,
             Self::Floor(floor) => floor.color,
             Self::InView(floor) => floor.lit,
+            Self::Watched(floor) => floor.watched,
             Self::Exit => EXIT,
             Self::Key => KEY,
             Self::Item => ITEM,
@@ -366,6 +388,7 @@ impl MapPoint {
     pub(crate) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
             Self::Wall(_) | Self::Door(_) => true,
+            Self::Watched(_) => (x / 2 + y).is_multiple_of(3),
             Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
                 FloorKind::Ledge => (x + y).is_multiple_of(2),
                 FloorKind::Water => y.is_multiple_of(2) && !x.is_multiple_of(3),
@@ -395,6 +418,7 @@ impl MapPoint {
             Self::Void => ((' ', 0), 0),
             Self::Floor(it) => (floor(it, ('.', 8)), 1),
             Self::InView(it) => (floor(it, (':', 3)), 2),
+            Self::Watched(_) => (('%', 1), 3),
             Self::Ornament => (('o', 2), 3),
             Self::Wall(_) => (('#', 7), 4),
             Self::Door(_) => (('+', 5), 5),

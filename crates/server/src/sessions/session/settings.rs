@@ -38,7 +38,7 @@ const CHAT: Setting<SessionChoices> =
     Setting { key: "chat", about: "Chat", value: &At(|it: &mut SessionChoices| &mut it.chat) };
 
 /// The rows in the order of the page. The last one appears only in a room.
-const ROWS: [Setting<SessionChoices>; 12] = [
+const ROWS: [Setting<SessionChoices>; 13] = [
     Setting::DIFFICULTY,
     PRESET,
     Setting::MOUSE,
@@ -49,10 +49,11 @@ const ROWS: [Setting<SessionChoices>; 12] = [
     Setting::GLYPHS,
     Setting::COLORS,
     Setting::CORRECTION,
+    Setting::MARKS,
     CHAT,
     Setting::MAP,
 ];
-const ROWS_OUTSIDE_OF_ROOMS: usize = 11;
+const ROWS_OUTSIDE_OF_ROOMS: usize = 12;
 
 impl Ui {
     pub(crate) fn settings_menu(&self) -> Menu<Choice> {
