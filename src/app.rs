@@ -8,6 +8,7 @@ mod detection;
 mod draw;
 mod history;
 mod levels;
+mod look_back;
 mod page;
 mod picture;
 mod played;
@@ -48,6 +49,7 @@ use controls::{Clock, Controls, Pointer};
 use detection::Detection;
 use history::History;
 pub use levels::Levels;
+use look_back::LookBack;
 use page::Pages;
 use picture::{MapPanel, Suspicion, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views, Watch};
@@ -75,6 +77,8 @@ struct Shown {
     figures: Vec<Figure>,
     /// The suspicion of each guard.
     suspicions: Vec<Option<Suspicion>>,
+    /// The index of the moment in the look back.
+    moment: Option<usize>,
 }
 
 #[derive(Default)]
@@ -92,6 +96,8 @@ struct App {
     log: RunLog,
     /// Past states of the level; `None` if they are of no use.
     history: Option<History>,
+    /// The last seconds before the player's death, if a guard noticed them.
+    look_back: Option<LookBack>,
     /// A replay of the best run of the level.
     ghost: Option<Ghost>,
     /// The improvement from the last level won, once that result is recorded.

@@ -87,6 +87,10 @@ impl App {
                 let below = title::draw_banner(canvas, picture, self.settings.glyphs, self.depth());
                 self.pages.menu.draw(canvas, below);
             }
+            AppScreen::Dead => {
+                let beside = self.draw_look_back(canvas, picture, &self.draw_options());
+                self.pages.menu.draw(canvas, beside);
+            }
             _ => self.pages.menu.draw(canvas, picture),
         }
     }
@@ -144,13 +148,16 @@ impl App {
         if self.demo.is_some() {
             return;
         }
+        let looks_back = self.looks_back_in(area);
         let preferences = self.store.preferences();
         let game = self.game.grid();
         let overlay =
             game.and_then(|game| Overlay::new(game, PlayerId::FIRST, &options, preferences));
         let Some(overlay) = overlay else { return options.draw_middle(canvas, area) };
         let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
-        overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
+        if !looks_back {
+            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
+        }
         overlay.draw_hud(canvas, area, self.screen() == AppScreen::Playing);
     }
 
@@ -188,6 +195,7 @@ impl App {
         (shown.viewpoint, shown.revision) != self.surroundings()
             || !self.figures_in_view().eq(&shown.figures)
             || !self.suspicions().eq(shown.suspicions.iter().copied())
+            || self.moment_shown() != shown.moment
             || self.steps_to_animation() == Some(0)
     }
 
@@ -226,7 +234,8 @@ impl App {
         let (viewpoint, revision) = self.surroundings();
         let figures = self.figures_in_view().copied().collect();
         let suspicions = self.suspicions().collect();
-        self.shown = Some(Shown { viewpoint, revision, figures, suspicions });
+        let moment = self.moment_shown();
+        self.shown = Some(Shown { viewpoint, revision, figures, suspicions, moment });
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));
     }
@@ -237,7 +246,7 @@ impl App {
             return Some(self.clock.step_after(0));
         }
         if self.screen() != AppScreen::Playing {
-            return self.pages.pending_until();
+            return self.pages.pending_until().into_iter().chain(self.next_moment()).min();
         }
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));

@@ -43,6 +43,11 @@ impl History {
         self.steps
     }
 
+    /// The number of steps of the run before the game started.
+    pub(crate) fn begun(&self) -> u64 {
+        self.begun
+    }
+
     /// Records that `game` is the state after `steps` steps of the run.
     pub(crate) fn record(&mut self, steps: u64, game: &Game) {
         self.steps = steps;

@@ -706,10 +706,12 @@ impl MapPanel {
         camera: &'a Camera,
         view: &'a View,
     ) -> Minimap<'a> {
-        let map = Minimap::new(game.world(), camera)
-            .seen(view.distances())
-            .zoom(self.zoom)
-            .offset(self.offset);
+        self.plain(game, camera).seen(view.distances()).zoom(self.zoom).offset(self.offset)
+    }
+
+    /// The known part of the map of `game`, around `camera`.
+    pub(crate) fn plain<'a>(&'a self, game: &'a Game, camera: &'a Camera) -> Minimap<'a> {
+        let map = Minimap::new(game.world(), camera);
         match self.display {
             MapDisplay::All => map,
             MapDisplay::Seen | MapDisplay::Off => map.explored(&self.explored),

@@ -2,6 +2,7 @@
 //! end of the last level.
 
 use crate::app::App;
+use crate::app::look_back::LookBack;
 use crate::app::page::Menu;
 use crate::app::recording::{self, RunLog, Steps};
 use crate::app::screen::MenuChoice;
@@ -139,7 +140,8 @@ impl App {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };
-        let menu = Menu::new("you are dead").line(cause);
+        let noticed = self.look_back.as_ref().map(LookBack::sentence);
+        let menu = Menu::new("you are dead").line(cause).lines(noticed);
         if self.is_descent() {
             return self.with_leaving(menu.lines(self.descent_lines()));
         }

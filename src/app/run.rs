@@ -381,6 +381,7 @@ impl App {
             self.improved = self.record_result();
             self.show(AppScreen::LevelDone);
         } else if self.game.grid().is_some_and(Game::is_dead) {
+            self.look_back();
             self.show(AppScreen::Dead);
         }
     }

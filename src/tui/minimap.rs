@@ -173,6 +173,48 @@ impl Minimap<'_> {
         }
     }
 
+    /// Draws the mark of a guard on the same `area`, wherever the guard is on the map, in `color`.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn paint_mark(
+        &self,
+        area: Rect,
+        canvas: &mut impl Canvas,
+        mark: &MapMark,
+        color: Rgb,
+    ) {
+        let area = area.intersection(canvas.bounds());
+        if !area.is_empty() {
+            let colors = [Rgb::BLACK, color].map(|color| color_at(self.depth, color));
+            self.window(area).draw(canvas, area, mark, self.pointers(), colors);
+        }
+    }
+
+    /// Draws a part of a path on the same `area`, in `color`.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn paint_dot(
+        &self,
+        area: Rect,
+        canvas: &mut impl Canvas,
+        position: DVec2,
+        is_own: bool,
+        color: Rgb,
+    ) {
+        let area = area.intersection(canvas.bounds());
+        if area.is_empty() {
+            return;
+        }
+        let dot = match (self.glyphs.has_blocks(), is_own) {
+            (true, true) => '•',
+            (true, false) => '·',
+            (false, true) => '*',
+            (false, false) => ':',
+        };
+        if let Some((x, y)) = self.window(area).cell(position) {
+            let colors = [color, top_view::BASE].map(|color| color_at(self.depth, color));
+            canvas.draw_character(area.x + x, area.y + y, dot, colors);
+        }
+    }
+
     /// Pointers to the east, south, west and north, for guards.
     fn pointers(&self) -> &'static [char] {
         if self.glyphs.has_blocks() { &['▸', '▾', '◂', '▴'] } else { &[')', 'u', '(', 'n'] }

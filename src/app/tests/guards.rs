@@ -1,4 +1,8 @@
-//! What the screen shows of guards: what they suspect, and where they look.
+//! What the screen shows of guards: what they suspect, where they look, and how they found the
+//! player.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
 
 use super::missions::{playing_own, text};
 use super::*;
@@ -20,6 +24,31 @@ grid = '''
 [things]
 "@" = { start = 0 }
 "w" = { guard = "warden", heading = 180 }
+"X" = { exit = true }
+"##;
+
+/// An archer at a door in the north, who looks at the player.
+const GATE: &str = r##"
+title = "Gate"
+grid = '''
+###########
+#.........#
+#.........#
+###+#######
+#..a......#
+#.........#
+#.........#
+#.........#
+#.........#
+#.@......X#
+###########
+'''
+[tiles]
+"#" = { wall = "brick" }
+"+" = { door = "oak" }
+[things]
+"@" = { start = 315 }
+"a" = { guard = "archer", heading = 60 }
 "X" = { exit = true }
 "##;
 
@@ -77,4 +106,51 @@ fn the_map_shows_where_the_guards_in_view_look() {
     rig.wait(500);
     let behind = watched(&mut rig);
     assert!(seen > 10 && behind == 0, "{seen} {behind}\n{}", ascii(&mut rig));
+}
+
+/// A player who has waited in the open until the archer killed them.
+fn shot() -> Rig {
+    let mut rig = playing_own(GATE, Store::in_memory());
+    // The picture explores the map.
+    text(&mut rig.app, 80, 24);
+    for _ in 0..60_000 {
+        rig.wait(1);
+        if rig.app.screen() == AppScreen::Dead {
+            return rig;
+        }
+    }
+    panic!("alive with {:?}", rig.game().health());
+}
+
+#[test]
+fn the_panel_after_a_death_names_the_guard_and_shows_the_last_seconds_from_above() {
+    let mut rig = shot();
+    let shown = text(&mut rig.app, 80, 24);
+    let panel: String = shown.lines().flat_map(|line| line.chars().skip(45).chain([' '])).collect();
+    let words: Vec<&str> = panel.split([' ', '│']).filter(|word| !word.is_empty()).collect();
+    let said = words.join(" ");
+    assert!(said.contains("killed by an archer's bolt"), "{shown}");
+    assert!(said.contains("An archer at a door 5 cells to the north saw you 11 s ago."), "{shown}");
+    assert!(said.contains("Take back 10 s 3 left"), "{shown}");
+    // The picture moves by itself.
+    let picture = |rig: &mut Rig| {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 80, 24));
+        rig.app.draw(&mut buffer);
+        rig.app.drawn();
+        buffer
+    };
+    let first = picture(&mut rig);
+    assert!(!rig.app.is_stale());
+    let next = rig.app.next_change().expect("it goes on");
+    assert!(next > rig.now && next <= rig.now + Duration::from_millis(100));
+    rig.wait(200);
+    assert!(rig.app.is_stale());
+    assert_ne!(picture(&mut rig), first);
+}
+
+#[test]
+fn the_look_back_looks_unchanged_without_colours() {
+    let mut rig = shot();
+    rig.wait(3000);
+    insta::assert_snapshot!(ascii(&mut rig));
 }

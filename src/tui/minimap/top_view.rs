@@ -287,7 +287,7 @@ enum FloorKind {
 }
 
 /// Floor at the height of the map's own floor.
-const BASE: Rgb = Rgb::new(0x24, 0x24, 0x2c);
+pub(crate) const BASE: Rgb = Rgb::new(0x24, 0x24, 0x2c);
 /// The colours that raised floor, lowered floor and water approach with their height or depth.
 const LEDGE: Rgb = Rgb::new(0x66, 0x66, 0x70);
 const PIT: Rgb = Rgb::new(0x54, 0x18, 0x1c);
