@@ -11,6 +11,7 @@ mod levels;
 mod look_back;
 mod page;
 mod picture;
+mod playback;
 mod played;
 mod recording;
 mod results;
@@ -52,6 +53,8 @@ pub use levels::Levels;
 use look_back::LookBack;
 use page::Pages;
 use picture::{MapPanel, Suspicion, TerminalLook};
+pub use playback::MAX_PLAYBACK_STEPS;
+use playback::Playback;
 use played::{Goal, Played, Viewpoint, Views, Watch};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder, Steps};
@@ -114,6 +117,10 @@ struct App {
     own_maps: Vec<OwnMap>,
     /// The rest of the script that plays the level behind the title; `None` during a game.
     demo: Option<Steps>,
+    /// The recorded run that is shown; `None` during a game.
+    playback: Option<Playback>,
+    /// `true` after the player went on from the middle of a recorded run.
+    is_unranked: bool,
     settings: Settings,
     terminal: TerminalLook,
     controls: Controls,
@@ -145,8 +152,10 @@ struct App {
 impl App {
     /// A game at the start of the first of `levels`.
     fn new(levels: Levels, settings: Settings) -> Self {
-        let game = levels.stage.begin(Difficulty::default()).unwrap_or_default();
+        let difficulty = settings.difficulty.unwrap_or_default();
+        let game = levels.stage.begin(difficulty).unwrap_or_default();
         Self {
+            difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
             views: Views::new(View::with_caster(settings.caster.clone())),
@@ -165,6 +174,10 @@ impl App {
             InitialState::Levels(levels) => {
                 app.difficulty = app.usual_difficulty();
                 app.begin(*levels);
+            }
+            InitialState::Playback { levels, script } => {
+                app.difficulty = app.usual_difficulty();
+                app.begin_playback(*levels, &script);
             }
             InitialState::Title(offers) => app.offer(offers),
             InitialState::Daily(offers) => {

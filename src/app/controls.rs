@@ -163,6 +163,12 @@ impl Bindings {
         self
     }
 
+    /// Removes the bindings of all actions but those that `is_kept` accepts.
+    pub(crate) fn only(mut self, is_kept: impl Fn(Action) -> bool) -> Self {
+        self.keys.retain(|&(_, action)| is_kept(action));
+        self
+    }
+
     /// Sorts the keys by action.
     fn in_order(mut self) -> Self {
         let index = |action| Action::ALL.iter().position(|&(_, _, known, _)| known == action);

@@ -16,6 +16,7 @@ use ratatui::layout::{Rect, Size};
 
 use crate::app::controls::{Action, Bindings};
 use crate::app::picture::{DrawOptions, Overlay, Suspicion};
+use crate::app::playback::Playback;
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::AppScreen;
@@ -25,7 +26,7 @@ use crate::app::{App, Shown, page, title};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
 use crate::tui::canvas::Canvas;
-use crate::world::Figure;
+use crate::world::{Camera, Figure};
 
 impl App {
     /// Renders and paints the whole screen.
@@ -47,11 +48,12 @@ impl App {
             return true;
         }
         self.show_ghost();
-        let [picture, _] = page::picture_and_status(area);
-        let (options, screen, bindings) =
-            (self.draw_options(), self.screen(), &self.settings.bindings);
+        self.show_player();
+        let ([picture, _], _) = self.areas(area);
+        let (options, camera) = (self.draw_options(), self.free_camera());
+        let (screen, bindings) = (self.screen(), &self.settings.bindings);
         let go_on = &mut || go_on(screen, bindings);
-        self.game.render(&options, picture.as_size(), &mut self.views, go_on)
+        self.game.render(&options, camera, picture.as_size(), &mut self.views, go_on)
     }
 
     /// Paints the rendered picture and everything over it on a canvas of the same size.
@@ -60,8 +62,11 @@ impl App {
         if page::is_too_small(area) {
             return page::too_small(canvas);
         }
-        let [picture, status] = page::picture_and_status(area);
+        let ([picture, status], time_line) = self.areas(area);
         self.paint_picture(canvas, picture);
+        if let Some(time_line) = time_line {
+            self.draw_time_line(canvas, time_line);
+        }
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
         } else if self.shows_result() {
@@ -78,7 +83,10 @@ impl App {
         match self.screen() {
             AppScreen::Playing => {}
             AppScreen::Help => {
-                self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
+                let (further, bindings) =
+                    self.playback_help().unwrap_or_else(|| (Vec::new(), bindings.clone()));
+                let keys = (&further[..], &bindings);
+                self.pages.help.draw(canvas, picture, keys, self.detection.lines());
             }
             AppScreen::Leaving => {
                 page::leaving(canvas, picture, bindings, self.effect_of_leaving());
@@ -104,11 +112,13 @@ impl App {
         let mission = grid.filter(|game| game.is_mission()).zip(player);
         let notice = notice.as_ref().filter(|notice| notice.is_shown());
         let stats = self.stats.as_ref().filter(|_| settings.shows_stats);
+        let is_unranked = self.is_unranked;
         self.status.rewrite(|line| {
             if let Some((game, player)) = &mission {
                 line.write_vitals(game, player, signs)?;
             }
-            line.both(Part::Title, format_args!("{}", game.title()))?;
+            let unranked = if is_unranked { "unranked: " } else { "" };
+            line.both(Part::Title, format_args!("{unranked}{}", game.title()))?;
             if level.is_one_of_several() {
                 let [short, long] = line.forms(Part::Level);
                 level.write_short(short)?;
@@ -144,8 +154,12 @@ impl App {
 
     fn paint_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let options = self.draw_options();
-        self.game.paint(&options, canvas, area, &self.views);
-        if self.demo.is_some() {
+        if self.playback.as_ref().is_some_and(Playback::is_from_above) {
+            return self.draw_from_above(canvas, area, &options);
+        }
+        let camera = self.free_camera();
+        self.game.paint(&options, camera, canvas, area, &self.views);
+        if self.demo.is_some() || camera.is_some() {
             return;
         }
         let looks_back = self.looks_back_in(area);
@@ -162,7 +176,8 @@ impl App {
     }
 
     fn draw_options(&self) -> DrawOptions {
-        let is_game = self.demo.is_none();
+        let sees = self.playback.as_ref().is_none_or(Playback::is_through_eyes);
+        let is_game = self.demo.is_none() && sees;
         let heading = |game: &Game| game.camera(self.settings.field_of_view).heading;
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));
         DrawOptions {
@@ -176,6 +191,11 @@ impl App {
             flash: flash.filter(|_| is_game),
             marks_middle: is_game && self.store.preferences().crosshair,
         }
+    }
+
+    /// The camera that flies through a recorded run, if it is seen from there.
+    fn free_camera(&self) -> Option<Camera> {
+        self.playback.as_ref()?.camera(self.settings.field_of_view)
     }
 
     /// Adds the ghost to the game's world, or removes it if it is switched off.
@@ -192,6 +212,9 @@ impl App {
     /// Returns true if the screen is out of date.
     pub(crate) fn is_stale(&self) -> bool {
         let Some(shown) = &self.shown else { return true };
+        if let Some(playback) = &self.playback {
+            return playback.is_stale();
+        }
         (shown.viewpoint, shown.revision) != self.surroundings()
             || !self.figures_in_view().eq(&shown.figures)
             || !self.suspicions().eq(shown.suspicions.iter().copied())
@@ -236,6 +259,7 @@ impl App {
         let suspicions = self.suspicions().collect();
         let moment = self.moment_shown();
         self.shown = Some(Shown { viewpoint, revision, figures, suspicions, moment });
+        self.playback.iter_mut().for_each(Playback::drawn);
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));
     }
@@ -251,6 +275,11 @@ impl App {
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
         }
+        if let Some(playback) = &self.playback {
+            let flies =
+                self.flies_freely() && (!self.wanted().is_empty() || self.pointer.is_busy());
+            return (flies || !playback.is_paused()).then(|| self.clock.step_after(0));
+        }
         if !self.is_at_rest(self.wanted()) {
             return Some(self.clock.step_after(0));
         }
@@ -263,6 +292,7 @@ impl App {
         let wanted = self.wanted();
         self.screen() == AppScreen::Playing
             && self.demo.is_none()
+            && self.playback.is_none()
             && wanted.is_empty()
             && !self.controls.held.has_taps()
             && !self.is_at_rest(wanted)

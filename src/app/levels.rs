@@ -111,6 +111,29 @@ impl Levels {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
     }
 
+    /// The floors of the descent with this seed from `first` on, as levels that can be retried.
+    pub fn floors(seed: u64, first: u32) -> Self {
+        let stage = move |number| Stage::Floor { seed, number };
+        Self::staged(stage(first), (first.saturating_add(1)..).map(stage))
+    }
+
+    /// The levels in `stages`, the first of which has this number. Without stages, a single empty
+    /// level.
+    pub(crate) fn of_stages(
+        mut stages: impl Iterator<Item = Stage> + 'static,
+        number: LevelNumber,
+    ) -> Self {
+        match stages.next() {
+            Some(first) => Self { number, ..Self::staged(first, stages) },
+            None => Self::default(),
+        }
+    }
+
+    /// The current level, the levels after it, and its number.
+    pub(crate) fn into_parts(self) -> (Stage, Box<dyn Iterator<Item = Stage>>, LevelNumber) {
+        (self.stage, self.rest, self.number)
+    }
+
     fn staged(stage: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
         let number = LevelNumber { number: 1, of: None };
         Self { stage, rest: Box::new(rest), number, reload: None, descent: None }
@@ -160,6 +183,11 @@ impl Stage {
 }
 
 impl LevelNumber {
+    /// The number of the level that comes `count` levels later.
+    pub(crate) fn after(self, count: usize) -> Self {
+        Self { number: self.number + count, ..self }
+    }
+
     /// Returns true if there are several levels, as far as is known.
     pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)

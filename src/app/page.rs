@@ -591,7 +591,7 @@ const TOGETHER: [(&[Action], &str); 5] = [
     (&[Action::WidenView, Action::NarrowView], "widen, narrow"),
 ];
 
-/// The keys and a short description of all actions, in the order of [`Action::ALL`].
+/// The keys and a short description of all actions that have one, in the order of [`Action::ALL`].
 fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
     let line = |(_, does, action, _): (_, &'static str, Action, _)| {
         let Some((actions, does)) = TOGETHER.iter().find(|group| group.0.contains(&action)) else {
@@ -601,7 +601,7 @@ fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
         let keys = actions.iter().map(|&action| bindings.key_names(action));
         is_first.then(|| (keys.collect::<Vec<_>>().join(" ").trim().to_owned(), *does))
     };
-    Action::ALL.into_iter().filter_map(line).collect()
+    Action::ALL.into_iter().filter_map(line).filter(|(keys, _)| !keys.is_empty()).collect()
 }
 
 /// The lines with keys and descriptions, in as many columns as needed to fit into `room` lines, up

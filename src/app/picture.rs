@@ -669,7 +669,7 @@ impl MapPanel {
     }
 
     /// Adds the cells that `camera` sees in a picture with `columns` columns.
-    fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
+    pub(crate) fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
         if self.display == MapDisplay::All {
             return;
         }

@@ -17,10 +17,10 @@ use crate::map::Level;
 use crate::space;
 use crate::tui::View;
 use crate::tui::canvas::Canvas;
-use crate::world::{FieldOfView, Heading};
+use crate::world::{Camera, FieldOfView, Heading};
 
 /// A level that is being played.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
@@ -171,11 +171,12 @@ impl Played {
 }
 
 impl Played {
-    /// Renders the player's view for an area of this size. Rendering may stop once `go_on` returns
-    /// `false`. Returns whether the picture is complete.
+    /// Renders the player's view, or on a grid the view of `camera`, for an area of this size.
+    /// Rendering may stop once `go_on` returns `false`. Returns whether the picture is complete.
     pub(crate) fn render(
         &self,
         options: &DrawOptions,
+        camera: Option<Camera>,
         size: Size,
         views: &mut Views,
         go_on: &mut dyn FnMut() -> bool,
@@ -183,7 +184,7 @@ impl Played {
         let seconds = self.elapsed();
         match self {
             Self::Grid(game) => {
-                let camera = game.camera(options.field_of_view);
+                let camera = camera.unwrap_or_else(|| game.camera(options.field_of_view));
                 let picture = options.picture(game.world(), &camera, seconds);
                 options.render(&picture, size, &mut views.grid, go_on)
             }
@@ -196,9 +197,11 @@ impl Played {
     }
 
     /// Paints the rendered picture into `area`, which must have the size used for rendering.
+    /// `camera` must be the one used for rendering.
     pub(crate) fn paint(
         &self,
         options: &DrawOptions,
+        camera: Option<Camera>,
         canvas: &mut impl Canvas,
         area: Rect,
         views: &Views,
@@ -206,7 +209,7 @@ impl Played {
         let seconds = self.elapsed();
         match self {
             Self::Grid(game) => {
-                let camera = game.camera(options.field_of_view);
+                let camera = camera.unwrap_or_else(|| game.camera(options.field_of_view));
                 let picture = options.picture(game.world(), &camera, seconds);
                 picture.paint(&views.grid, 0, area, canvas);
             }

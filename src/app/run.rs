@@ -33,6 +33,7 @@ use crate::app::controls::{self, Clock};
 use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
 use crate::app::picture::TerminalLook;
+use crate::app::playback::Playback;
 use crate::app::recording::{Ghost, Recording};
 use crate::app::screen::AppScreen;
 use crate::app::settings::Settings;
@@ -57,6 +58,15 @@ pub enum InitialState {
     Endless(Offers),
     /// A game with no title to return to.
     Levels(Box<Levels>),
+    /// A recorded run: its script, which has at most [`MAX_PLAYBACK_STEPS`], and its levels.
+    ///
+    /// [`MAX_PLAYBACK_STEPS`]: super::MAX_PLAYBACK_STEPS
+    Playback {
+        /// The levels.
+        levels: Box<Levels>,
+        /// The script.
+        script: Script,
+    },
 }
 
 /// Starts with `opening` on the terminal, plays until the player leaves or the program is ended
@@ -90,7 +100,7 @@ pub fn play(
     while !app.has_left {
         app.advance(time.now());
         app.reload(time.now());
-        session.set_mouse(app.pointer.is_on())?;
+        session.set_mouse(app.pointer.is_on() || app.playback.is_some())?;
         if app.watch.take_ring() && app.store.preferences().bell {
             session.ring_bell();
         }
@@ -195,6 +205,9 @@ impl Presenter {
 
     /// The time of the next change that happens without an event; `None` for never.
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
+        if app.playback.as_ref().is_some_and(Playback::reads_ahead) {
+            return Some(now);
+        }
         let (frame, soonest) = if self.waits {
             // The game continues while the terminal is not ready.
             (None, now + app.settings.frame_time)
@@ -312,6 +325,12 @@ impl App {
             let passed = time.zip(begun).map(|(time, begun)| time().saturating_sub(begun));
             passed.is_some_and(|passed| passed > MAX_TIME)
         };
+        if self.playback.is_some() {
+            let time = self.machine_time;
+            self.advance_playback(now, &|| is_late(time));
+            self.controls.advance(now, self.key_context());
+            return self.settle(now);
+        }
         let mut step = self.clock.step_after(0);
         let mut steps = self.clock.steps_until(now);
         let mut moves = 0;
@@ -429,17 +448,49 @@ impl Replay {
         frames_per_second: NonZeroU32,
         mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
     ) -> Result<(), E> {
+        self.play_from(script, frames_per_second, 0, |frame, section, picture| {
+            show(frame, section, picture)
+        })
+    }
+
+    /// As [`Replay::play`], but does not draw the frames before the one with the number `first`.
+    ///
+    /// # Errors
+    /// The first error that `show` returns.
+    pub fn play_from<E>(
+        &mut self,
+        script: &Script,
+        frames_per_second: NonZeroU32,
+        first: u64,
+        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut show = |replay: &mut Self, frame, section| {
+            if frame < first {
+                replay.look_around();
+                return Ok(());
+            }
+            show(frame, section, replay.picture())
+        };
         let mut frame = 0;
-        show(frame, 0, self.picture())?;
+        show(self, frame, 0)?;
         for (steps, (section, intents)) in (1..).zip(script.iter()) {
             self.step(intents);
             let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
             while frame < frames {
                 frame += 1;
-                show(frame, section, self.picture())?;
+                show(self, frame, section)?;
             }
         }
         Ok(())
+    }
+
+    /// Adds what the player sees to the map, as drawing does.
+    fn look_around(&mut self) {
+        let ([picture, _], _) = self.app.areas(self.picture.area);
+        let field_of_view = self.app.settings.field_of_view;
+        if let Some(game) = self.app.game.grid() {
+            self.app.map.explore(game, &game.camera(field_of_view), picture.width);
+        }
     }
 
     /// Draws the current state.

@@ -369,9 +369,10 @@ impl App {
     }
 
     pub(crate) fn key_context(&self) -> KeyContext {
+        let plays = self.playback.is_none() || self.flies_freely();
         KeyContext {
-            plays: self.plays(),
-            is_airborne: self.game.grid().is_some_and(Game::is_airborne),
+            plays: plays && self.plays(),
+            is_airborne: self.playback.is_none() && self.game.grid().is_some_and(Game::is_airborne),
             flies: self.game.grid().is_none(),
         }
     }
@@ -407,6 +408,9 @@ impl App {
 
     /// Handles the keys of the game, and the keys that have the same effect on every screen.
     fn press_command(&mut self, key: Key, press: Press) {
+        if self.screen() == AppScreen::Playing && self.press_in_playback(key, press) {
+            return;
+        }
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),
             Some(Action::NarrowView) => self.widen_view(false),
@@ -490,7 +494,8 @@ impl App {
 
     /// Asks whether to leave. If there is no game to lose, leaves without asking.
     fn ask_to_leave(&mut self) {
-        if self.demo.is_some() || self.screen().is_before_start() {
+        let has_game = self.demo.is_none() && self.playback.is_none();
+        if !has_game || self.screen().is_before_start() {
             self.leave();
         } else {
             self.open(AppScreen::Leaving);
@@ -506,7 +511,8 @@ impl App {
     /// Handles a mouse event at time `now`.
     pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
-        self.pointer.handle(event, self.screen() == AppScreen::Playing);
+        self.mouse_in_playback(event);
+        self.pointer.handle(event, self.key_context().plays);
     }
 
     /// The player's intents for the next step, from keys and mouse.

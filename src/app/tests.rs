@@ -8,6 +8,7 @@ mod kept;
 mod levels;
 mod missions;
 mod panels;
+mod playback;
 mod questions;
 mod redraws;
 mod saved;

@@ -167,7 +167,7 @@ fn header(opening: &InitialState, level: Option<LevelName>, difficulty: Difficul
         InitialState::Endless(offers) => {
             Header::of(first_floor(), Rules { difficulty, seed: offers.seed })
         }
-        InitialState::Title(_) | InitialState::Levels(_) => {
+        InitialState::Title(_) | InitialState::Levels(_) | InitialState::Playback { .. } => {
             Header::of(level, Rules { difficulty, seed: 0 })
         }
     }

@@ -105,6 +105,12 @@ impl Game {
         self.world.set_figures(all.into_iter());
     }
 
+    /// Whether a guest was shown.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn has_guest(&self) -> bool {
+        self.sprites.player.is_some()
+    }
+
     /// The figures of the game itself, without the guest's.
     #[cfg(feature = "terminal")]
     pub(crate) fn figures(&self) -> impl Iterator<Item = &Figure> {

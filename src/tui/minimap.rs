@@ -35,6 +35,7 @@ pub struct Minimap<'a> {
     explored: Option<&'a Explored>,
     marks: &'a [MapMark],
     cones: &'a [SightCone],
+    shows_all_marks: bool,
     ghost: Option<MapMark>,
     glyphs: GlyphSet,
     depth: ColorDepth,
@@ -52,6 +53,7 @@ impl<'a> Minimap<'a> {
             explored: None,
             marks: &[],
             cones: &[],
+            shows_all_marks: false,
             ghost: None,
             glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
@@ -84,6 +86,12 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn cones(self, cones: &'a [SightCone]) -> Self {
         Self { cones, ..self }
+    }
+
+    /// Shows marks wherever they are on the map.
+    #[must_use]
+    pub fn showing_all_marks(self) -> Self {
+        Self { shows_all_marks: true, ..self }
     }
 
     /// Sets the mark of a ghost. It shows wherever it is on the map.
@@ -157,7 +165,9 @@ impl Minimap<'_> {
             draw(ghost, &ghost_pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]));
         }
         let colors = self.colors([MARK_TEXT, MARK], [15, 9]);
-        for mark in self.marks.iter().filter(|mark| picture.top_view.is_visible(mark.position)) {
+        let is_shown =
+            |mark: &MapMark| self.shows_all_marks || picture.top_view.is_visible(mark.position);
+        for mark in self.marks.iter().filter(|mark| is_shown(mark)) {
             draw(mark, self.pointers(), colors);
         }
         let player = MapMark { position: self.camera.position(), heading: self.camera.heading };
