@@ -21,6 +21,8 @@ mod pixels;
 mod play;
 mod recording;
 pub mod replay;
+mod screen;
+mod share;
 mod snapshot;
 mod watch;
 
@@ -63,6 +65,7 @@ enum Command {
     Levels(levels::LevelsCommand),
     Config(config::Config),
     Replay(replay::ReplayCommand),
+    Share(share::Share),
     Completions(help::Completions),
     Man(help::Manual),
 }
@@ -117,8 +120,9 @@ impl Arguments {
     /// The name of the caster.
     fn caster(&self) -> &str {
         match &self.command {
-            None => &self.play.look.caster,
-            Some(Command::Play(options)) => &options.look.caster,
+            None => &self.play.screen.look.caster,
+            Some(Command::Play(options)) => &options.screen.look.caster,
+            Some(Command::Replay(options)) => &options.screen.look.caster,
             Some(Command::Snapshot(options)) => &options.look.caster,
             Some(Command::Cast(options)) => &options.caster,
             Some(_) => options::EXACT,
@@ -133,7 +137,8 @@ impl Arguments {
             Command::Check(options) => check::run(&options),
             Command::Levels(options) => levels::run(&options),
             Command::Config(options) => config::run(options),
-            Command::Replay(options) => replay::run(&options),
+            Command::Replay(options) => replay::run(options, caster),
+            Command::Share(options) => share::run(&options),
             Command::Completions(completions) => completions.run(Self::command()),
             Command::Man(help::Manual) => help::Manual::run(Self::command()),
         }

@@ -12,7 +12,7 @@ use crate::app::store::map_key;
 use crate::app::{Levels, OwnLevel, OwnMap};
 use crate::fault::nearest;
 use crate::game::{Game, Header, LevelName};
-use crate::generate::{Generator, Site, Window, descent, floors_below};
+use crate::generate::{Generator, Site, Window, descent};
 use crate::map::{self, Folder, Level, builtin};
 use crate::sort;
 use crate::world::World;
@@ -101,32 +101,33 @@ pub(crate) fn load_or_generate(place: &LevelOptions) -> Result<Levels, Error> {
     Ok(Levels::of_games(first, later))
 }
 
-/// The levels in the options; if there are none, the level in the script's header.
+/// The levels in the options; if there are none, the levels from the one in the script's header on.
+/// The header's rules apply to levels from maps. The levels have no names, so a game in them does not
+/// count.
 pub(crate) fn of_script(place: &LevelOptions, header: &Header) -> Result<Levels, Error> {
-    let rules = header.rules();
-    match &header.level {
-        Some(name) if place.map.is_none() && place.generate.is_none() => {
-            if let Some(first) = name.floor() {
-                let game = move |world| Game::with_rules(world, rules);
-                let later = floors_below(rules.seed, first);
-                return Ok(Levels::of_games(game(descent(rules.seed, first)?), later.map(game)));
-            }
-            let world = match load_named(name, rules.seed)? {
-                Level::Grid(world) => *world,
-                level @ Level::Space(_) => return Ok(Levels::new(level, iter::empty())),
-            };
-            let index = builtin_level(OsStr::new(name.as_str()));
-            let later = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
-            let later = later.iter().map_while(|level| level.world().ok());
-            let game = move |world| Game::with_rules(world, rules);
-            let levels = Levels::of_games(game(world), later.map(game));
-            Ok(match index {
-                Some(index) => levels.numbered(index + 1, builtin::LEVELS.len()),
-                None => levels,
-            })
-        }
-        _ => load_or_generate(place),
+    if place.generate.is_some() {
+        return load_or_generate(place);
     }
+    let rules = header.rules();
+    let named = header.level.as_ref().filter(|_| place.map.is_none());
+    if let Some(first) = named.and_then(LevelName::floor) {
+        descent(rules.seed, first)?;
+        return Ok(Levels::floors(rules.seed, first));
+    }
+    let name = place.map.as_deref().or(named.map(|name| OsStr::new(name.as_str())));
+    let world = match load(name)? {
+        Level::Grid(world) => *world,
+        level @ Level::Space(_) => return Ok(Levels::new(level, iter::empty())),
+    };
+    let index = name.map_or(Some(0), builtin_level);
+    let later = index.map_or(&[][..], |index| &builtin::LEVELS[index + 1..]);
+    let later = later.iter().map_while(|level| level.world().ok());
+    let game = move |world| Game::with_rules(world, rules);
+    let levels = Levels::of_games(game(world), later.map(game));
+    Ok(match index {
+        Some(index) => levels.numbered(index + 1, builtin::LEVELS.len()),
+        None => levels,
+    })
 }
 
 /// The level in a script's header.

@@ -2,28 +2,20 @@
 
 use std::env;
 use std::io::{self, IsTerminal, Write};
-use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use clap::{Args, ValueHint};
 
-use super::config::CurrentConfiguration;
 use super::machine::{data_folder, open_store, today};
-use super::options::{
-    LevelOptions, PictureOptions, STANDARD_INPUT, choice, fidelity, frames, replace_art,
-};
-use super::parse::Takes;
+use super::options::{LevelOptions, STANDARD_INPUT, choice};
 use super::recording::RecordingFile;
-use super::{Error, config, level};
+use super::screen::ScreenOptions;
+use super::{Error, level};
 use crate::app;
-use crate::app::{
-    ClosingLines, Configuration, InitialState, Levels, Offers, Origin, SettingOrigins, Settings,
-};
+use crate::app::{ClosingLines, InitialState, Levels, Offers, Settings};
 use crate::game::{Header, LevelName, Rules};
 use crate::render::DynCaster;
-use crate::terminal::{self, Fidelity, locale_without_utf8, take_keys_from_terminal};
-use crate::tui::GlyphSet;
+use crate::terminal::{self, take_keys_from_terminal};
 use crate::world::Difficulty;
 
 /// Play; without MAP, from the title screen
@@ -43,21 +35,8 @@ pub(crate) struct Play {
     /// Play floor after floor, each harder than the one before
     #[arg(long, conflicts_with_all = ["map", "generate", "watch"])]
     endless: bool,
-    /// The settings file [default: cellcaster/config.toml in the folder for configuration files]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    config: Option<PathBuf>,
-    /// At most N frames a second, from 1 to 240 [default: 30]
-    #[arg(long = "fps", value_name = "N", value_parser = frames)]
-    frames_per_second: Option<NonZeroU32>,
     #[command(flatten)]
-    pub(crate) look: PictureOptions,
-    /// The fidelity of colours while something moves: as the link allows (auto), exact, high, low, or the largest
-    /// colour error, from 0 to 255 [default: auto]
-    #[arg(long, value_name = "LEVEL", value_parser = fidelity_or_auto)]
-    fidelity: Option<AutoFidelity>,
-    /// Show frames and bytes a second, round trip and fidelity
-    #[arg(long)]
-    stats: bool,
+    pub(crate) screen: ScreenOptions,
     /// Reload the map when its file or a PNG that it uses changes
     #[arg(long)]
     watch: bool,
@@ -80,19 +59,7 @@ Examples:
   cellcaster my.toml --colors 256
   cellcaster play my.toml --watch
   ssh -t host cellcaster
-  cellcaster --record walk.script && cellcaster replay walk.script > walk.cast";
-
-/// A fidelity; `None` lets the link to the terminal decide.
-type AutoFidelity = Option<Fidelity>;
-
-fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, Takes> {
-    match text {
-        "auto" => Ok(None),
-        _ => fidelity(text)
-            .map(Some)
-            .map_err(|_| Takes("auto, exact, high, low or a number up to 255")),
-    }
-}
+  cellcaster --record walk.script && cellcaster replay walk.script";
 
 /// Plays until the player leaves.
 pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
@@ -101,38 +68,7 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
         None => level::name(options.place.map.as_deref()),
         Some(_) => None,
     };
-    let PictureOptions { cell_aspect, glyphs, filter, art, view, .. } = options.look;
-    let CurrentConfiguration { configuration, path, .. } = config::load(options.config)?;
-    // The folder in a configuration file is relative to the file.
-    let beside = path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-    let configured = configuration.art.as_ref().map(|folder| beside.join(folder));
-    replace_art(art.or(configured).as_deref())?;
-    let frames_per_second = options.frames_per_second.unwrap_or(configuration.frames_per_second);
-    let usual = Configuration::default().frames_per_second;
-    let given = SettingOrigins {
-        glyphs: origin(glyphs.is_some(), configuration.glyphs.is_some()),
-        depth: origin(view.depth.is_some(), configuration.colors.is_some()),
-        frame_time: origin(
-            options.frames_per_second.is_some(),
-            configuration.frames_per_second != usual,
-        ),
-    };
-    let settings = Settings {
-        bindings: configuration.bindings,
-        frame_time: Duration::from_secs(1) / frames_per_second.get(),
-        field_of_view: view.field_of_view.unwrap_or(configuration.field_of_view),
-        cell_aspect,
-        glyphs: glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
-        depth: view.depth.or(configuration.colors),
-        caster: caster.clone(),
-        filter,
-        fidelity: options.fidelity.unwrap_or(configuration.fidelity),
-        shows_stats: options.stats,
-        difficulty: options.difficulty,
-        minimap: configuration.minimap,
-        mouse: configuration.mouse,
-        given,
-    };
+    let settings = Settings { difficulty: options.difficulty, ..options.screen.settings(caster)? };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.force)).transpose()?;
     let (store, damage) = open_store();
@@ -144,15 +80,6 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let farewell = played.map_err(about_the_terminal)?;
     say_farewell(&farewell, damage);
     written
-}
-
-/// The origin of a setting. A flag takes precedence over the configuration file.
-fn origin(by_flag: bool, by_file: bool) -> Option<Origin> {
-    match (by_flag, by_file) {
-        (true, _) => Some(Origin::Flag),
-        (false, true) => Some(Origin::File),
-        (false, false) => None,
-    }
 }
 
 /// The header for a script of the first game in the program. The seed is 0 unless the level is a
@@ -174,21 +101,13 @@ fn header(opening: &InitialState, level: Option<LevelName>, difficulty: Difficul
 }
 
 /// Prints a line about the game, and a sentence about any problem with the stored data.
-fn say_farewell(ClosingLines { done, trouble }: &ClosingLines, damage: Option<String>) {
+pub(crate) fn say_farewell(ClosingLines { done, trouble }: &ClosingLines, damage: Option<String>) {
     // The terminal may be gone, and then nobody reads the output.
     if let Some(done) = done {
         _ = writeln!(io::stdout(), "{done}");
     }
     if let Some(sentence) = trouble.clone().or(damage) {
         Error::machine(sentence).warn();
-    }
-}
-
-/// The glyph set that the locale can show.
-fn glyphs_of_locale() -> GlyphSet {
-    match locale_without_utf8(|name| env::var(name).ok()) {
-        Some(_) => GlyphSet::Ascii,
-        None => GlyphSet::default(),
     }
 }
 
@@ -250,7 +169,7 @@ fn levels(options: &Play) -> Result<Levels, Error> {
 }
 
 /// The terminal's error, with a hint for players who connect by SSH.
-fn about_the_terminal(error: terminal::Error) -> Error {
+pub(crate) fn about_the_terminal(error: terminal::Error) -> Error {
     let came_by_ssh = env::var_os("SSH_CONNECTION").is_some();
     if error.is_mistake() && came_by_ssh && !io::stdin().is_terminal() {
         return Error::mistake(

@@ -1,65 +1,51 @@
-//! `cellcaster replay`: plays a script off screen, and writes a recording, an animated PNG, or a
-//! report about the result.
+//! `cellcaster replay`: shows the run of a script in the terminal, or reports its result.
 
 use std::fmt::{self, Write as _};
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
-use std::mem;
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use clap::{Args, ValueHint};
-use crossterm::cursor::{Hide, Show};
-use crossterm::queue;
-use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
-use ratatui::backend::Backend;
-use ratatui::buffer::Buffer;
 
-use super::animation::{Animation, Frames};
 use super::external::External;
-use super::options::{LevelOptions, ViewOptions, fidelity};
-use super::output_file::{OutputFile, print};
-use super::recording::Asciicast;
+use super::machine::open_store;
+use super::options::LevelOptions;
+use super::output_file::print;
+use super::play::{about_the_terminal, say_farewell};
+use super::screen::ScreenOptions;
 use super::{Error, level};
 use crate::app;
-use crate::app::Settings;
 use crate::app::status::{of_steps, tenths};
 use crate::app::store::{DescentRun, replayed};
-use crate::game::{Game, Header, LevelName, Outcome, Rules, Script};
-use crate::terminal::{CellWriter, Fidelity};
+use crate::app::{InitialState, MAX_PLAYBACK_STEPS, Recording, Settings};
+use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
+use crate::render::DynCaster;
 use crate::world::World;
 
-/// Play a script off screen, and write it as an asciicast or animated PNG, or check its result
+/// Watch a script in the terminal, or check its result
 ///
-/// A script has lines such as "2.5 s forward run" or "12 steps turn-left open". "stand" does
-/// nothing, a name in square brackets begins a section, and # begins a comment. Lines at the top
-/// may name the game: "level cellar", "difficulty hard" and "seed 7"; a level may also be a map
-/// file, or "floor 1" of an endless game, which continues with the next floors. MAP takes
-/// precedence. play --record writes such a script.
+/// Space pauses, the arrows move through the run, and "?" shows the other keys. Enter leaves the replay and plays on
+/// from there; that game does not count.
+///
+/// A script has lines such as "2.5 s forward run" or "12 steps turn-left open". "stand" does nothing, a name in square
+/// brackets begins a section, and # begins a comment. Lines at the top may name the game: "level cellar", "difficulty
+/// hard" and "seed 7"; a level may also be a map file, or "floor 1" of an endless game, which continues with the next
+/// floors. MAP takes precedence. play --record writes such a script, and share makes a moving picture of it.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
-  cellcaster replay walk.script > walk.cast
-  cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast
-  cellcaster replay walk.script --size 100x30 --fps 15 --part 2-10 --png walk.png
+  cellcaster replay walk.script
+  cellcaster replay walk.script my.toml
   cellcaster replay walk.script --verify")]
 pub(crate) struct ReplayCommand {
     /// The script to play
     #[arg(value_hint = ValueHint::FilePath)]
     script: PathBuf,
     /// Print level, time, treasure and rank instead; the exit status is 0 if the script reaches an exit, else 1
-    #[arg(long, conflicts_with_all = ["generate", "png"])]
+    #[arg(long, conflicts_with = "generate")]
     verify: bool,
-    /// The output file [default: standard output]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "png")]
-    cast: Option<PathBuf>,
     #[command(flatten)]
-    animation: Animation,
-    #[command(flatten)]
-    view: ViewOptions,
-    /// The fidelity of colours while something moves: exact, high, low, or the largest colour error, from 0 to 255
-    #[arg(long, value_name = "LEVEL", default_value = "exact", value_parser = fidelity)]
-    fidelity: Fidelity,
+    pub(crate) screen: ScreenOptions,
     #[command(flatten)]
     place: LevelOptions,
 }
@@ -86,42 +72,32 @@ impl Showcase {
 /// The first bytes in the recording of a server's room. The version follows them.
 pub const ROOM_RECORDING: &str = "cellcaster-room ";
 
-/// Writes the recording or the report that `options` select.
-pub(crate) fn run(options: &ReplayCommand) -> Result<(), Error> {
+/// Shows the run, or writes the report that `options` select.
+pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Error> {
     if is_room_recording(&options.script) {
-        if options.animation.png.is_some() {
-            return Err(Error::mistake(
-                "only cellcaster-server can draw the recording of a room: run cellcaster-server \
-                 replay",
-            ));
-        }
-        let words = [Some(options.script.clone().into_os_string()), options.place.map.clone()];
+        let words = [Some(options.script.into_os_string()), options.place.map];
         return External::room_replay(words.into_iter().flatten()).run();
     }
     let script = load(&options.script)?;
     if options.verify {
-        return verify(options, &script);
+        return verify(&options.place, &script);
     }
-    let levels = level::of_script(&options.place, script.header())?;
-    let settings = Settings {
-        field_of_view: options.view.field_of_view.unwrap_or_default(),
-        depth: Some(options.view.depth.unwrap_or_default()),
-        ..Settings::default()
-    };
-    let mut replay = app::Replay::new(levels, settings, options.animation.size);
-    if let Some(path) = &options.animation.png {
-        let mut frames = Frames::new(&options.animation);
-        let frames_per_second = options.animation.frames_per_second;
-        replay.play(&script, frames_per_second, |frame, _, picture| frames.push(frame, picture))?;
-        return frames.write(path);
+    if script.steps() > MAX_PLAYBACK_STEPS {
+        let hours = MAX_PLAYBACK_STEPS / (60 * 60 * u64::from(STEPS_PER_SECOND));
+        return Err(Error::mistake(format!(
+            "{} lasts longer than {hours} hours, which is the most that can be watched: \"share\" \
+             shows a part of it",
+            options.script.display()
+        )));
     }
-    match &options.cast {
-        None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
-            .map_err(|error| Error::of_output(&error)),
-        Some(path) => {
-            OutputFile::create(path)?.write(|output| write(&mut replay, &script, options, output))
-        }
-    }
+    let levels = Box::new(level::of_script(&options.place, script.header())?);
+    let difficulty = Some(script.header().rules().difficulty);
+    let settings = Settings { difficulty, ..options.screen.settings(caster)? };
+    let (store, damage) = open_store();
+    let opening = InitialState::Playback { levels, script };
+    let farewell = app::play(opening, settings, store, Recording::default());
+    say_farewell(&farewell.map_err(about_the_terminal)?, damage);
+    Ok(())
 }
 
 /// The size limit of a script in bytes: more than a week of play. A larger file is not read to its
@@ -142,36 +118,8 @@ pub fn load(path: &Path) -> Result<Script, Error> {
     }
 }
 
-fn write(
-    replay: &mut app::Replay,
-    script: &Script,
-    options: &ReplayCommand,
-    output: impl Write,
-) -> io::Result<()> {
-    let Animation { size, frames_per_second, .. } = options.animation;
-    let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
-    queue!(bytes, EnterAlternateScreen, Hide)?;
-    let mut now = Duration::ZERO;
-    asciicast.sent(now, &bytes)?;
-    let mut writer = CellWriter::new(Vec::new(), size);
-    writer.set_fidelity(options.fidelity);
-    let mut before = Buffer::empty(size.into());
-    replay.play(script, frames_per_second, |frame, _, picture| {
-        writer.draw(before.diff(picture).into_iter())?;
-        writer.flush()?;
-        before.clone_from(picture);
-        let bytes = mem::take(writer.output_mut());
-        now = Duration::from_secs(frame) / frames_per_second.get();
-        if bytes.is_empty() { Ok(()) } else { asciicast.sent(now, &bytes) }
-    })?;
-    bytes.clear();
-    queue!(bytes, Show, LeaveAlternateScreen)?;
-    asciicast.sent(now, &bytes)?;
-    asciicast.finish()
-}
-
 /// Returns true if the file is the recording of a server's room. Only the server can replay it.
-fn is_room_recording(path: &Path) -> bool {
+pub(crate) fn is_room_recording(path: &Path) -> bool {
     let mut beginning = [0; ROOM_RECORDING.len()];
     // An unreadable file is reported later, when the script is read.
     path.is_file()
@@ -179,15 +127,15 @@ fn is_room_recording(path: &Path) -> bool {
         && beginning == ROOM_RECORDING.as_bytes()
 }
 
-/// Reports the result of `script` in the level from `options` or from the script's header.
+/// Reports the result of `script` in the level from `place` or from the script's header.
 ///
 /// # Errors
 /// With exit status 1 if the script does not reach an exit.
-fn verify(options: &ReplayCommand, script: &Script) -> Result<(), Error> {
-    let (name, world) = verified_level(options, script.header())?;
+fn verify(place: &LevelOptions, script: &Script) -> Result<(), Error> {
+    let (name, world) = verified_level(place, script.header())?;
     let rules = script.header().rules();
     let floor = script.header().level.as_ref().and_then(LevelName::floor);
-    let (report, wins) = match floor.filter(|_| options.place.map.is_none()) {
+    let (report, wins) = match floor.filter(|_| place.map.is_none()) {
         Some(floor) => descend(&name, floor, world, rules, script),
         None => play(&name, world, rules, script),
     };
@@ -196,8 +144,8 @@ fn verify(options: &ReplayCommand, script: &Script) -> Result<(), Error> {
 }
 
 /// The name and the world of the level in the options or, if there is none, in the header.
-fn verified_level(options: &ReplayCommand, header: &Header) -> Result<(String, World), Error> {
-    match (&options.place.map, &header.level) {
+fn verified_level(place: &LevelOptions, header: &Header) -> Result<(String, World), Error> {
+    match (&place.map, &header.level) {
         (Some(map), _) => Ok((map.display().to_string(), level::load_grid(Some(map))?)),
         (None, Some(named)) => {
             let level = level::load_named(named, header.rules().seed)?;

@@ -9,8 +9,18 @@ use std::process::Stdio;
 
 use crate::support::{cellcaster, complaint_about, output_of, run_with_input};
 
-const SUBCOMMANDS: &[&str] =
-    &["play", "snapshot", "cast", "check", "levels", "replay", "config", "completions", "man"];
+const SUBCOMMANDS: &[&str] = &[
+    "play",
+    "snapshot",
+    "cast",
+    "check",
+    "levels",
+    "replay",
+    "share",
+    "config",
+    "completions",
+    "man",
+];
 
 const MAP: &str = "tests/maps/cross.toml";
 

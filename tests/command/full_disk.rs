@@ -54,7 +54,7 @@ fn every_command_reports_that_standard_output_is_full() {
         &["snapshot", map, "--format", "png"],
         &["snapshot", map, "--explain"],
         &["replay", "--verify", SCRIPT, "citadel"],
-        &["replay", SCRIPT, "citadel", "--size", "20x6"],
+        &["share", SCRIPT, "citadel", "--size", "20x6", "--format", "cast"],
     ];
     for arguments in commands {
         let full = File::options().write(true).open("/dev/full").unwrap();
@@ -83,7 +83,7 @@ fn a_recording_without_room_keeps_the_previous_one() {
     let folder = scratch("replay");
     let cast = folder.join("walk.cast");
     let path = cast.to_str().unwrap();
-    let arguments = ["replay", SCRIPT, "citadel", "--size", "20x6", "--cast", path];
+    let arguments = ["share", SCRIPT, "citadel", "--size", "20x6", "--output", path];
     for blocks in [0, 1, 8] {
         for before in [None, Some("the recording before")] {
             _ = fs::remove_file(&cast);
@@ -110,17 +110,17 @@ fn devices_and_link_targets_are_written_in_place() {
     fs::write(&file, "before").unwrap();
     std::os::unix::fs::symlink(&file, &link).unwrap();
     std::os::unix::fs::symlink("/dev/full", &full).unwrap();
-    let replay = |path: &PathBuf| {
+    let share = |path: &PathBuf| {
         let path = path.to_str().unwrap();
-        cellcaster(&["replay", SCRIPT, "citadel", "--size", "20x6", "--cast", path])
+        cellcaster(&["share", SCRIPT, "citadel", "--size", "20x6", "--output", path])
             .output()
             .unwrap()
     };
-    assert!(replay(&link).status.success());
+    assert!(share(&link).status.success());
     assert!(link.is_symlink());
     assert!(fs::read_to_string(&file).unwrap().starts_with("{\"term\""));
     let sentence = "can't be written: No space left on device (os error 28)";
-    assert_failed(&replay(&full), &format!("{} {sentence}", full.display()));
+    assert_failed(&share(&full), &format!("{} {sentence}", full.display()));
     assert!(full.is_symlink());
 }
 

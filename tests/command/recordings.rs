@@ -51,7 +51,8 @@ fn drawn(picture: &Buffer) -> Vec<Look> {
 #[test]
 fn a_recording_shows_every_frame_of_the_game_at_its_time() {
     let script = file("frames.script", SCRIPT);
-    let file = output_of(&["replay", &script, "museum", "--size", "60x20", "--fps", "20"]);
+    let words = ["share", &script, "museum", "--size", "60x20", "--fps", "20", "--format", "cast"];
+    let file = output_of(&words);
     let recording = Asciicast::read(&String::from_utf8(file).unwrap());
     assert_eq!((recording.columns, recording.rows), (60, 20));
     let mut terminal = terminal();
@@ -86,9 +87,12 @@ fn a_recording_shows_every_frame_of_the_game_at_its_time() {
 fn the_same_script_makes_the_same_recording() {
     let script = file("same.script", SCRIPT);
     let cast = file("same.cast", "");
-    let written = output_of(&["replay", &script]);
-    assert_eq!(output_of(&["replay", &script, "cellar", "--cast", &cast]), b"");
+    let written = output_of(&["share", &script, "--format", "cast"]);
+    let said = output_of(&["share", &script, "cellar", "--output", &cast]);
     assert!(fs::read(&cast).unwrap() == written && !written.is_empty());
+    let size = written.len().div_ceil(1000);
+    let expected = format!("{cast}: {size} kB, 2 s, 80×24 cells, 15 frames a second\n");
+    assert_eq!(String::from_utf8(said).unwrap(), expected);
 }
 
 /// A decoded frame: its length in frames of the replay, and the whole picture after it, in RGB.
@@ -134,10 +138,11 @@ fn halves(cell: &Cell) -> Option<[Rgb; 2]> {
 fn an_animated_png_shows_every_frame_of_the_game_for_its_time() {
     let (script, path) = (file("animated.script", SCRIPT), file("animated.png", ""));
     let draw = |more: &[&str]| {
-        let words = ["replay", &script, "museum", "--size", "60x20", "--fps", "20"];
+        let words = ["share", &script, "museum", "--size", "60x20", "--fps", "20"];
         // With few colours, the palette is exact.
-        let words = [&words[..], &["--colors", "16", "--png", &path], more].concat();
-        assert_eq!(output_of(&words), b"");
+        let words = [&words[..], &["--colors", "16", "--output", &path], more].concat();
+        let said = String::from_utf8(output_of(&words)).unwrap();
+        assert!(said.ends_with(" s, 60×20 cells, 20 frames a second\n"), "{said}");
         fs::read(&path).unwrap()
     };
     let drawn = draw(&[]);
@@ -175,28 +180,75 @@ fn an_animated_png_shows_every_frame_of_the_game_for_its_time() {
     }
     assert!(compared > 1000, "{compared}");
 
-    draw(&["--part", "0.5-1.5"]);
+    draw(&["--from", "0.5", "--to", "0:01.5"]);
     assert_eq!(lengths(&decoded(&path).1).iter().sum::<u16>(), 20);
+}
+
+/// The width of a GIF, and its frames. Their lengths are in hundredths of a second.
+fn decoded_gif(path: &str) -> (usize, Vec<Shown>) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(File::open(path).unwrap()).unwrap();
+    let (width, height) = (usize::from(decoder.width()), usize::from(decoder.height()));
+    let (mut pixels, mut frames) = (vec![[0; 3]; width * height], Vec::new());
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        let rows = frame.buffer.as_chunks::<4>().0.chunks_exact(frame.width.into());
+        for (y, row) in (usize::from(frame.top)..).zip(rows) {
+            let place = &mut pixels[y * width + usize::from(frame.left)..][..row.len()];
+            for (pixel, &[red, green, blue, opacity]) in place.iter_mut().zip(row) {
+                *pixel = if opacity == 0 { *pixel } else { [red, green, blue] };
+            }
+        }
+        frames.push(Shown { length: frame.delay, pixels: pixels.clone() });
+    }
+    assert_eq!(decoder.repeat(), gif::Repeat::Infinite);
+    (width, frames)
+}
+
+#[test]
+fn a_gif_shows_the_pictures_of_the_animated_png_at_their_times() {
+    let script = file("gif.script", SCRIPT);
+    let [png, gif] = ["same.png", "same.gif"].map(|name| file(name, ""));
+    for path in [&png, &gif] {
+        output_of(&[
+            "share", &script, "museum", "--size", "60x20", "--fps", "20", "--colors", "16", "-o",
+            path,
+        ]);
+    }
+    let (png, gif) = (decoded(&png), decoded_gif(&gif));
+    assert_eq!((png.0, png.1.len()), (gif.0, gif.1.len()));
+    for (png, gif) in png.1.iter().zip(&gif.1) {
+        assert_eq!(u32::from(png.length) * 100 / FRAMES_PER_SECOND.get(), u32::from(gif.length));
+        assert!(png.pixels == gif.pixels);
+    }
 }
 
 #[test]
 fn mistakes_are_reported() {
     let bad = file("bad.script", "[x]\n1 s foward\n");
     let turns = file("turns.script", "1 s turn-left\n");
+    let long = file("long.script", &"3600 s stand\n".repeat(25));
     let complaints = [
         complaint_about(&["replay"]),
         complaint_about(&["replay", "absent.script"]),
         complaint_about(&["replay", &bad]),
-        complaint_about(&["replay", &bad, "--size", "0x3"]),
-        complaint_about(&["replay", &bad, "--size", "1000x1000"]),
-        complaint_about(&["replay", &bad, "--png", "x.png", "--part", "2-1"]),
-        complaint_about(&["replay", &bad, "--part", "1-2"]),
-        complaint_about(&["replay", &bad, "--png", "x.png", "--cast", "x.cast"]),
-        complaint_about(&["replay", &turns, "--png", "x.png", "--part", "9-10"]),
-        complaint_about(&["replay", &turns, "--png", "x.png", "--size", "1000x200"]),
-        complaint_about(&["replay", "maps/together.log", "--png", "x.png"]),
+        complaint_about(&["replay", &turns]),
+        complaint_about(&["replay", &long]),
+        complaint_about(&["share"]),
+        complaint_about(&["share", &turns]),
+        complaint_about(&["share", &turns, "--output", "x.webm"]),
+        complaint_about(&["share", &bad, "--output", "x.png"]),
+        complaint_about(&["share", &bad, "--size", "0x3"]),
+        complaint_about(&["share", &bad, "--size", "1000x1000"]),
+        complaint_about(&["share", &bad, "--from", "1:2:3"]),
+        complaint_about(&["share", &turns, "--output", "x.png", "--from", "2", "--to", "1"]),
+        complaint_about(&["share", &turns, "--output", "x.gif", "--fps", "60"]),
+        complaint_about(&["share", &turns, "--output", "x.png", "--from", "9", "--to", "10"]),
+        complaint_about(&["share", &turns, "--output", "x.cast", "--from", "9"]),
+        complaint_about(&["share", &turns, "--output", "x.png", "--size", "1000x200"]),
+        complaint_about(&["share", "maps/together.log", "--output", "x.png"]),
     ];
-    assert!(!Path::new("x.png").exists());
+    assert!(["x.png", "x.gif", "x.cast", "x.webm"].iter().all(|it| !Path::new(it).exists()));
     let folder = format!("{}/", env!("CARGO_TARGET_TMPDIR"));
     insta::assert_snapshot!(complaints.join("\n").replace(&folder, ""));
 }

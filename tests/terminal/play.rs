@@ -19,6 +19,7 @@ mod mouse;
 mod moving;
 mod palette;
 mod recording;
+mod replaying;
 mod resting;
 mod settings;
 mod showing;

@@ -1,4 +1,4 @@
-//! The palette of an animated PNG: at most 256 colours in place of any number, found by median cut (Heckbert,
+//! The palette of an animation: at most 256 colours in place of any number, found by median cut (Heckbert,
 //! "Color Image Quantization for Frame Buffer Display", 1982).
 
 use std::collections::BTreeMap;
@@ -14,17 +14,15 @@ pub(crate) struct IndexedPalette {
     indices: BTreeMap<[u8; 3], u8>,
 }
 
-/// The maximum number of entries.
-const MAX: usize = 256;
-
 impl IndexedPalette {
-    /// A palette for `colors`. It is exact for up to 256 different ones.
-    pub(crate) fn of(colors: impl Iterator<Item = Rgb>) -> Self {
+    /// A palette for `colors` with at most `most` entries, of which there can be 256. It is exact for up to `most`
+    /// different colours.
+    pub(crate) fn of(colors: impl Iterator<Item = Rgb>, most: usize) -> Self {
         let mut counts = BTreeMap::new();
         colors.for_each(|color| *counts.entry(color.channels()).or_default() += 1);
         let mut counted: Vec<Counted> = counts.into_iter().collect();
         let mut boxes = vec![ColorBox::of(&mut counted)];
-        while boxes.len() < MAX
+        while boxes.len() < most
             && let Some(worst) =
                 boxes.iter_mut().max_by_key(|it| it.error).filter(|it| it.error > 0)
         {
@@ -104,7 +102,7 @@ mod tests {
 
     /// The palette for `colors`, and its colour for each of them.
     fn shown(colors: &[Rgb]) -> (usize, Vec<Rgb>) {
-        let palette = IndexedPalette::of(colors.iter().copied());
+        let palette = IndexedPalette::of(colors.iter().copied(), 256);
         let entry = |&color| {
             let [red, green, blue] = palette.entries[usize::from(palette.index(color))];
             Rgb::new(red, green, blue)

@@ -131,7 +131,7 @@ fn a_walk_by_mouse_replays_to_the_same_picture() {
 
     let script = fs::read_to_string(&path).unwrap();
     assert!(script.contains("turn:") && script.contains("tilt:"), "{script}");
-    let file = output_of(&["replay", path.to_str().unwrap()]);
+    let file = output_of(&["share", path.to_str().unwrap(), "--format", "cast", "--fps", "30"]);
     let recording = Asciicast::read(&String::from_utf8(file).unwrap());
     let (_, frames) = recording.events.split_last().unwrap();
     let mut terminal = Emulator::new(80, 24, Speaks::Nothing);

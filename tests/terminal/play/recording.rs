@@ -101,7 +101,8 @@ fn a_recorded_walk_replays_to_the_same_picture() {
     game.wait_for_end();
 
     let map = test_map("cellar");
-    let file = output_of(&["replay", path.to_str().unwrap(), map.to_str().unwrap()]);
+    let words = ["share", path.to_str().unwrap(), map.to_str().unwrap()];
+    let file = output_of(&[&words[..], &["--format", "cast", "--fps", "30"]].concat());
     let recording = Asciicast::read(&String::from_utf8(file).unwrap());
     let (_, frames) = recording.events.split_last().unwrap();
     let mut terminal = Parser::new(24.try_into().unwrap(), 80.try_into().unwrap(), 0);

@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use cellcaster::cli::animation::Animation;
+use cellcaster::cli::animation::Excerpt;
 use cellcaster::cli::parse::Takes;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -262,8 +262,11 @@ pub(crate) struct Replay {
     /// The map file or the folder of maps, if rounds were in the host's own maps
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) maps: Option<PathBuf>,
+    /// Write what a member saw as an animated PNG
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) png: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) animation: Animation,
+    pub(crate) excerpt: Excerpt,
     /// Draw what the member with this name saw [default: the first member]
     #[arg(long, value_name = "NAME", requires = "png")]
     pub(crate) member: Option<String>,

@@ -44,10 +44,10 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
     let catalog = Arc::new(Catalog::with(&maps));
     let mut animation =
-        options.animation.png.as_ref().map(|_| MemberAnimation::new(options, &catalog));
+        options.png.as_ref().map(|_| MemberAnimation::new(options, &catalog)).transpose()?;
     let look = &mut |room: &Room| animation.as_mut().map_or(Ok(()), |it| it.look_at(room));
     let rounds = replayed(&text, &catalog, look).map_err(|fault| cannot(&fault))?;
-    if let Some((animation, path)) = animation.zip(options.animation.png.as_ref()) {
+    if let Some((animation, path)) = animation.zip(options.png.as_ref()) {
         animation.write(path)?;
     }
     let mut lines = String::new();
@@ -90,15 +90,15 @@ struct MemberAnimation<'o> {
 }
 
 impl<'o> MemberAnimation<'o> {
-    fn new(options: &'o Replay, catalog: &Arc<Catalog>) -> Self {
-        let (catalog, frames) = (Arc::clone(catalog), Frames::new(&options.animation));
-        Self { options, catalog, frames, screen: None, steps: 0, next: 0 }
+    fn new(options: &'o Replay, catalog: &Arc<Catalog>) -> Result<Self, Error> {
+        let (catalog, frames) = (Arc::clone(catalog), Frames::new(&options.excerpt)?);
+        Ok(Self { options, catalog, frames, screen: None, steps: 0, next: 0 })
     }
 
     /// Draws the frames that are due before the next step of `room`. Frames before the part are drawn, too, because
     /// the map shows what the member has seen.
     fn look_at(&mut self, room: &Room) -> Result<(), String> {
-        let frames_per_second = u64::from(self.options.animation.frames_per_second.get());
+        let frames_per_second = u64::from(self.options.excerpt.frames_per_second.get());
         let due = self.steps * frames_per_second / u64::from(STEPS_PER_SECOND);
         while self.next <= due {
             if !self.frames.end_before(self.next) {
@@ -112,13 +112,13 @@ impl<'o> MemberAnimation<'o> {
 
     /// Draws a frame, if the member is in the room.
     fn draw(&mut self, room: &RoomView) -> Result<(), TooManyFrames> {
-        let Self { options: Replay { member: name, animation, .. }, screen, .. } = self;
+        let Self { options: Replay { member: name, excerpt, .. }, screen, .. } = self;
         let is_named = |it: &&MemberView| name.as_ref().is_none_or(|name| it.name.as_str() == name);
         if screen.is_none()
             && let Some(member) = room.members.iter().find(is_named)
         {
             let catalog = Arc::clone(&self.catalog);
-            let new = ReplayedScreen::new(member.id, member.name.clone(), catalog, animation.size);
+            let new = ReplayedScreen::new(member.id, member.name.clone(), catalog, excerpt.size);
             *screen = Some((member.id, new));
         }
         match screen {

@@ -18,7 +18,7 @@ fn facts(file: &[u8]) -> [u32; 3] {
 fn a_recording_is_drawn_as_a_member_saw_it() {
     let path = folder().join("picture.png");
     let draw = |member: &str| {
-        let words = ["--size", "40x12", "--fps", "4", "--part", "8-10", "--png"];
+        let words = ["--size", "40x12", "--fps", "4", "--from", "8", "--to", "10", "--png"];
         server(&["replay", RECORDING, "--member", member]).args(words).arg(&path).output().unwrap()
     };
     let drawn = |member: &str| {

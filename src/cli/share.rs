@@ -1,0 +1,274 @@
+//! `cellcaster share`: a part of a script as a moving picture for a page or a chat, or as an asciicast.
+//!
+//! The file is made in memory, so it is complete or absent, and its size is known: at most [`MAX_BYTES`].
+
+use std::fmt;
+use std::io::{self, IsTerminal, Write};
+use std::mem;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum, ValueHint};
+use crossterm::cursor::{Hide, Show};
+use crossterm::queue;
+use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
+use ratatui::backend::Backend;
+use ratatui::buffer::Buffer;
+
+use super::animation::{AnimationFormat, Excerpt, Frames, MAX_GIF_RATE, TooManyFrames};
+use super::options::{LevelOptions, ViewOptions, fidelity};
+use super::output_file::{OutputFile, print};
+use super::recording::Asciicast;
+use super::replay::{is_room_recording, load};
+use super::{Error, level};
+use crate::app::{Replay, Settings};
+use crate::game::Script;
+use crate::terminal::{CellWriter, Fidelity};
+
+/// Make a moving picture of a part of a script
+///
+/// Browsers and chats show gif and png, with 8x16 pixels for each cell and 256 colours; png is smaller. A cast is for
+/// asciinema. replay shows the times for --from and --to.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  cellcaster share walk.script --from 31.5 --to 38.8 --size 100x30 --output film.gif
+  cellcaster share walk.script my.toml --format png > film.png
+  cellcaster share walk.script --output walk.cast")]
+pub(crate) struct Share {
+    /// The script
+    #[arg(value_hint = ValueHint::FilePath)]
+    script: PathBuf,
+    /// The output file [default: standard output]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
+    /// The output format [default: the ending of the output file]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    #[command(flatten)]
+    excerpt: Excerpt,
+    #[command(flatten)]
+    view: ViewOptions,
+    /// The fidelity of colours in a cast: exact, high, low, or the largest colour error, from 0 to 255
+    #[arg(long, value_name = "LEVEL", default_value = "exact", value_parser = fidelity)]
+    fidelity: Fidelity,
+    #[command(flatten)]
+    place: LevelOptions,
+}
+
+/// A format of moving pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Gif,
+    Png,
+    Cast,
+}
+
+/// The maximum size of a file.
+const MAX_BYTES: usize = 64 << 20;
+
+/// Writes the moving picture, and says how large it is.
+pub(crate) fn run(options: &Share) -> Result<(), Error> {
+    if is_room_recording(&options.script) {
+        return Err(Error::mistake(
+            "only cellcaster-server can draw the recording of a room: run cellcaster-server replay \
+             --png",
+        ));
+    }
+    let format = format(options)?;
+    let script = load(&options.script)?;
+    let (bytes, length) = made(options, format, &script)?;
+    match &options.output {
+        None => print(&bytes),
+        Some(path) => {
+            OutputFile::create(path)?.write(|output| output.write_all(&bytes))?;
+            print(described(path, bytes.len(), length, &options.excerpt).as_bytes())
+        }
+    }
+}
+
+/// The format in the options, or else in the name of the output.
+fn format(options: &Share) -> Result<Format, Error> {
+    let ending = options.output.as_deref().and_then(Path::extension);
+    let ending = ending.and_then(|ending| ending.to_str());
+    let of_file = ending.and_then(|ending| Format::from_str(ending, true).ok());
+    let format = options.format.or(of_file).ok_or_else(|| {
+        Error::mistake("name the format: --format gif, png or cast, or an --output that ends so")
+    })?;
+    let rate = options.excerpt.frames_per_second.get();
+    if format == Format::Gif && rate > MAX_GIF_RATE {
+        return Err(Error::mistake(format!(
+            "a GIF has at most {MAX_GIF_RATE} frames a second: choose a smaller --fps, or png"
+        )));
+    }
+    if format != Format::Cast && options.output.is_none() && io::stdout().is_terminal() {
+        return Err(Error::mistake(
+            "standard output is a terminal, which cannot show the picture: name a file with \
+             --output",
+        ));
+    }
+    Ok(format)
+}
+
+/// The bytes of the moving picture, and its number of frames.
+fn made(options: &Share, format: Format, script: &Script) -> Result<(Vec<u8>, u64), Error> {
+    let Share { excerpt, view, .. } = options;
+    let (header, part) = (script.header(), excerpt.frames()?);
+    let levels = level::of_script(&options.place, header)?;
+    let settings = Settings {
+        field_of_view: view.field_of_view.unwrap_or_default(),
+        depth: Some(view.depth.unwrap_or_default()),
+        difficulty: Some(header.rules().difficulty),
+        ..Settings::default()
+    };
+    let mut replay = Replay::new(levels, settings, excerpt.size);
+    let mut output = Limited::default();
+    let mut show = |show: &mut dyn FnMut(u64, &Buffer) -> Result<(), Stop>| {
+        let shown =
+            replay.play_from(script, excerpt.frames_per_second, part.start, |frame, _, picture| {
+                if frame < part.end { show(frame, picture) } else { Err(Stop::End) }
+            });
+        match shown {
+            Ok(()) | Err(Stop::End) => Ok(()),
+            Err(Stop::Error(error)) => Err(error),
+        }
+    };
+    let animation = match format {
+        Format::Gif => AnimationFormat::Gif,
+        Format::Png => AnimationFormat::Png,
+        Format::Cast => {
+            let mut cast = Cast::begin(&mut output, options)?;
+            show(&mut |frame, picture| cast.draw(frame - part.start, picture))?;
+            let frames = cast.finish()?;
+            return Ok((output.bytes, frames));
+        }
+    };
+    let mut frames = Frames::new(excerpt)?;
+    show(&mut |frame, picture| Ok(frames.push(frame, picture)?))?;
+    frames.check()?;
+    frames.encode(animation, &mut output).map_err(|error| too_large(&error))?;
+    Ok((output.bytes, frames.length()))
+}
+
+/// The reason why a replay stops.
+enum Stop {
+    /// The part has ended.
+    End,
+    Error(Error),
+}
+
+impl From<TooManyFrames> for Stop {
+    fn from(error: TooManyFrames) -> Self {
+        Self::Error(error.into())
+    }
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Self::Error(too_large(&error))
+    }
+}
+
+impl From<Stop> for Error {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::End => Self::failed(),
+            Stop::Error(error) => error,
+        }
+    }
+}
+
+/// A cast that is being written.
+struct Cast<'o> {
+    asciicast: Asciicast<&'o mut Limited>,
+    writer: CellWriter<Vec<u8>>,
+    before: Buffer,
+    frames: u64,
+    frames_per_second: u32,
+}
+
+impl<'o> Cast<'o> {
+    fn begin(output: &'o mut Limited, options: &Share) -> Result<Self, Stop> {
+        let Excerpt { size, frames_per_second, .. } = options.excerpt;
+        let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
+        queue!(bytes, EnterAlternateScreen, Hide)?;
+        asciicast.sent(Duration::ZERO, &bytes)?;
+        let mut writer = CellWriter::new(Vec::new(), size);
+        writer.set_fidelity(options.fidelity);
+        let before = Buffer::empty(size.into());
+        let frames_per_second = frames_per_second.get();
+        Ok(Self { asciicast, writer, before, frames: 0, frames_per_second })
+    }
+
+    /// Draws frame `frame` of the part.
+    fn draw(&mut self, frame: u64, picture: &Buffer) -> Result<(), Stop> {
+        let Self { asciicast, writer, before, .. } = self;
+        writer.draw(before.diff(picture).into_iter())?;
+        writer.flush()?;
+        before.clone_from(picture);
+        let bytes = mem::take(writer.output_mut());
+        self.frames = frame + 1;
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        Ok(asciicast.sent(Duration::from_secs(frame) / self.frames_per_second, &bytes)?)
+    }
+
+    /// Ends the cast, and returns its number of frames.
+    fn finish(self) -> Result<u64, Stop> {
+        let Self { mut asciicast, frames, frames_per_second, .. } = self;
+        if frames == 0 {
+            return Err(Stop::Error(Error::mistake("--from is after the end of the replay")));
+        }
+        let mut bytes = Vec::new();
+        queue!(bytes, Show, LeaveAlternateScreen)?;
+        asciicast.sent(Duration::from_secs(frames - 1) / frames_per_second, &bytes)?;
+        asciicast.finish()?;
+        Ok(frames)
+    }
+}
+
+/// An output in memory that takes at most [`MAX_BYTES`].
+#[derive(Debug, Default)]
+struct Limited {
+    bytes: Vec<u8>,
+}
+
+impl Write for Limited {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.bytes.len() + bytes.len() > MAX_BYTES {
+            return Err(io::Error::from(io::ErrorKind::FileTooLarge));
+        }
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The error of an output in memory.
+fn too_large(error: &io::Error) -> Error {
+    match error.kind() {
+        io::ErrorKind::FileTooLarge => Error::mistake(format!(
+            "the file would be larger than {} MB: show less with --from and --to, or choose a smaller \
+             --fps or --size",
+            MAX_BYTES >> 20
+        )),
+        _ => Error::machine(error.to_string()),
+    }
+}
+
+/// A line about a file of `bytes` bytes that shows `frames` frames of the replay.
+fn described(path: &Path, bytes: usize, frames: u64, excerpt: &Excerpt) -> String {
+    let rate = excerpt.frames_per_second.get();
+    let (width, height) = (excerpt.size.width, excerpt.size.height);
+    let seconds = (frames * 10 / u64::from(rate)) as f64 / 10.0;
+    let path = path.display().to_string().replace(char::is_control, "?");
+    let size = fmt::from_fn(|f| match bytes {
+        0..10_000_000 => write!(f, "{} kB", bytes.div_ceil(1000)),
+        _ => write!(f, "{} MB", bytes.div_ceil(1_000_000)),
+    });
+    format!("{path}: {size}, {seconds} s, {width}×{height} cells, {rate} frames a second\n")
+}
