@@ -70,10 +70,9 @@ impl App {
         };
         let taken_back =
             if taken_back > 0 { format!(", {taken_back} taken back") } else { String::new() };
-        Some(format!(
-            "{title} on {}: {seconds}, {alarms}{gold}{taken_back}",
-            self.difficulty.name()
-        ))
+        let unranked = if self.is_unranked { ", unranked" } else { "" };
+        let difficulty = self.difficulty.name();
+        Some(format!("{title} on {difficulty}{unranked}: {seconds}, {alarms}{gold}{taken_back}"))
     }
 
     /// Ends the current game, stores a line about it, and saves it so that the player can continue

@@ -52,6 +52,11 @@ pub struct Excerpt {
 }
 
 impl Excerpt {
+    /// Returns true if the time at which it ends is given.
+    pub(crate) fn has_end(&self) -> bool {
+        self.to.is_some()
+    }
+
     /// The numbers of the frames.
     ///
     /// # Errors

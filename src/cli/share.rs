@@ -21,7 +21,7 @@ use super::output_file::{OutputFile, print};
 use super::recording::Asciicast;
 use super::replay::{is_room_recording, load};
 use super::{Error, level};
-use crate::app::{Replay, Settings};
+use crate::app::{MAX_PLAYBACK_STEPS, Replay, Settings};
 use crate::game::Script;
 use crate::terminal::{CellWriter, Fidelity};
 
@@ -77,6 +77,12 @@ pub(crate) fn run(options: &Share) -> Result<(), Error> {
     }
     let format = format(options)?;
     let script = load(&options.script)?;
+    if script.steps() > MAX_PLAYBACK_STEPS && !options.excerpt.has_end() {
+        return Err(Error::mistake(format!(
+            "{} lasts longer than 24 hours: name the end of the part with --to",
+            options.script.display()
+        )));
+    }
     let (bytes, length) = made(options, format, &script)?;
     match &options.output {
         None => print(&bytes),

@@ -246,6 +246,7 @@ fn mistakes_are_reported() {
         complaint_about(&["share", &turns, "--output", "x.png", "--from", "9", "--to", "10"]),
         complaint_about(&["share", &turns, "--output", "x.cast", "--from", "9"]),
         complaint_about(&["share", &turns, "--output", "x.png", "--size", "1000x200"]),
+        complaint_about(&["share", &long, "--output", "x.cast"]),
         complaint_about(&["share", "maps/together.log", "--output", "x.png"]),
     ];
     assert!(["x.png", "x.gif", "x.cast", "x.webm"].iter().all(|it| !Path::new(it).exists()));

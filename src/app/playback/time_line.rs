@@ -61,7 +61,7 @@ impl TimeLine<'_> {
         let time = |steps: u64| whole_seconds(steps as f64 * STEP).to_string();
         let (left, length) = (time(*step), time(run.steps()));
         let rights =
-            [format!("{length}  {speed:<7}{view:<5}"), format!("{length}  {speed}"), length];
+            [format!("{length}  {speed:<8}{view:<5}"), format!("{length}  {speed}"), length];
         // The blank columns: at both ends, and beside the line.
         let bar = |right: &String| area.width.saturating_sub((left.len() + right.len()) as u16 + 4);
         let right = rights.iter().find(|right| bar(right) >= MIN_BAR).unwrap_or(&rights[2]);

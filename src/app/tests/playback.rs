@@ -135,7 +135,7 @@ fn a_press_on_the_time_line_goes_there() {
     let cell = MouseEvent::UNITS_PER_CELL;
     let kind = MouseEventKind::Pressed(MouseButton::Left);
     for (x, y, expected) in
-        [(40, 22, None), (200, 23, None), (6, 23, Some(0)), (40, 23, Some(2309))]
+        [(40, 22, None), (200, 23, None), (6, 23, Some(0)), (40, 23, Some(2353))]
     {
         let before = steps(&rig);
         rig.app.mouse(MouseEvent { x: x * cell + 32, y: y * cell + 32, kind }, rig.now);

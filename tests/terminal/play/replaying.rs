@@ -33,13 +33,13 @@ fn a_run_is_watched_from_all_sides_and_played_on() {
     player.send("n");
     player.wait_for("0:10 ━");
     player.send("v");
-    player.wait_for("paused above");
+    player.wait_for("paused  above");
     player.resize(100, 30);
     player.wait_for_rest();
     let screen = player.text();
-    assert!(screen.trim_end().lines().last().unwrap().ends_with("paused above"), "{screen}");
+    assert!(screen.trim_end().lines().last().unwrap().ends_with("paused  above"), "{screen}");
     player.send("v");
-    player.wait_for("paused free");
+    player.wait_for("paused  free");
     player.send("wwww");
     player.wait_for_rest();
     player.send("?");
@@ -56,6 +56,7 @@ fn a_run_is_watched_from_all_sides_and_played_on() {
     let ending = player.wait_for_end();
     ending.assert_given_back();
     assert!(ending.status.success());
+    assert!(player.text().contains("The Observatory on normal, unranked: 0:1"));
     let kept = fs::read_to_string(data.join("progress.toml")).unwrap_or_default();
     assert!(!kept.contains("observatory"), "{kept}");
     assert!(!data.join("runs").exists());
