@@ -155,9 +155,13 @@ fn levels(options: &Play) -> Result<Levels, Error> {
         return Ok(Levels::changing(level, move || watch.change()));
     }
     let levels = level::load_or_generate(&options.place)?;
-    if options.place.map.as_ref().is_some_and(|map| map == STANDARD_INPUT)
-        && !io::stdin().is_terminal()
-    {
+    take_keys_after_map(&options.place)?;
+    Ok(levels)
+}
+
+/// Reads keys from the terminal if the map came from standard input.
+pub(crate) fn take_keys_after_map(place: &LevelOptions) -> Result<(), Error> {
+    if place.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) && !io::stdin().is_terminal() {
         take_keys_from_terminal().map_err(|_| {
             Error::mistake(
                 "the map came from standard input, and there is no other terminal to read keys \
@@ -165,7 +169,7 @@ fn levels(options: &Play) -> Result<Levels, Error> {
             )
         })?;
     }
-    Ok(levels)
+    Ok(())
 }
 
 /// The terminal's error, with a hint for players who connect by SSH.

@@ -11,7 +11,7 @@ use super::external::External;
 use super::machine::open_store;
 use super::options::LevelOptions;
 use super::output_file::print;
-use super::play::{about_the_terminal, say_farewell};
+use super::play::{about_the_terminal, say_farewell, take_keys_after_map};
 use super::screen::ScreenOptions;
 use super::{Error, level};
 use crate::app;
@@ -91,6 +91,7 @@ pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Erro
         )));
     }
     let levels = Box::new(level::of_script(&options.place, script.header())?);
+    take_keys_after_map(&options.place)?;
     let difficulty = Some(script.header().rules().difficulty);
     let settings = Settings { difficulty, ..options.screen.settings(caster)? };
     let (store, damage) = open_store();

@@ -32,7 +32,7 @@ use crate::terminal::{CellWriter, Fidelity};
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
-  cellcaster share walk.script --from 31.5 --to 38.8 --size 100x30 --output film.gif
+  cellcaster share walk.script --from 1:05 --to 1:12 --output film.gif
   cellcaster share walk.script my.toml --format png > film.png
   cellcaster share walk.script --output walk.cast")]
 pub(crate) struct Share {

@@ -11,6 +11,9 @@
 //! in 2.2 s, and the slowest of 500 jumps in it takes 18 ms. In a day of play, the states are 320
 //! seconds apart.
 //!
+//! Two marks of the same kind are at least a second apart, so a day has at most 345,600 of them, in
+//! 6 MB. The stretches of a day take at most 125 MB, if no two steps of the script are alike.
+//!
 //! Rejected: copies of all games. They take 184 kB each in the largest built-in level.
 
 use crate::app::levels::{LevelNumber, Levels, Stage};
