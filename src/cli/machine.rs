@@ -38,11 +38,12 @@ pub fn today() -> (u32, u64) {
     (date(elapsed.as_secs() / SECONDS_PER_DAY), elapsed.as_secs())
 }
 
-const SECONDS_PER_DAY: u64 = 24 * 60 * 60;
+/// The number of seconds in a day.
+pub const SECONDS_PER_DAY: u64 = 24 * 60 * 60;
 
-/// The date `days` days after 1970-01-01. Source: Howard Hinnant, "chrono-Compatible Low-Level Date
+/// The date `days` days after 1970-01-01, as a number such as 20261122, for years up to 9999. Source: Howard Hinnant, "chrono-Compatible Low-Level Date
 /// Algorithms", `civil_from_days`, 2013.
-fn date(days: u64) -> u32 {
+pub fn date(days: u64) -> u32 {
     let days = days + 719_468;
     let era = days / 146_097;
     let day_of_era = days % 146_097;

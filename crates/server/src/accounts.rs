@@ -14,13 +14,15 @@
 //!   [`WaitingResults`].
 //! - **Methods block** on the disk or the network, so callers use a worker thread. When a method returns `Ok`, its
 //!   change is on the disk.
-//! - **Time is an argument**, except for leases, visits and hosts. These use the database's own clock.
+//! - **Time is an argument**, except for leases, visits, hosts and the removal of old boards. These use the database's
+//!   own clock.
 //!
 //! Rejected: files as in the player's own store. A host has thousands of accounts, and a board needs the best
 //! results of all of them.
 
 mod account;
 mod ban;
+mod day;
 mod failure;
 pub(crate) mod known;
 mod lease;
@@ -44,12 +46,15 @@ pub use rusqlite::types::Value as ColumnValue;
 pub use account::{Account, AccountId, AccountKey, AccountSettings, UnixTime};
 pub(crate) use ban::applying;
 pub use ban::{AddressPrefix, Ban, BanScope, BanTarget, Identity};
+pub use day::Day;
+pub(crate) use day::KEPT_DAYS;
 pub use failure::{AccountRefusal, StoreFailure};
 pub use known::KnownPlayers;
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
 pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
+pub(crate) use results::verify_at;
 pub use results::{
     LevelBoard, LevelScore, MAX_SCRIPT_BYTES, MAX_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
 };

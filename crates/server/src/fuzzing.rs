@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use tokio::sync::Notify;
 
-use crate::accounts::{AccountKey, AccountSettings};
+use crate::accounts::{AccountKey, AccountSettings, Day};
 use crate::admin::RoomRow;
 pub use crate::cluster::fuzzing::SharedRoom;
 use crate::config::Config;
@@ -107,6 +107,7 @@ impl Hall {
             compresses: false,
             ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
+            today: Day::default(),
             frame_time: Duration::from_millis(33),
             idle: IdleLimits::of(&Config::default()),
         };
@@ -243,7 +244,10 @@ impl Hall {
                 }
                 Some(SessionEvent::Named(line))
             }
-            Request::Rooms => Some(SessionEvent::Rooms([RoomSummary::of(ROOM, &self.room)].into())),
+            Request::Rooms => {
+                let rooms = [RoomSummary::of(ROOM, &self.room)].into();
+                Some(SessionEvent::Rooms { rooms, today: Day::default() })
+            }
             Request::Go(Way::Watch(_)) => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;

@@ -24,7 +24,7 @@ use tokio::time::{Instant, sleep};
 pub(crate) use self::client::{Conditions, SimulatedClient, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::tapes::{Tapes, replayed};
-use crate::accounts::HostStore;
+use crate::accounts::{HostStore, UnixTime};
 use crate::config::{Config, LiveConfig};
 use crate::line::Line;
 use crate::load::Worker;
@@ -82,6 +82,8 @@ pub(crate) struct Wish {
     pub(crate) store_time: Duration,
     pub(crate) worker: Worker,
     pub(crate) seed: u64,
+    /// The time at the start.
+    pub(crate) time: UnixTime,
 }
 
 pub(crate) fn line(text: &str) -> Line {
@@ -101,7 +103,9 @@ impl Wish {
     /// The hall as both levels, and a standing room in one of them.
     pub(crate) fn new(mode: Mode) -> Self {
         let (store_time, worker) = (Duration::ZERO, Worker::default());
-        Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7 }
+        // The time of a store in memory.
+        let time = UnixTime::new(1_000_000_000);
+        Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7, time }
     }
 }
 
@@ -123,6 +127,7 @@ impl Rig {
         let setup = Setup {
             live: live.clone(),
             visitors: visitors.clone(),
+            time: wish.time,
             catalog: wish.catalog,
             recordings: tapes.recordings(),
             store: HostStore::in_memory(),
@@ -130,7 +135,12 @@ impl Rig {
             worker: wish.worker,
             seed: wish.seed,
         };
-        let host = runtime.block_on(async { Simulated::new(setup) });
+        let host = runtime.block_on(async {
+            let host = Simulated::new(setup);
+            // The host prepares the day.
+            sleep(wish.store_time).await;
+            host
+        });
         Self { runtime, host, live, visitors, clients: Vec::new(), tapes }
     }
 

@@ -9,7 +9,7 @@ use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
 use thiserror::Error;
 
-use super::{AccountId, Name, UnixTime};
+use super::{AccountId, Day, Name, UnixTime};
 
 /// The longest script that is verified, in steps: half an hour.
 pub const MAX_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
@@ -17,7 +17,7 @@ pub const MAX_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
 /// less.
 pub const MAX_SCRIPT_BYTES: usize = 8 << 20;
 
-/// A board: a built-in level or a map of the host, at one difficulty.
+/// A board: a built-in level or a map of the host, at one difficulty, or a daily level, at normal difficulty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LevelBoard {
     level: Arc<str>,
@@ -39,7 +39,7 @@ pub struct LevelScore {
     pub verified_at: UnixTime,
 }
 
-/// A run that [`verify`] has replayed: a built-in level or a map of the host that was won.
+/// A run that [`verify`] has replayed: a built-in level, a map of the host or a daily level that was won.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VerifiedRun {
     board: LevelBoard,
@@ -60,6 +60,9 @@ pub enum Unverified {
     /// It names no level with a board.
     #[error("The level has no board.")]
     OtherLevel,
+    /// It is a run in the daily level of another day.
+    #[error("A result in the daily level counts only on its day.")]
+    OtherDay,
     /// Its seed is not 0. All runs of a level have the same seed, so that they compare.
     #[error("The run has a different seed from all other runs of the level.")]
     OtherSeed,
@@ -71,9 +74,9 @@ pub enum Unverified {
     NotWon,
 }
 
-/// Replays a script in the level that its header names: a built-in level, or one of the host's maps. `map` returns the
-/// world of a map by its [key](cellcaster::app::store::map_key), so no file is read. The work is at most
-/// [`MAX_SCRIPT_STEPS`] steps.
+/// Replays a script in the level that its header names: a built-in level, one of the host's maps, or a daily level.
+/// `world` returns the world of a map by its [key](cellcaster::app::store::map_key), or of a daily level by its
+/// [name](Day::level), so no file is read. The work is at most [`MAX_SCRIPT_STEPS`] steps.
 ///
 /// ```
 /// use cellcaster_server::accounts::{Unverified, verify};
@@ -86,7 +89,7 @@ pub enum Unverified {
 /// The reason why the run does not count.
 pub fn verify(
     script: &str,
-    map: impl FnOnce(&str) -> Option<World>,
+    world: impl FnOnce(&str) -> Option<World>,
 ) -> Result<VerifiedRun, Unverified> {
     if script.len() > MAX_SCRIPT_BYTES {
         return Err(Unverified::TooLong);
@@ -103,7 +106,7 @@ pub fn verify(
     }
     let world = match builtin::LEVELS.iter().find(|level| level.name == board.level()) {
         Some(level) => level.world().ok(),
-        None => map(board.level()),
+        None => world(board.level()),
     };
     let game = replayed(world.ok_or(Unverified::OtherLevel)?, rules, &script);
     if !game.is_finished() {
@@ -115,11 +118,24 @@ pub fn verify(
     Ok(VerifiedRun { board, tally, rank, script: script.to_string() })
 }
 
+/// Like [`verify`], for a run that ended at `time`. A run in a daily level counts only on its day.
+pub(crate) fn verify_at(
+    script: &str,
+    time: UnixTime,
+    world: impl FnOnce(&str) -> Option<World>,
+) -> Result<VerifiedRun, Unverified> {
+    let run = verify(script, world)?;
+    let counts = Day::of_level(run.board.level()).is_none_or(|day| day.counts_at(time));
+    counts.then_some(run).ok_or(Unverified::OtherDay)
+}
+
 impl LevelBoard {
-    /// The board of `level`: the name of a built-in level, or the [key](cellcaster::app::store::map_key) of a map.
-    /// `None` if it is neither.
+    /// The board of `level`: the name of a built-in level, the [key](cellcaster::app::store::map_key) of a map, or the
+    /// [name](Day::level) of a daily level. `None` if it is none of them, or if it is a daily level and the
+    /// difficulty is not normal.
     pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
-        let is_level = place(level).is_some() || name_in_map_key(level).is_some();
+        let is_daily = Day::of_level(level).is_some() && difficulty == Difficulty::Normal;
+        let is_level = place(level).is_some() || name_in_map_key(level).is_some() || is_daily;
         is_level.then(|| Self { level: level.into(), difficulty })
     }
 
@@ -138,7 +154,8 @@ impl LevelBoard {
         self.difficulty
     }
 
-    /// The sort key of a list of boards: built-in levels in their order, then maps by name; easy before hard.
+    /// The sort key of a list of boards: built-in levels in their order, then daily levels and maps by name; easy
+    /// before hard.
     pub(crate) fn order(&self) -> (usize, Arc<str>, Option<usize>) {
         let level = place(&self.level).unwrap_or(usize::MAX);
         let difficulty = Difficulty::ALL.iter().position(|it| *it == self.difficulty);
@@ -199,6 +216,9 @@ mod tests {
         "/../../maps/scripts/cellar.normal.script"
     ));
 
+    /// The beginning of 2026-11-28.
+    const MIDNIGHT: u64 = 1_795_824_000;
+
     #[test]
     fn a_winning_script_is_a_run() {
         let run = verify(WON, |_| None).unwrap();
@@ -206,6 +226,26 @@ mod tests {
         assert!(run.tally().steps > 0 && run.tally().steps <= MAX_SCRIPT_STEPS);
         // The stored script is a run, too, and the same one.
         assert_eq!(verify(run.script(), |_| None).unwrap(), run);
+    }
+
+    #[test]
+    fn a_run_in_a_daily_level_counts_on_its_day_at_normal_difficulty() {
+        let corridor = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
+                        [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
+        let world = |level: &str| {
+            assert_eq!(level, "daily-2026-11-28");
+            cellcaster::map::parse(corridor, level, &cellcaster::map::NoFiles).ok()
+        };
+        let script = "level daily-2026-11-28\ndifficulty normal\nseed 0\n4 s forward\n";
+        let at = |time| verify_at(script, UnixTime::new(time), world);
+        assert_eq!(at(MIDNIGHT).unwrap().board().name(), "daily-2026-11-28");
+        assert!(at(MIDNIGHT + 24 * 3600 + 3599).is_ok());
+        for time in [MIDNIGHT - 3601, MIDNIGHT + 25 * 3600] {
+            let sentence = at(time).unwrap_err().to_string();
+            assert_eq!(sentence, "A result in the daily level counts only on its day.");
+        }
+        let hard = script.replace("normal", "hard");
+        assert!(matches!(verify(&hard, world), Err(Unverified::OtherLevel)));
     }
 
     #[test]

@@ -17,8 +17,8 @@ use super::results::with_run;
 use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountRefusal, AccountSettings, AddressPrefix, Ban, BanScope,
-    BanTarget, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_INTERVAL,
-    StoreFailure, UnixTime, VerifiedRun, sqlite,
+    BanTarget, Day, Identity, KEPT_DAYS, LevelBoard, LevelScore, NAME_HELD, Name, Origin,
+    RENAME_INTERVAL, StoreFailure, UnixTime, VerifiedRun, sqlite,
 };
 
 /// The store of a host.
@@ -432,6 +432,23 @@ impl HostStore {
         let most = i64::try_from(most).unwrap_or(i64::MAX);
         let values = params![board.level(), board.difficulty().name(), most];
         self.database.once(|it| it.rows(sql, values)?.iter().map(score).collect())
+    }
+
+    /// Removes the results of daily levels that are older than the kept days, by the database's clock. A host with a
+    /// wrong clock therefore removes nothing. Returns the number of results.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub(crate) fn forget_dailies(&mut self) -> Result<u64, StoreFailure> {
+        // The names of all daily levels have the same length, so they are in the order of the days.
+        let delete = "DELETE FROM results WHERE level > 'daily-' AND level < ?1 \
+                      AND level LIKE 'daily-____-__-__'";
+        self.database.once(|it| {
+            let now = it.row("SELECT ms / 1000 FROM clock", &[])?;
+            let now = now.map_or(Ok(0), |row| row.count(0))?;
+            let first = Day::of(UnixTime::new(now)).before(KEPT_DAYS - 1);
+            it.execute(delete, params![first.level()])
+        })
     }
 
     /// The script of an account's fastest run.

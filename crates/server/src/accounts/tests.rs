@@ -306,6 +306,29 @@ fn boards_list_the_best_run_of_each_account() {
     });
 }
 
+#[test]
+fn boards_of_daily_levels_are_kept_for_a_week() {
+    with_each_clock(|store| {
+        let now = match store.database {
+            Database::File(_) => UnixTime::new(1_000_000_000),
+            _ => UnixTime::now(),
+        };
+        let ada = store.create_account(None, &key(1), &name("Ada"), now).unwrap().id;
+        let daily = |days| LevelBoard::new(&Day::of(now).before(days).level(), Difficulty::Normal);
+        for days in 0..=8 {
+            let run = run("cellar", 100, Rank::Thief);
+            let run = VerifiedRun::made_up(daily(days).unwrap(), run.tally(), run.rank(), "x");
+            store.record(ada, &run, now).unwrap();
+        }
+        store.record(ada, &run("daily-0123456789abcdef", 100, Rank::Thief), now).unwrap();
+        assert_eq!(store.forget_dailies().unwrap(), 2);
+        assert_eq!(store.forget_dailies().unwrap(), 0);
+        let kept = (0..=6).rev().filter_map(daily);
+        let kept = [board("daily-0123456789abcdef")].into_iter().chain(kept);
+        assert_eq!(store.level_boards().unwrap(), kept.collect::<Vec<_>>());
+    });
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 

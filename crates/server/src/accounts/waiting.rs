@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify,
+    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify_at,
 };
 use cellcaster::app::store::home::{Disk, SystemFiles};
 use cellcaster::app::store::private;
@@ -201,7 +201,7 @@ impl WaitingResult {
             Ok(None) => return self.refused(StoreFailure::new("the account does not exist"), now),
             Err(failure) => return self.refused(failure, now),
         };
-        let run = match verify(&self.script, world) {
+        let run = match verify_at(&self.script, self.at, world) {
             Ok(run) => run,
             Err(reason) => return Late::Refuted(self.clone(), reason),
         };

@@ -220,8 +220,8 @@ impl PlayerSelector {
 
 /// List the leaderboards of a host
 ///
-/// For each level and difficulty, lists each account's fastest run and highest rank. Reads the store, even while the
-/// server runs.
+/// For each level and difficulty, and for each daily level of the last seven days, lists each account's fastest run
+/// and highest rank. Reads the store, even while the server runs.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --format json"
@@ -232,7 +232,7 @@ pub(crate) struct Scores {
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) store: Store,
-    /// List this level only: a built-in one, or a map of the host
+    /// List this level only: a built-in one, a map of the host, or a daily level such as daily-2026-11-28
     #[arg(long, value_name = "NAME", value_parser = level)]
     pub(crate) level: Option<String>,
     /// List this difficulty only: easy, normal or hard

@@ -387,7 +387,7 @@ impl SharedRooms {
         let is_abandoned = |known: &ReceivedRecord| {
             known.record.is_running
                 && now.duration_since(known.since) >= ABANDONED
-                && catalog.world(&known.record.level).is_some()
+                && catalog.has(&known.record.level)
         };
         locked(&self.0.records, |records| {
             let abandoned = records.iter().filter(|(_, known)| is_abandoned(known));
@@ -399,8 +399,8 @@ impl SharedRooms {
     fn header(&self, wish: &RoomWish) -> Option<Header> {
         let catalog = &self.0.context.catalog;
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
-        catalog.world(level)?;
-        Some(Header::new(level, wish.mode, wish.difficulty, self.0.context.chance()))
+        let header = || Header::new(level, wish.mode, wish.difficulty, self.0.context.chance());
+        catalog.has(level).then(header)
     }
 }
 

@@ -149,6 +149,7 @@ impl RoomState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accounts::Day;
     use crate::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode, parse_log};
     use crate::rooms::summary::RoomId;
@@ -185,6 +186,32 @@ mod tests {
         state.epoch = 2;
         state.apply(Some(9), &next);
         assert_eq!((state.number, state.tick), (9, 2));
+    }
+
+    #[test]
+    fn the_log_says_on_which_day_the_next_round_is() {
+        let level = "daily-2026-11-27";
+        let replica = || {
+            let header = Header::new(level, Mode::Race, Difficulty::Normal, 7);
+            RoomState::new(&Arc::new(Catalog::builtin()), header).unwrap()
+        };
+        let (mut one, mut other) = (replica(), replica());
+        let join =
+            Command::Join { color: PlayerColor::ALL[0], name: Line::of("Mara", 16).unwrap() };
+        let day = |text| Command::Day(Day::of_level(text).unwrap());
+        // A member's host with a slow clock changes nothing.
+        let days = [day("daily-2026-11-28"), day("daily-2026-11-27")];
+        let commands = [join].into_iter().chain(days).chain([Command::Again]);
+        let entry = |command| Entry { step: 0, member: MemberId(1), command };
+        let (epoch, last, tick, steps) = (1, one.number, one.tick, 90);
+        let entries = commands.map(entry).collect();
+        let message = LogMessage { epoch, last, tick, steps, check: None, entries };
+        let sent = LogMessage::parse(&to_bytes(&message)).unwrap();
+        one.apply(Some(1), &message);
+        other.apply(Some(1), &sent);
+        let header = one.room.header();
+        assert_eq!((header.round, header.level.as_str()), (2, "daily-2026-11-28"));
+        assert_eq!((header, one.room.checksum()), (other.room.header(), other.room.checksum()));
     }
 
     #[test]

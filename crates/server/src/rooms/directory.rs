@@ -19,6 +19,7 @@ use tokio::sync::watch;
 use tokio::time::timeout;
 
 pub(crate) use self::recording::{CAST, RecordingBounds, Recordings};
+use crate::accounts::Day;
 use crate::line::Line;
 use crate::load::Load;
 use crate::lock::locked;
@@ -55,6 +56,8 @@ pub(crate) struct RoomLimits {
 #[derive(Debug)]
 struct Directory {
     limits: Mutex<RoomLimits>,
+    /// By the host's clock.
+    today: Mutex<Day>,
     catalog: Arc<Catalog>,
     recordings: Recordings,
     load: Arc<Load>,
@@ -109,6 +112,7 @@ impl Rooms {
         let chance = SplitMix64::new(seeds.rooms);
         let rooms = Self(Arc::new(Directory {
             limits: Mutex::new(limits),
+            today: Mutex::default(),
             catalog,
             recordings,
             load,
@@ -125,6 +129,17 @@ impl Rooms {
     /// The levels that a room can be played in.
     pub(crate) fn catalog(&self) -> &Arc<Catalog> {
         &self.0.catalog
+    }
+
+    /// The day whose daily level lobbies offer.
+    pub(crate) fn today(&self) -> Day {
+        locked(&self.0.today, |today| *today)
+    }
+
+    /// Records the day by the host's clock, and tells the lobbies.
+    pub(crate) fn set_today(&self, today: Day) {
+        locked(&self.0.today, |it| *it = today);
+        self.publish();
     }
 
     /// The recordings of rooms.

@@ -7,7 +7,7 @@
 //!
 //! - A map must have a grid. Players cannot meet each other in a space of bodies.
 //! - A map's name is its file name without the extension: 1 to 32 characters from a to z, 0 to 9, `-` and
-//!   `_`. It must not be the name of a built-in level.
+//!   `_`. It must not be the name of a built-in or daily level.
 //! - Logs, scripts and boards refer to a map by its [key](map_key), which contains a hash of its text.
 //!   Results from before a change to the map are therefore not compared with newer ones.
 //! - There are at most [`MAX_MAPS`] maps, of at most [`MAX_MAP_BYTES`] each and [`MAX_BYTES`] in total.
@@ -20,6 +20,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::accounts::Day;
 use cellcaster::app::store::map_key;
 use cellcaster::fault::{Faults, printable_path};
 use cellcaster::map::{self, Folder, builtin};
@@ -178,6 +179,12 @@ fn map_name(path: &Path) -> Result<String, MapsError> {
     if builtin::LEVELS.iter().any(|level| level.name == name) {
         return Err(MapsError::Sentence(format!(
             "{} needs another name: {name} is a built-in level",
+            printable_path(path)
+        )));
+    }
+    if Day::of_level(&name).is_some() {
+        return Err(MapsError::Sentence(format!(
+            "{} needs another name: {name} is the daily level of a day",
             printable_path(path)
         )));
     }

@@ -8,6 +8,9 @@
 //! session is still drawing from the previous step. Rejected: a lock around the game. One slow frame would
 //! delay every member's step.
 //!
+//! A round in a [daily level](Day) stays in it. If a member's driver has told the room of a later day, the next round
+//! is played in the level of that day.
+//!
 //! A member with an account may return from another host, so the room keeps their seat. While their host is
 //! gone the member stands still, for at most [`AWAY`]. Each return has a token, which tells the hosts which
 //! of them now plays for the member. A host that was cut off may still believe that it does.
@@ -43,6 +46,7 @@ pub(crate) use self::replay::{Moment, Replay};
 use self::round::{Field, Round, STANDINGS};
 pub(crate) use self::round::{Finish, Phase, Role, Standing, ordinal};
 use self::ways::ExitWays;
+use crate::accounts::Day;
 use crate::line::Line;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
@@ -64,6 +68,8 @@ pub(crate) struct Room {
     step: u64,
     /// The members who want to restart the round.
     again: BTreeSet<MemberId>,
+    /// The latest day of which the room was told in this round.
+    today: Option<Day>,
     emotes: Vec<(MemberId, Emote, u64)>,
     said: VecDeque<Said>,
     said_count: u64,
@@ -160,6 +166,7 @@ impl Room {
             next_member: header.next_member,
             step: 0,
             again: BTreeSet::new(),
+            today: None,
             emotes: Vec::new(),
             said: VecDeque::new(),
             said_count: 0,
@@ -174,9 +181,6 @@ impl Room {
 
     /// The header of the next round. The log of the current round is not needed after it.
     pub(crate) fn next_header(&self) -> Header {
-        let level = &self.header.level;
-        let moves_on = self.header.mode.moves_on() && !self.standings.is_empty();
-        let level = if moves_on { self.catalog.after(level) } else { level };
         let won = |id| self.standings.iter().find(|it| it.member == id).map_or(0, |it| it.points);
         let seat = |member: &Member| Seat {
             id: member.id,
@@ -186,12 +190,21 @@ impl Room {
             name: member.name.clone(),
         };
         Header {
-            level: level.to_owned(),
+            level: self.next_level(),
             round: self.header.round.saturating_add(1),
             next_member: self.next_member,
             members: self.members.iter().map(seat).collect(),
             ..self.header.as_ref().clone()
         }
+    }
+
+    fn next_level(&self) -> String {
+        let level = &self.header.level;
+        if let Some(day) = Day::of_level(level) {
+            return self.today.map_or(day, |today| today.max(day)).level();
+        }
+        let moves_on = self.header.mode.moves_on() && !self.standings.is_empty();
+        if moves_on { self.catalog.after(level) } else { level }.to_owned()
     }
 
     pub(crate) fn begin_next(&mut self) {
@@ -280,6 +293,11 @@ impl Room {
             Command::Again => {
                 if self.member_mut(id).is_some() && self.again.insert(id) {
                     self.say(id, "wants to restart the round".to_owned());
+                }
+            }
+            Command::Day(day) => {
+                if self.member(id).is_some() {
+                    self.today = self.today.max(Some(*day));
                 }
             }
             Command::Say(line) => self.say(id, line.as_str().to_owned()),

@@ -686,6 +686,11 @@ impl InboxSeat {
                 self.intents.push_back(command);
                 return Ok(());
             }
+            Command::Day(_) => {
+                self.talk.retain(|waiting| !matches!(waiting, Command::Day(_)));
+                self.talk.push_back(command);
+                return Ok(());
+            }
             Command::Say(_) => &mut self.chat,
             Command::Emote(_) | Command::Again => &mut self.emotes,
             Command::Join { .. }

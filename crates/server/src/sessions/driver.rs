@@ -10,6 +10,8 @@
 //! - Rooms step whether or not a session draws them, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
 //! - A muted visitor's talk is stopped before it reaches anybody, see [`talk`].
 //! - The store runs on its own thread. A driver waits for it only at the start of a visit.
+//! - The host's clock tells the day. [`follow_days`] prepares the daily level. A driver tells its room if the room's
+//!   daily level is the level of an earlier day, so that the day is in the room's log.
 //! - A result counts once the store's thread has replayed its script. If the store is unreachable or full,
 //!   the result waits in a file or in memory, and is recorded later.
 
@@ -34,13 +36,14 @@ use self::results::Recorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::visit::Driver;
-use crate::accounts::worker::StoreWorker;
-use crate::accounts::{HostStore, KnownPlayers, WaitingResults};
+use crate::accounts::worker::{Answer, StoreWorker};
+use crate::accounts::{Day, HostStore, KnownPlayers, UnixTime, WaitingResults};
 use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
 use crate::config::{Config, LiveConfig};
 use crate::line::Line;
 use crate::load::{Governor, Load};
+use crate::logging;
 use crate::metrics::Metrics;
 use crate::operator::Operator;
 use crate::rooms::directory::{Recordings, Rooms, Seeds};
@@ -79,6 +82,34 @@ struct Shared {
     next_guest: AtomicU32,
 }
 
+/// The clock by which a host knows the day.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Clock {
+    System,
+    /// Simulated time, which was `at` when the runtime's clock showed `begun`.
+    #[cfg(test)]
+    Simulated {
+        at: UnixTime,
+        begun: Instant,
+    },
+}
+
+impl Clock {
+    pub(crate) fn now(self) -> UnixTime {
+        match self {
+            Self::System => UnixTime::now(),
+            #[cfg(test)]
+            Self::Simulated { at, begun } => at.after(begun.elapsed().as_secs()),
+        }
+    }
+
+    fn today(self) -> Day {
+        Day::of(self.now())
+    }
+}
+
+/// The interval between two looks at the clock for a new day.
+const DAY_INTERVAL: Duration = Duration::from_secs(5);
 /// The interval between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
 /// The maximum number of queued calls to the store.
@@ -94,6 +125,7 @@ pub struct HostParts {
     pub(crate) live: LiveConfig,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) visitors: Visitors,
+    pub(crate) clock: Clock,
     pub(crate) catalog: Catalog,
     pub(crate) recordings: Recordings,
     pub(crate) load: Load,
@@ -122,6 +154,7 @@ impl HostParts {
         let config = live.get();
         Ok(Self {
             visitors,
+            clock: Clock::System,
             catalog: Catalog::builtin(),
             recordings: Recordings::in_folder(config.recordings.clone(), config.recording_bounds()),
             load: Load::new(Arc::clone(&metrics)),
@@ -141,7 +174,7 @@ impl GameHost {
     ///
     /// Must be called within a runtime, on which the rooms then run.
     pub fn start(parts: HostParts) -> Self {
-        let HostParts { live, metrics, visitors, .. } = parts;
+        let HostParts { live, metrics, visitors, clock, .. } = parts;
         let (mut limits, load) = (live.get().room_limits(), Arc::new(parts.load));
         // In a cluster, the standing rooms are shared ones.
         let shared_standing = parts
@@ -151,11 +184,13 @@ impl GameHost {
             .unwrap_or_default();
         let catalog = Arc::new(parts.catalog);
         let rooms = Rooms::new(limits, catalog, parts.recordings, Arc::clone(&load), parts.seeds);
+        rooms.set_today(clock.today());
         let cluster = parts.cluster.map(|cluster| {
             cluster.rooms(&rooms, shared_standing, Arc::clone(&load), visitors.clone())
         });
         let recorder = Recorder {
             catalog: Arc::clone(rooms.catalog()),
+            clock,
             metrics: Arc::clone(&metrics),
             visitors: visitors.clone(),
             waiting: parts.waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
@@ -178,6 +213,7 @@ impl GameHost {
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
+        tokio::spawn(follow_days(Arc::downgrade(&shared)));
         tokio::spawn(talk::follow_mutes(Arc::downgrade(&shared)));
         tokio::spawn(follow_limits(
             shared.config.subscribe(),
@@ -275,6 +311,18 @@ impl Shared {
     fn now(&self) -> Duration {
         self.begun.elapsed()
     }
+
+    /// Prepares a day, and tells the rooms. The result fails if the store accepts no more calls.
+    fn prepare(&self, today: Day) -> Answer<()> {
+        let rooms = self.rooms.clone();
+        self.store.call(move |store| {
+            rooms.catalog().world(&today.level());
+            if let Err(failure) = store.forget_dailies() {
+                logging::store_failed(failure);
+            }
+            rooms.set_today(today);
+        })
+    }
 }
 
 /// Tells a visitor why they may not play, and returns `departure`.
@@ -296,6 +344,29 @@ async fn follow_limits(
         match &cluster {
             Some(cluster) => cluster.set_limits(limits),
             None => rooms.set_limits(limits),
+        }
+    }
+}
+
+/// Tells the rooms each new day, for as long as the host exists. Before, the store's thread generates the daily level,
+/// because a driver's thread would draw no frames meanwhile, and removes old boards.
+async fn follow_days(shared: Weak<Shared>) {
+    let mut ticks = interval(DAY_INTERVAL);
+    let mut prepared = None;
+    loop {
+        ticks.tick().await;
+        // The host is not held while waiting: its last owner shuts down the store's thread.
+        let Some((today, answer)) = shared.upgrade().map(|shared| {
+            let today = shared.recorder.clock.today();
+            let is_new = prepared != Some(today);
+            (today, is_new.then(|| shared.prepare(today)))
+        }) else {
+            return;
+        };
+        if let Some(answer) = answer
+            && answer.await.is_ok()
+        {
+            prepared = Some(today);
         }
     }
 }

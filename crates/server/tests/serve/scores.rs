@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Output;
 
+use cellcaster::map;
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 use serde_json::Value;
 
@@ -62,6 +63,25 @@ fn boards_can_be_listed_while_a_host_runs() {
     assert_eq!(written(&folder, &["--level", "prison"]), "no results\n");
     let elsewhere = scratch("elsewhere");
     assert_eq!(written(&elsewhere, &["--data", folder.to_str().unwrap()]), table);
+}
+
+#[test]
+fn the_board_of_a_day_can_be_listed() {
+    let folder = scratch("daily");
+    let mut store = filled(&folder);
+    let corridor = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
+                    [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
+    let world = |level: &str| map::parse(corridor, level, &map::NoFiles).ok();
+    let run = verify("level daily-2026-11-28\n4 s forward\n", world).unwrap();
+    let ada = store.account(&AccountKey::new([2; 32])).unwrap().unwrap();
+    store.record(ada.id, &run, UnixTime::new(1_795_824_000)).unwrap();
+    let table = written(&folder, &["--level", "daily-2026-11-28"]);
+    assert!(
+        table.starts_with("daily-2026-11-28, normal\n") && table.contains("   1  Ada"),
+        "{table}"
+    );
+    // Built-in levels come first.
+    assert!(written(&folder, &[]).ends_with(&table));
 }
 
 #[test]

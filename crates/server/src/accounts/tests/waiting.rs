@@ -56,6 +56,28 @@ fn results_survive_the_host_and_keep_their_own_time() {
 }
 
 #[test]
+fn a_daily_result_that_waited_counts_for_the_day_on_which_it_was_won() {
+    let corridor = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
+                    [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
+    let world =
+        |level: &str| cellcaster::map::parse(corridor, level, &cellcaster::map::NoFiles).ok();
+    let (folder, mut store) = (Folder::new(), HostStore::in_memory());
+    store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
+    let level = Day::of(at(3)).level();
+    let script = format!("level {level}\n4 s forward\n");
+    let mut waiting = waiting(&folder);
+    for day in [3, 5] {
+        waiting.add(result(1, day, &script)).unwrap();
+    }
+    let counts = waiting.record(0, &mut store, world, at(6));
+    assert!(matches!(counts, Some(Late::Recorded(..))), "{counts:?}");
+    let late = waiting.record(0, &mut store, world, at(6));
+    assert!(matches!(late, Some(Late::Refuted(_, Unverified::OtherDay))), "{late:?}");
+    let board = LevelBoard::new(&level, Difficulty::Normal).unwrap();
+    assert_eq!(store.level_scores(&board, 9).unwrap()[0].verified_at, at(3));
+}
+
+#[test]
 fn refused_results_wait_a_week_and_invalid_ones_do_not_wait() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();

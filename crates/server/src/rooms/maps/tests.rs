@@ -105,6 +105,9 @@ fn names_are_shown_without_control_characters() {
     let sentence = r"maps/a\u{1b}[31m\nb.toml needs another name: 1 to 32 of the characters a to z, 0 to 9, - and _, then .toml";
     assert_eq!(folder.fault(), sentence);
     assert!(matches!(HostMaps::read(&folder.0), Err(MapsError::Sentence(_))));
+    let folder = Scratch::with("daily", &[("daily-2026-11-28.toml", HALL)]);
+    let sentence = "maps/daily-2026-11-28.toml needs another name: daily-2026-11-28 is the daily level of a day";
+    assert_eq!(folder.fault(), sentence);
     let folder = Scratch::with("name", &[("\u{9b}.toml", HALL), ("wide.toml", "grid = 1\n")]);
     let error = HostMaps::read(&folder.0).unwrap_err();
     assert!(matches!(&error, MapsError::Report(text) if text.contains(r"\u{9b}.toml needs")));

@@ -1,24 +1,35 @@
-//! The levels that rooms can use: the built-in ones, then the host's own.
+//! The levels that rooms can use: the built-in ones, then the host's own, and the daily level of each day.
+//!
+//! A daily level is not listed. It is generated when its name is first used, and kept while it is one of the last
+//! [`MAX_DAILIES`] that were generated.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::Mode;
 use super::ways::ExitWays;
+use crate::accounts::Day;
+use crate::lock::locked;
 use crate::rooms::maps::HostMaps;
 use cellcaster::app::store::name_in_map_key;
 use cellcaster::map::builtin;
 use cellcaster::world::World;
 
+/// The number of daily levels that are kept: of today, of yesterday, and of a host with another clock.
+const MAX_DAILIES: usize = 3;
+
 /// Levels by name, in lobby order. The name of a host's map is its key, which changes with the text of the map.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Catalog {
     pub(crate) names: Vec<String>,
-    levels: BTreeMap<String, Listed>,
+    levels: BTreeMap<String, Arc<Level>>,
+    /// Locked while a daily level is generated, so that each is generated once.
+    dailies: Mutex<VecDeque<(Day, Arc<Level>)>>,
 }
 
-#[derive(Clone, Debug)]
-struct Listed {
+#[derive(Debug)]
+struct Level {
     /// The name shown to people, without the hash.
     short: String,
     world: Arc<World>,
@@ -59,14 +70,19 @@ impl Catalog {
         names.filter(|name| name_in_map_key(name).is_some())
     }
 
+    /// Returns true if there is a level with this name. Generates nothing.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.levels.contains_key(name) || Day::of_level(name).is_some()
+    }
+
     /// The level with this name.
-    pub(crate) fn world(&self, name: &str) -> Option<&Arc<World>> {
-        self.levels.get(name).map(|level| &level.world)
+    pub(crate) fn world(&self, name: &str) -> Option<Arc<World>> {
+        self.level(name).map(|level| Arc::clone(&level.world))
     }
 
     /// The ways to the exit of a level; `None` if there is no such level.
     pub(crate) fn exit_ways(&self, name: &str) -> Option<Arc<ExitWays>> {
-        let level = self.levels.get(name)?;
+        let level = self.level(name)?;
         Some(Arc::clone(level.ways.get_or_init(|| Arc::new(ExitWays::of(&level.world)))))
     }
 
@@ -82,15 +98,18 @@ impl Catalog {
     }
 
     /// The title of a level, or its name if it has no title.
-    pub(crate) fn title<'a>(&'a self, name: &'a str) -> &'a str {
-        let title = self.world(name).map(|world| world.title()).filter(|title| !title.is_empty());
-        title.unwrap_or_else(|| self.short(name))
+    pub(crate) fn title<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
+        if let Some(day) = Day::of_level(name) {
+            return day.title().into();
+        }
+        let title = self.levels.get(name).map(|level| level.world.title());
+        title.filter(|title| !title.is_empty()).unwrap_or_else(|| self.short(name)).into()
     }
 
     /// Returns true if a level can be played in `mode`: a mode that ends at the exit needs a level with one.
     pub(crate) fn suits(&self, name: &str, mode: Mode) -> bool {
         let level = self.levels.get(name);
-        level.is_some_and(|level| level.has_exit || !mode.moves_on())
+        level.map_or(self.has(name), |level| level.has_exit || !mode.moves_on())
     }
 
     /// The name of the next level with an exit after `name`, wrapping around at the end. After a map of the
@@ -107,13 +126,36 @@ impl Catalog {
         after.iter().chain(before).find(follows).map_or(name, String::as_str)
     }
 
+    fn level(&self, name: &str) -> Option<Arc<Level>> {
+        self.levels.get(name).cloned().or_else(|| self.daily(Day::of_level(name)?))
+    }
+
+    fn daily(&self, day: Day) -> Option<Arc<Level>> {
+        locked(&self.dailies, |dailies| {
+            if let Some((_, level)) = dailies.iter().find(|(known, _)| *known == day) {
+                return Some(Arc::clone(level));
+            }
+            let level = Arc::new(Level::new(&day.level(), Arc::new(day.world().ok()?)));
+            dailies.push_back((day, Arc::clone(&level)));
+            if dailies.len() > MAX_DAILIES {
+                dailies.pop_front();
+            }
+            Some(level)
+        })
+    }
+
     fn list(&mut self, name: &str, short: &str, world: Arc<World>) {
-        let has_exit = world.has_exit();
-        let ways = OnceLock::new();
-        let listed = Listed { short: short.to_owned(), world, has_exit, ways };
-        if self.levels.insert(name.to_owned(), listed).is_none() {
+        let level = Arc::new(Level::new(short, world));
+        if self.levels.insert(name.to_owned(), level).is_none() {
             self.names.push(name.to_owned());
         }
+    }
+}
+
+impl Level {
+    fn new(short: &str, world: Arc<World>) -> Self {
+        let has_exit = world.has_exit();
+        Self { short: short.to_owned(), world, has_exit, ways: OnceLock::new() }
     }
 }
 

@@ -69,6 +69,7 @@ impl Room {
             next_member,
             step,
             again,
+            today,
             emotes,
             said: _,
             said_count: _,
@@ -82,13 +83,13 @@ impl Room {
             recorder: _,
             replay: _,
         } = self;
-        (step, next_member, round, members, again, emotes)
+        (step, next_member, round, members, again, today, emotes)
     }
 
     fn read(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
         (self.said, self.said_count) = input.read()?;
         (self.step, self.next_member, self.round) = input.read()?;
-        (self.members, self.again, self.emotes) = input.read()?;
+        (self.members, self.again, self.today, self.emotes) = input.read()?;
         self.standings = self.round.standings.as_slice().into();
         let start = self.game.as_ref().clone();
         self.game = Arc::new(start.restored(input.rest())?);

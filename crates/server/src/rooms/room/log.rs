@@ -19,6 +19,7 @@
 //! 41 emote 1 wave
 //! 90 leave 1
 //! 95 join 2 green Jon
+//! 99 day 2 2026-11-28
 //! ```
 //!
 //! A `member` line contains a member's number, colour, points and name. In clusters, a line such as `kept 1 1f 300`
@@ -28,7 +29,7 @@
 //! An entry begins with the step before which it takes effect, then a verb and the member's number. In
 //! `want`, the next number is the step of the frame that the member saw. The angles of `want` apply in one
 //! step only. Its other intents last until the member's next `want`. A hand at rest therefore turns nobody,
-//! however late the client says so.
+//! however late the client says so. `day` tells a room with a daily level of a later day.
 
 use std::fmt;
 
@@ -36,6 +37,7 @@ use serde::{Deserialize, Serialize};
 
 use super::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 use super::mode::Mode;
+use crate::accounts::Day;
 use crate::line::Line;
 use cellcaster::app::parts::{Choice, Value as _};
 use cellcaster::cli::ROOM_RECORDING;
@@ -117,6 +119,9 @@ pub(crate) enum Command {
     Emote(Emote),
     /// Asks to restart the round, which happens once all members have asked.
     Again,
+    /// Tells the room the day, by the clock of the member's host. A room with a daily level plays the next round in
+    /// the level of the latest day that it was told.
+    Day(Day),
 }
 
 /// An emote: an emotion or a gesture.
@@ -256,6 +261,7 @@ impl fmt::Display for Entry {
             }
             Command::Say(line) => write!(f, "{step} say {member} {line}"),
             Command::Again => write!(f, "{step} again {member}"),
+            Command::Day(day) => write!(f, "{step} day {member} {day}"),
             Command::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
         }
     }
@@ -277,6 +283,7 @@ impl Entry {
             "away" if rest.is_empty() => Command::Away,
             "return" => Command::Return { token: u64::from_str_radix(rest, 16).ok()? },
             "again" if rest.is_empty() => Command::Again,
+            "day" => Command::Day(Day::parse(rest)?),
             "want" => {
                 let (seen, words) = rest.split_once(' ')?;
                 Command::Intents { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
@@ -320,6 +327,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::accounts::UnixTime;
     use cellcaster::game::{Intent, Look};
 
     fn command() -> impl Strategy<Value = Command> {
@@ -338,6 +346,8 @@ mod tests {
             Just(Command::Away),
             any::<u64>().prop_map(|token| Command::Return { token }),
             Just(Command::Again),
+            any::<u64>()
+                .prop_map(|seconds| Command::Day(Day::of(UnixTime::new(seconds % (1 << 38))))),
             (any::<u64>(), intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
             line(CHAT_COLUMNS).prop_map(Command::Say),
             prop::sample::select(Emote::ALL).prop_map(|it| Command::Emote(it.0)),
@@ -372,6 +382,8 @@ mod tests {
             "0 want 1 2 fly",
             "0 away 1 x",
             "0 leave 2147483648",
+            "0 day 1",
+            "0 day 1 2026-02-30",
         ] {
             assert_eq!(Entry::parse(line), None, "{line}");
         }

@@ -316,6 +316,7 @@ fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
         6 => (0_u64..500, intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
         1 => Just(Command::Say(line("hello"))),
         1 => Just(Command::Emote(Emote::Wave)),
+        1 => Just(Command::Day(Day::default())),
     ];
     prop::collection::vec((0_u64..40, 0_u32..10, command), 0..40)
 }

@@ -11,10 +11,10 @@ use std::time::Duration;
 
 use tokio::time::sleep;
 
-use super::Shared;
+use super::{Clock, Shared};
 use crate::accounts::{
     Account, AccountId, HostStore, Late, LevelBoard, LevelScore, StoreFailure, UnixTime,
-    VerifiedRun, WaitingResult, WaitingResults, verify,
+    VerifiedRun, WaitingResult, WaitingResults, verify_at,
 };
 use crate::line::Line;
 use crate::lock::locked;
@@ -35,6 +35,7 @@ const MAX_ROWS: usize = 100;
 #[derive(Clone, Debug)]
 pub(crate) struct Recorder {
     pub(crate) catalog: Arc<Catalog>,
+    pub(crate) clock: Clock,
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) visitors: Visitors,
     /// The results that wait while the store is unreachable or full; `None` if results do not wait on this host.
@@ -49,7 +50,8 @@ impl Recorder {
         account: &Account,
         run: &FinishedRun,
     ) -> String {
-        let run = match verify(&run.script, |name| self.world(name)) {
+        let now = self.clock.now();
+        let run = match verify_at(&run.script, now, |name| self.world(name)) {
             Ok(run) => run,
             Err(reason) => {
                 self.metrics.results(false).inc();
@@ -58,7 +60,6 @@ impl Recorder {
             }
         };
         self.metrics.results(true).inc();
-        let now = UnixTime::now();
         match store.of_key(&account.key).and_then(|id| store.record(id, &run, now)) {
             Ok(improved) => self.placed(store, account, &run, improved),
             Err(failure) => {
@@ -72,7 +73,7 @@ impl Recorder {
 
     /// The world of a level.
     pub(crate) fn world(&self, name: &str) -> Option<World> {
-        self.catalog.world(name).map(|world| World::clone(world))
+        self.catalog.world(name).map(Arc::unwrap_or_clone)
     }
 
     pub(crate) fn failed(&self, failure: &StoreFailure) {
@@ -199,7 +200,7 @@ impl Recorder {
     fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
-            let late = waiting.record(skipped, store, |name| self.world(name), UnixTime::now());
+            let late = waiting.record(skipped, store, |name| self.world(name), self.clock.now());
             if matches!(late, None | Some(Late::NotNow)) {
                 // The error was logged when the first of these results began to wait. Saving is tried again later.
                 _ = waiting.save();

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
-use tokio::time::sleep;
+use tokio::time::{Instant, sleep};
 
 use super::visit::Driver;
-use super::{GameHost, HostParts, Shared, login, refuse};
-use crate::accounts::HostStore;
+use super::{Clock, GameHost, HostParts, Shared, login, refuse};
 use crate::accounts::worker::StoreWorker;
+use crate::accounts::{HostStore, UnixTime};
 use crate::config::LiveConfig;
 use crate::load::{Load, Worker};
 use crate::metrics::Metrics;
@@ -30,6 +30,8 @@ pub(crate) struct Simulated {
 pub(crate) struct Setup {
     pub(crate) live: LiveConfig,
     pub(crate) visitors: Visitors,
+    /// The time at the start.
+    pub(crate) time: UnixTime,
     pub(crate) catalog: Catalog,
     pub(crate) recordings: Recordings,
     pub(crate) store: HostStore,
@@ -62,6 +64,7 @@ impl Simulated {
         let host = GameHost::start(HostParts {
             live: setup.live,
             visitors: setup.visitors,
+            clock: Clock::Simulated { at: setup.time, begun: Instant::now() },
             catalog: setup.catalog,
             recordings: setup.recordings,
             load: Load::simulated(Arc::clone(&metrics), setup.worker),

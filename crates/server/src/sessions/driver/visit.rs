@@ -19,7 +19,9 @@ use tokio::time::sleep_until;
 use super::login::{self, AccountData};
 use super::talk::{REPORT_BURST, REPORT_RATE, TALK_BURST, TALK_RATE};
 use super::{Shared, results};
-use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin, UnixTime};
+use crate::accounts::{
+    Account, AccountKey, AccountSettings, Day, HostStore, Name, Origin, UnixTime,
+};
 use crate::admission::counted_address;
 use crate::bucket::Bucket;
 use crate::cluster::Entrant;
@@ -30,7 +32,7 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::invitation::{Guesser, RoomCode};
-use crate::rooms::room::{CHAT_COLUMNS, NAME_COLUMNS, RoomView};
+use crate::rooms::room::{CHAT_COLUMNS, Command, NAME_COLUMNS, RoomView};
 use crate::rooms::sequencer::FinishedRun;
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
@@ -57,6 +59,8 @@ pub(crate) struct Driver {
     pub(crate) name: Option<Name>,
     presence: Presence,
     pub(crate) place: Option<Place>,
+    /// The day on which the driver last compared the room's level with the day.
+    compared: Option<Day>,
     rooms: watch::Receiver<Arc<[RoomSummary]>>,
     onlookers: watch::Receiver<Arc<Onlookers>>,
     /// Whether the session is told about changes of the rooms and the visitors.
@@ -155,6 +159,7 @@ impl Driver {
             compresses: visitor.compresses,
             ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
+            today: shared.rooms.today(),
             frame_time: shared.load.rate().frame_time,
             idle: IdleLimits::of(&config),
         };
@@ -171,6 +176,7 @@ impl Driver {
             offer,
             presence,
             place: None,
+            compared: None,
             rooms: shared.rooms.summaries(),
             onlookers: shared.visitors.onlookers(),
             in_lobby: false,
@@ -233,8 +239,8 @@ impl Driver {
                 DriverEvent::Arrived(Arrival::Ended) => return 0,
                 DriverEvent::Drained => {}
                 DriverEvent::RoomsChanged => {
-                    let rooms = self.rooms.borrow_and_update().clone();
-                    self.session.notify(SessionEvent::Rooms(rooms), now);
+                    let event = self.rooms_event();
+                    self.session.notify(event, now);
                 }
                 DriverEvent::OnlookersChanged => {
                     let onlookers = self.onlookers.borrow_and_update().clone();
@@ -371,6 +377,7 @@ impl Driver {
             self.part();
             self.session.notify(SessionEvent::Left(sentence.to_string()), now);
         }
+        self.tell_day();
         if let Some(place) = &self.place
             && let Some(run) = place.finished()
         {
@@ -404,8 +411,8 @@ impl Driver {
                 self.in_lobby = true;
                 let onlookers = self.onlookers.borrow_and_update().clone();
                 self.notify(SessionEvent::Onlookers(onlookers));
-                let rooms = self.rooms.borrow_and_update().clone();
-                self.notify(SessionEvent::Rooms(rooms));
+                let event = self.rooms_event();
+                self.notify(event);
             }
             Request::Go(way) => self.go(way),
             Request::Code(code) => match self.room_with_code(&code) {
@@ -460,6 +467,11 @@ impl Driver {
     pub(crate) fn notify(&mut self, event: SessionEvent) {
         let now = self.shared.now();
         self.session.notify(event, now);
+    }
+
+    fn rooms_event(&mut self) -> SessionEvent {
+        let rooms = self.rooms.borrow_and_update().clone();
+        SessionEvent::Rooms { rooms, today: self.shared.rooms.today() }
     }
 
     fn choose_name(&mut self, text: &str) {
@@ -623,9 +635,25 @@ impl Driver {
                 let (room, member, code) = (place.room(), place.member_id(), place.code());
                 let event = SessionEvent::Entered { room, member, code };
                 self.place = Some(place);
+                self.compared = None;
                 self.notify(event);
             }
             Err(refusal) => self.notify(SessionEvent::Refused(refusal.to_string())),
+        }
+    }
+
+    /// Tells the room the day, if its daily level is the level of an earlier day.
+    fn tell_day(&mut self) {
+        let Self { shared, place: Some(place), compared, .. } = self else { return };
+        let today = shared.rooms.today();
+        if compared.replace(today) == Some(today) {
+            return;
+        }
+        let view = shared.rooms.view(place.room());
+        let day = view.and_then(|room| Day::of_level(&room.header.level));
+        if day.is_some_and(|day| day < today) {
+            // Watchers can tell nothing, but every member's driver does.
+            _ = place.act(Command::Day(today));
         }
     }
 

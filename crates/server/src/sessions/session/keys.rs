@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Request;
 use super::commands::columns_of;
-use super::pages::{Choice, Page};
+use super::pages::{Choice, LevelChoice, Page};
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::room::Command;
@@ -127,6 +127,11 @@ impl Ui {
             (Page::Card(_), Some(Choice::ChangePrivacy)) => self.change_privacy(),
             (Page::Settings, Some(Choice::Change(row))) => self.change_setting(row, forward),
             (Page::Levels(mode), _) if !mode.has_guards() => {}
+            (Page::Board, _) if self.board.level == LevelChoice::Daily => {
+                self.board.day = self.board.day.neighbour(forward, self.host.today);
+                self.ask_for_board();
+                self.renew_menu();
+            }
             (Page::Levels(_) | Page::Board, _) => {
                 self.change_choices(|choices| {
                     let difficulty = &mut choices.common.preferences.difficulty;

@@ -4,24 +4,28 @@
 //!   the room has changed, and at most [`PICTURES_PER_SECOND`] times a second. If the server is short of processor
 //!   time, frames come more rarely, and so do these pictures.
 //! - Between pictures, the session holds no snapshot of the room, so the room's steps need not copy its game.
-//! - The board is loaded once for each stay in the lobby. Rejected: loading it whenever the offered room changes.
-//!   All visitors in the lobby would ask the store at the same moment.
+//! - The board of today's daily level is loaded once for each stay in the lobby. On a new day it is empty, so it is not
+//!   loaded. Rejected: loading it then. All visitors in the lobby would ask the store at the same moment.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::messages::{BoardRow, Request};
-use super::pages::{Page, RoomTarget};
+use super::pages::{LevelChoice, Page, RoomTarget};
 use super::ui::Ui;
+use crate::accounts::Day;
 use crate::line::Line;
-use crate::rooms::room::{Header, MemberView, Mode, RoomView};
+use crate::rooms::room::{Header, MemberView, RoomView};
 use crate::rooms::summary::RoomId;
 use crate::visitors::Onlookers;
+use cellcaster::app::parts::of_steps;
 use cellcaster::game::PlayerView;
 use cellcaster::world::{Camera, Difficulty, FieldOfView};
 
 /// The maximum number of pictures per second.
 const PICTURES_PER_SECOND: u32 = 4;
+/// The number of entries of the board that are shown.
+const BOARD_ROWS: usize = 3;
 /// The number of a session's usual frames in the time of one picture.
 const FRAMES_PER_PICTURE: u32 = 6;
 
@@ -29,9 +33,8 @@ const FRAMES_PER_PICTURE: u32 = 6;
 #[derive(Debug, Default)]
 pub(crate) struct Lobby {
     pub(crate) onlookers: Arc<Onlookers>,
+    /// The board of today's daily level; `None` until it is requested.
     pub(crate) board: Option<LobbyBoard>,
-    /// The level that the visitor has played last.
-    last_level: Option<String>,
     /// Whether the window has room for a picture.
     pub(crate) has_picture: bool,
     /// The game time at which the last picture changes by itself.
@@ -44,8 +47,7 @@ pub(crate) struct Lobby {
 /// The board in the lobby.
 #[derive(Debug)]
 pub(crate) struct LobbyBoard {
-    pub(crate) level: String,
-    difficulty: Difficulty,
+    day: Day,
     /// The entries; `None` until they arrive.
     pub(crate) rows: Option<Arc<[BoardRow]>>,
 }
@@ -107,18 +109,16 @@ impl Lobby {
         self.drawn_at = now;
     }
 
-    /// Remembers the level that the visitor leaves, and forgets the board.
-    pub(crate) fn begin(&mut self, left: Option<&str>) {
-        self.last_level = left.map(str::to_owned).or(self.last_level.take());
+    /// Begins another stay, for which the board is loaded again.
+    pub(crate) fn begin(&mut self) {
         self.board = None;
         self.shown = None;
     }
 
-    /// Takes the entries of a board, if the lobby waits for them.
-    pub(crate) fn receive(&mut self, level: &str, difficulty: Difficulty, rows: &Arc<[BoardRow]>) {
+    /// Takes the entries of a board, if it is the lobby's.
+    pub(crate) fn receive(&mut self, level: &str, rows: &Arc<[BoardRow]>) {
         let board = self.board.as_mut();
-        let board = board.filter(|it| it.level == level && it.difficulty == difficulty);
-        if let Some(board) = board {
+        if let Some(board) = board.filter(|board| Day::of_level(level) == Some(board.day)) {
             board.rows = Some(Arc::clone(rows));
         }
     }
@@ -156,25 +156,45 @@ impl Ui {
         rooms.into_iter().map(|room| room.id).collect()
     }
 
-    /// Requests the board of the level that the visitor has played last, or else of the offered room's level.
+    /// Requests the board of today's daily level, or shows an empty one if the day has just begun.
     pub(crate) fn ask_for_lobby_board(&mut self) {
-        if self.lobby.board.is_some() {
-            return;
+        let day = self.host.today;
+        match &mut self.lobby.board {
+            Some(board) if board.day == day => {}
+            Some(board) => *board = LobbyBoard { day, rows: Some(Arc::from([])) },
+            None => {
+                self.lobby.board = Some(LobbyBoard { day, rows: None });
+                self.ask(Request::Board { level: day.level(), difficulty: Difficulty::Normal });
+            }
         }
-        let offered = || self.level_name(self.offer(&self.rooms_by_life())).map(str::to_owned);
-        let level = self.lobby.last_level.clone().or_else(offered);
-        let has_board = |level: &String| self.host.catalog.suits(level, Mode::Alone);
-        let Some(level) = level.filter(has_board) else { return };
-        let difficulty = self.identity.preferences.difficulty;
-        self.lobby.board = Some(LobbyBoard { level: level.clone(), difficulty, rows: None });
-        self.ask(Request::Board { level, difficulty });
+    }
+
+    /// The first entries of the board of today's daily level, each with its place; a remark if there are none.
+    pub(crate) fn best_of_today(&self) -> Vec<(String, String)> {
+        let remark = |text: &str| vec![(text.to_owned(), String::new())];
+        match self.lobby.board.as_ref().and_then(|board| board.rows.as_ref()) {
+            None => remark("…"),
+            Some(rows) if rows.is_empty() => remark("no results yet"),
+            Some(rows) => (1..)
+                .zip(rows.iter().take(BOARD_ROWS))
+                .map(|(place, row)| (format!("{place}. {}", row.name), of_steps(row.steps)))
+                .collect(),
+        }
     }
 
     /// The name of a room's level in the catalog.
-    pub(crate) fn level_name(&self, target: RoomTarget) -> Option<&str> {
+    pub(crate) fn level_name(&self, target: RoomTarget) -> Option<String> {
         match target {
-            RoomTarget::Existing(id) => self.room(id).map(|room| room.level.as_str()),
-            RoomTarget::New { level, .. } => self.host.catalog.names.get(level).map(String::as_str),
+            RoomTarget::Existing(id) => self.room(id).map(|room| room.level.clone()),
+            RoomTarget::New { level, .. } => self.chosen_level(level),
+        }
+    }
+
+    /// The name of a chosen level in the catalog.
+    pub(crate) fn chosen_level(&self, choice: LevelChoice) -> Option<String> {
+        match choice {
+            LevelChoice::Listed(index) => self.host.catalog.names.get(index).cloned(),
+            LevelChoice::Daily => Some(self.host.today.level()),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::endings::IdleLimits;
-use crate::accounts::{AccountSettings, Name};
+use crate::accounts::{AccountSettings, Day, Name};
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
@@ -46,6 +46,8 @@ pub(crate) struct HostFacts {
     /// The locale setting that restricts the visitor to ASCII, such as `LANG=C`.
     pub(crate) ascii_locale: Option<Line>,
     pub(crate) catalog: Arc<Catalog>,
+    /// The day whose daily level the lobby offers.
+    pub(crate) today: Day,
     /// The initial interval between frames.
     pub(crate) frame_time: Duration,
     pub(crate) idle: IdleLimits,
@@ -114,8 +116,8 @@ pub(crate) enum SessionEvent {
     Named(Result<Line, String>),
     /// The visitors who play in no room, for the lobby.
     Onlookers(Arc<Onlookers>),
-    /// The rooms for the lobby.
-    Rooms(Arc<[RoomSummary]>),
+    /// The rooms for the lobby, and the day.
+    Rooms { rooms: Arc<[RoomSummary]>, today: Day },
     /// The visitor has entered a room; `member` is `None` if they watch. A private room has a `code`.
     Entered { room: RoomId, member: Option<MemberId>, code: Option<RoomCode> },
     /// The visitor cannot enter the room, for the reason in the sentence.

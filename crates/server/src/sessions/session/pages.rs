@@ -10,7 +10,6 @@ use super::commands::Players;
 use super::draw::COMPRESSION;
 use super::line_entry::LineEntry;
 use super::messages::{Moderation, Request, Way};
-use super::stay::Stay;
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
@@ -23,6 +22,8 @@ use cellcaster::world::Difficulty;
 const ROOMS_IN_LOBBY: usize = 5;
 /// The widest invitation code that can be typed, with blanks.
 const CODE_COLUMNS: usize = 12;
+/// The modes in which the daily level can be played: the modes that end at its exit.
+const DAILY_MODES: [Mode; 3] = [Mode::Alone, Mode::Race, Mode::Together];
 /// The level for the first walk.
 const FIRST_LEVEL: &str = "museum";
 
@@ -32,10 +33,10 @@ pub(crate) enum Page {
     /// The visitor types a name.
     Name,
     Lobby,
-    /// All rooms, to enter or to watch.
-    Rooms {
-        watches: bool,
-    },
+    /// All rooms.
+    Rooms,
+    /// Today's daily level: its best results, its rooms, and the modes in which it can be played.
+    Daily,
     /// A choice of the mode of a new room.
     Modes,
     /// A choice of the level of a new room.
@@ -75,8 +76,8 @@ pub(crate) enum Choice {
     Open(Page),
     /// Enters or watches the room on the card.
     Enter { watches: bool },
-    /// Shows the board of the level with this index.
-    Board(usize),
+    /// Shows the board of a level.
+    Board(LevelChoice),
     /// Changes whether the new room is private.
     ChangePrivacy,
     /// Changes the setting in this row of the settings page.
@@ -112,8 +113,17 @@ pub(crate) enum Choice {
 pub(crate) enum RoomTarget {
     /// A room on the list.
     Existing(RoomId),
-    /// A new room, in the level with this index in the catalog.
-    New { mode: Mode, level: usize, difficulty: Difficulty },
+    /// A new room.
+    New { mode: Mode, level: LevelChoice, difficulty: Difficulty },
+}
+
+/// A level that a visitor chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LevelChoice {
+    /// The level with this index in the catalog.
+    Listed(usize),
+    /// Today's daily level.
+    Daily,
 }
 
 impl parts::Page for Page {
@@ -189,7 +199,7 @@ impl Ui {
             }
             Choice::Enter { watches } => self.enter_room(watches),
             Choice::Board(level) => {
-                self.board.level = level;
+                (self.board.level, self.board.day) = (level, self.host.today);
                 self.ask_for_board();
                 self.open(Page::Board);
             }
@@ -254,7 +264,7 @@ impl Ui {
             RoomTarget::Existing(room) if watches => Way::Watch(room),
             RoomTarget::Existing(room) => Way::Enter(room),
             RoomTarget::New { mode, level, difficulty } => {
-                let Some(level) = self.host.catalog.names.get(level).cloned() else { return };
+                let Some(level) = self.chosen_level(level) else { return };
                 let wish = RoomWish { level, mode, difficulty };
                 Way::Open { wish, is_private: self.is_private }
             }
@@ -272,9 +282,18 @@ impl Ui {
     /// Requests the board of the chosen level.
     pub(crate) fn ask_for_board(&mut self) {
         self.board.rows = None;
-        let difficulty = self.identity.preferences.difficulty;
-        if let Some(level) = self.host.catalog.names.get(self.board.level).cloned() {
+        if let Some((level, difficulty)) = self.asked_board() {
             self.ask(Request::Board { level, difficulty });
+        }
+    }
+
+    /// The level and the difficulty of the chosen board.
+    pub(crate) fn asked_board(&self) -> Option<(String, Difficulty)> {
+        match self.board.level {
+            LevelChoice::Daily => Some((self.board.day.level(), Difficulty::Normal)),
+            level @ LevelChoice::Listed(_) => {
+                Some((self.chosen_level(level)?, self.identity.preferences.difficulty))
+            }
         }
     }
 
@@ -286,8 +305,8 @@ impl Ui {
 
     /// Records that the visitor has left the room, and returns to the lobby.
     pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
-        let stay = self.stay.take();
-        self.lobby.begin(stay.as_ref().and_then(Stay::level));
+        self.stay = None;
+        self.lobby.begin();
         self.note = sentence;
         self.ask(Request::Rooms);
         self.show(Page::Lobby);
@@ -299,7 +318,8 @@ impl Ui {
     pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
         match page {
             Page::Lobby => self.lobby_menu(),
-            Page::Rooms { watches } => self.rooms_menu(watches),
+            Page::Rooms => self.rooms_menu(),
+            Page::Daily => self.daily_menu(),
             Page::Modes => modes_menu(),
             Page::Levels(mode) => self.levels_menu(mode),
             Page::Boards => self.boards_menu(),
@@ -330,13 +350,10 @@ impl Ui {
         });
         let menu = match rooms.len() {
             0..=ROOMS_IN_LOBBY => menu,
-            all => {
-                let all_rooms = Choice::Open(Page::Rooms { watches: false });
-                menu.entry_with("All rooms", all.to_string(), all_rooms)
-            }
+            all => menu.entry_with("All rooms", all.to_string(), Choice::Open(Page::Rooms)),
         };
         menu.entry("Open a room", Choice::Open(Page::Modes))
-            .entry("Watch a room", Choice::Open(Page::Rooms { watches: true }))
+            .entry(self.host.today.title(), Choice::Open(Page::Daily))
             .entry(Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone)))
             .entry("Board", Choice::Open(Page::Boards))
             .entry("Enter a code", Choice::Open(Page::Code))
@@ -364,7 +381,7 @@ impl Ui {
     pub(crate) fn rooms_by_life(&self) -> Vec<&RoomSummary> {
         let is_offered = |room: &&RoomSummary| {
             let is_open = room.mode != Mode::Alone && room.code.is_none();
-            is_open && self.host.catalog.world(&room.level).is_some()
+            is_open && self.host.catalog.has(&room.level)
         };
         let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_offered).collect();
         let life = |room: &RoomSummary| std::cmp::Reverse(room.members.len());
@@ -383,7 +400,7 @@ impl Ui {
         let level = names.iter().position(|name| name == FIRST_LEVEL).unwrap_or(0);
         RoomTarget::New {
             mode: Mode::Roam,
-            level,
+            level: LevelChoice::Listed(level),
             difficulty: self.identity.preferences.difficulty,
         }
     }
@@ -395,7 +412,7 @@ impl Ui {
             RoomTarget::Existing(id) => {
                 let Some(room) = self.room(id) else { return Default::default() };
                 let label = format!("{} in {}", room.mode.title(), catalog.title(&room.level));
-                (label, format!("{}/{}", room.members.len(), room.mode.most()))
+                (label, members_of(room))
             }
             RoomTarget::New { mode, .. } => {
                 let label = format!("{} in {}", mode.title(), self.level_title(target));
@@ -406,22 +423,37 @@ impl Ui {
 
     /// The title of a room's level.
     pub(crate) fn level_title(&self, target: RoomTarget) -> String {
-        let title = |name| self.host.catalog.title(name).to_owned();
-        self.level_name(target).map(title).unwrap_or_default()
+        let name = self.level_name(target);
+        name.map_or(String::new(), |name| self.host.catalog.title(&name).into_owned())
     }
 
-    fn rooms_menu(&self, watches: bool) -> Menu<Choice> {
-        let menu = Menu::new(if watches { "watch a room" } else { "all rooms" });
+    fn rooms_menu(&self) -> Menu<Choice> {
         let rooms = self.rooms_by_life();
-        let rooms = rooms.into_iter().filter(|room| !watches || !room.members.is_empty());
-        let menu = rooms.fold(menu, |menu, room| {
+        let menu = rooms.into_iter().fold(Menu::new("all rooms"), |menu, room| {
             let target = RoomTarget::Existing(room.id);
             let (label, value) = self.label_of(target);
             menu.entry_with(label, value, Choice::Open(Page::Card(target)))
         });
-        let is_empty = menu.choice().is_none();
-        let menu = if is_empty { menu.line("All rooms are empty.") } else { menu };
         menu.entry("Back", Choice::Back)
+    }
+
+    fn daily_menu(&self) -> Menu<Choice> {
+        let best = self.best_of_today().into_iter();
+        let menu = Menu::new(self.host.today.title())
+            .line("The same level for everybody, until midnight in UTC.")
+            .lines(best.map(|(name, time)| format!("{name} {time}").trim_end().to_owned()));
+        let level = self.host.today.level();
+        let rooms = self.rooms_by_life().into_iter().filter(|room| room.level == level);
+        let menu = rooms.take(ROOMS_IN_LOBBY).fold(menu, |menu, room| {
+            let card = Choice::Open(Page::Card(RoomTarget::Existing(room.id)));
+            menu.entry_with(room.mode.title(), members_of(room), card)
+        });
+        let menu = DAILY_MODES.into_iter().fold(menu, |menu, mode| {
+            let (level, difficulty) = (LevelChoice::Daily, Difficulty::Normal);
+            let card = Page::Card(RoomTarget::New { mode, level, difficulty });
+            menu.entry_with(mode.title(), "new", Choice::Open(card))
+        });
+        menu.entry("Board", Choice::Board(LevelChoice::Daily)).entry("Back", Choice::Back)
     }
 
     fn levels_menu(&self, mode: Mode) -> Menu<Choice> {
@@ -438,7 +470,9 @@ impl Ui {
     }
 
     fn boards_menu(&self) -> Menu<Choice> {
-        self.each_level(Menu::new("board"), Mode::Alone, Choice::Board)
+        let daily = Choice::Board(LevelChoice::Daily);
+        let menu = Menu::new("board").entry(self.host.today.title(), daily);
+        self.each_level(menu, Mode::Alone, Choice::Board)
     }
 
     /// Adds an entry to `menu` for each level that suits the mode.
@@ -446,21 +480,23 @@ impl Ui {
         &self,
         menu: Menu<Choice>,
         mode: Mode,
-        choice: impl Fn(usize) -> Choice,
+        choice: impl Fn(LevelChoice) -> Choice,
     ) -> Menu<Choice> {
         let catalog = &self.host.catalog;
         let levels = catalog.names.iter().enumerate();
-        levels
-            .filter(|(_, name)| catalog.suits(name, mode))
-            .fold(menu, |menu, (index, name)| menu.entry(catalog.title(name), choice(index)))
+        levels.filter(|(_, name)| catalog.suits(name, mode)).fold(menu, |menu, (index, name)| {
+            menu.entry(catalog.title(name), choice(LevelChoice::Listed(index)))
+        })
     }
 
     fn board_menu(&self) -> Menu<Choice> {
-        let catalog = &self.host.catalog;
-        let level = catalog.names.get(self.board.level).map_or("", |name| catalog.title(name));
-        let difficulty = self.identity.preferences.difficulty.name();
-        let menu = Menu::new(level)
-            .line(format!("On {difficulty}; left and right change the difficulty."));
+        let Some((level, difficulty)) = self.asked_board() else { return Menu::default() };
+        let menu = Menu::new(self.host.catalog.title(&level)).line(match self.board.level {
+            LevelChoice::Daily => "Left and right change the day.".to_owned(),
+            LevelChoice::Listed(_) => {
+                format!("On {}; left and right change the difficulty.", difficulty.name())
+            }
+        });
         match &self.board.rows {
             None => menu.line("…"),
             Some(rows) if rows.is_empty() => menu.line("Nobody has won it yet."),
@@ -480,7 +516,7 @@ impl Ui {
             RoomTarget::New { mode, .. } => (mode, None, false),
             RoomTarget::Existing(id) => match self.room(id) {
                 None => return back(Menu::new("").line("The room is closed.")),
-                Some(room) if self.host.catalog.world(&room.level).is_none() => {
+                Some(room) if !self.host.catalog.has(&room.level) => {
                     return back(Menu::new("").line(RoomRefusal::NoLevel.to_string()));
                 }
                 Some(room) => (room.mode, Some(who_is_here(room)), room.is_full()),
@@ -569,6 +605,11 @@ impl Ui {
         });
         menu.entry("Back", Choice::Back)
     }
+}
+
+/// The number of a room's members, of the number that it admits.
+fn members_of(room: &RoomSummary) -> String {
+    format!("{}/{}", room.members.len(), room.mode.most())
 }
 
 /// A sentence with the names of a room's members and the number of watchers.

@@ -9,6 +9,7 @@ use ratatui::layout::Size;
 use super::endings::IdleLimits;
 use super::messages::{HostFacts, Profile, SessionEvent};
 use super::ui::Ui;
+use crate::accounts::Day;
 use crate::config::Config;
 use crate::line::Line;
 use crate::rooms::room::{Catalog, MemberId, RoomView};
@@ -40,6 +41,7 @@ impl ReplayedScreen {
             compresses: true,
             ascii_locale: None,
             catalog,
+            today: Day::default(),
             frame_time: Duration::ZERO,
             idle: IdleLimits::of(&Config::default()),
         };

@@ -149,11 +149,6 @@ impl Stay {
         self.seen_through(room).map_or(Edge::Plain, |(member, _)| edge(room, member))
     }
 
-    /// The level in the last picture.
-    pub(crate) fn level(&self) -> Option<&str> {
-        self.shown.as_ref().map(|shown| shown.header.level.as_str())
-    }
-
     /// The colour of the visitor's own figure and ghost.
     pub(crate) fn own_color(&self, room: &RoomView) -> Option<PlayerColor> {
         self.member.and_then(|id| room.member(id)).map(|member| member.color)

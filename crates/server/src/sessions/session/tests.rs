@@ -1,6 +1,7 @@
 //! Tests of sessions: clients with terminal emulators and one room, in simulated time.
 
 mod bytes;
+mod daily;
 mod ghosts;
 mod home;
 mod lag;

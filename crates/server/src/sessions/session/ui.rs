@@ -9,9 +9,10 @@ use super::ignored::Ignored;
 use super::line_entry::LineEntry;
 use super::lobby::Lobby;
 use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
-use super::pages::{Choice, Page};
+use super::pages::{Choice, LevelChoice, Page};
 use super::stay::Stay;
 use super::talk::Talk;
+use crate::accounts::Day;
 use crate::line::Line;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
@@ -77,10 +78,11 @@ pub(crate) struct Ui {
 }
 
 /// The board on display.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Board {
-    /// The index of the level in the catalog.
-    pub(crate) level: usize,
+    pub(crate) level: LevelChoice,
+    /// The day, if the level is a daily level.
+    pub(crate) day: Day,
     /// The entries; `None` until they arrive.
     pub(crate) rows: Option<Arc<[BoardRow]>>,
 }
@@ -118,7 +120,7 @@ impl Ui {
             draining: None,
             rooms: Arc::from([]),
             lobby: Lobby::default(),
-            board: Board::default(),
+            board: Board { level: LevelChoice::Daily, day: host.today, rows: None },
             stay: None,
             talk: Talk::default(),
             ignored: Ignored::new(identity.ignored.clone()),
@@ -287,8 +289,8 @@ impl Ui {
         self.is_stale = true;
         match event {
             SessionEvent::Named(answer) => self.named(answer),
-            SessionEvent::Rooms(rooms) => {
-                self.rooms = rooms;
+            SessionEvent::Rooms { rooms, today } => {
+                (self.rooms, self.host.today) = (rooms, today);
                 if self.stay.is_none() {
                     self.ask_for_lobby_board();
                     self.renew_menu();
@@ -305,10 +307,8 @@ impl Ui {
                 self.leave_room(Some(sentence));
             }
             SessionEvent::Board { level, difficulty, rows } => {
-                self.lobby.receive(&level, difficulty, &rows);
-                let asked = self.host.catalog.names.get(self.board.level);
-                let is_asked = self.identity.preferences.difficulty == difficulty;
-                if asked == Some(&level) && is_asked {
+                self.lobby.receive(&level, &rows);
+                if self.asked_board() == Some((level, difficulty)) {
                     self.board.rows = Some(rows);
                     self.renew_menu();
                 }
@@ -355,7 +355,7 @@ impl Ui {
     /// Shows the lobby after the name is chosen.
     pub(crate) fn enter_lobby(&mut self) {
         self.note = None;
-        self.lobby.begin(None);
+        self.lobby.begin();
         self.ask(Request::Rooms);
         self.show(Page::Lobby);
     }

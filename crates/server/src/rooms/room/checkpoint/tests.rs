@@ -11,6 +11,7 @@ use proptest::prelude::*;
 
 use self::crowd::Crowd;
 use super::*;
+use crate::accounts::Day;
 use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
 use crate::simulation;
 use cellcaster::app::parts::Choice as _;
@@ -22,6 +23,10 @@ use cellcaster::world::Difficulty;
 
 fn line(text: &str) -> Line {
     Line::of(text, CHAT_COLUMNS).unwrap()
+}
+
+fn today() -> Day {
+    Day::of_level("daily-2026-11-28").unwrap()
 }
 
 /// A source of members who join, move, talk and leave in the same way in several equal rooms.
@@ -74,6 +79,7 @@ impl Party {
                 4 => Some(Command::Keep),
                 5 => Some(Command::Away),
                 6 => Some(Command::Return { token: random.bits() }),
+                7 => Some(Command::Day(today().before(random.below(3) as u32))),
                 _ => None,
             };
             entries.extend(command.map(|command| entry(member.id, command)));
@@ -99,6 +105,7 @@ fn assert_same(one: &Room, other: &Room) {
     assert_eq!((one.step, one.next_member), (other.step, other.next_member));
     assert_eq!((&one.header, &one.round), (&other.header, &other.round));
     assert_eq!((&one.members, &one.again), (&other.members, &other.again));
+    assert_eq!(one.today, other.today);
     assert_eq!((&one.emotes, &one.standings), (&other.emotes, &other.standings));
     assert_eq!((&one.said, one.said_count), (&other.said, other.said_count));
     assert!(one.game == other.game, "the games differ");
@@ -139,6 +146,16 @@ fn a_restored_room_plays_on_in_every_level_and_mode() {
                 played(&catalog, header, most, before, random.bits());
             }
         }
+    }
+}
+
+#[test]
+fn a_restored_room_plays_on_in_a_daily_level() {
+    let catalog = Arc::new(Catalog::builtin());
+    for (seed, mode) in (1..).zip([Mode::Alone, Mode::Race, Mode::Together]) {
+        let level = today().before(2).level();
+        let header = Header::new(&level, mode, Difficulty::Normal, seed);
+        played(&catalog, header, 2, 900 * seed, seed);
     }
 }
 

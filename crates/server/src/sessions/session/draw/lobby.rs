@@ -1,7 +1,7 @@
 //! Drawing the pages outside of a room.
 //!
 //! In a large window they are a place: the menu at the left, and beside it a picture of the liveliest room, the
-//! board of a level, and the visitors who are here. In a small window only the page's panel is shown. The last row
+//! board of today's daily level, and the visitors who are here. In a small window only the page's panel is shown. The last row
 //! above the status line stays free for a line that is being typed.
 
 use std::mem;
@@ -19,7 +19,7 @@ use crate::sessions::session::pages::{Choice, Page};
 use crate::sessions::session::talk;
 use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{
-    DrawOptions, Menu, Page as _, PageKind, draw_banner, framed, hint, of_steps, panel, wrapped,
+    DrawOptions, Menu, Page as _, PageKind, draw_banner, framed, hint, panel, wrapped,
 };
 use cellcaster::tui::canvas::Canvas;
 
@@ -42,8 +42,6 @@ const MENU_COLUMNS: [u16; 2] = [34, 40];
 const MENU_ROWS: u16 = 17;
 /// The least height of the panels below the picture.
 const LEAST_FOOT: u16 = 6;
-/// The number of entries of the board that are shown.
-const BOARD_ROWS: usize = 3;
 /// The greatest number of visitors whose names are shown.
 const MAX_NAMES: usize = 12;
 
@@ -59,7 +57,7 @@ struct LobbyAreas {
 
 impl LobbyAreas {
     /// The parts of the area below the banner.
-    fn of(below: Rect, has_board: bool) -> Self {
+    fn of(below: Rect) -> Self {
         let [width, height] = MAX_PLACE;
         let (width, height) = (width.min(below.width), height.min(below.height - 1));
         let all = Rect { x: below.x + (below.width - width) / 2, width, height, ..below };
@@ -72,11 +70,11 @@ impl LobbyAreas {
             let height = spare.min(MAX_NAMES as u16 + 3);
             let menu = Rect { height: all.height - height, ..menu };
             let visitors = Rect { y: menu.bottom(), height, ..menu };
-            let [picture, board] = split(beside, if has_board { LEAST_FOOT } else { 0 });
+            let [picture, board] = split(beside, LEAST_FOOT);
             return Self { all, menu, picture, board, visitors };
         }
         let [picture, foot] = split(beside, (beside.height * 2 / 5).max(LEAST_FOOT));
-        let board = Rect { width: if has_board { foot.width / 2 } else { 0 }, ..foot };
+        let board = Rect { width: foot.width / 2, ..foot };
         let visitors = Rect { x: board.right(), width: foot.width - board.width, ..foot };
         Self { all, menu, picture, board, visitors }
     }
@@ -142,7 +140,7 @@ impl Ui {
         let below = draw_banner(canvas, band, self.glyphs(), self.depth());
         let below = Rect { height: area.bottom() - below.y, ..below };
         let below = self.draw_messages(canvas, below);
-        let areas = LobbyAreas::of(below, self.lobby.board.is_some());
+        let areas = LobbyAreas::of(below);
         self.draw_live_picture(canvas, areas.picture, room);
         self.draw_short_board(canvas, areas.board);
         self.draw_visitors(canvas, areas.visitors);
@@ -204,34 +202,23 @@ impl Ui {
         } else {
             let offer = self.offer(&self.rooms_by_life());
             let inside = framed(canvas, area, &self.level_title(offer));
-            let world = self.level_name(offer).and_then(|level| self.host.catalog.world(level));
+            let world = self.level_name(offer).and_then(|level| self.host.catalog.world(&level));
             if let Some(world) = world {
                 let camera = world.start_camera(options.field_of_view);
-                options.draw(&**world, &camera, 0.0, canvas, inside, &mut view);
+                options.draw(&*world, &camera, 0.0, canvas, inside, &mut view);
             }
             draw_caption(canvas, area, "nobody is walking");
         }
         VIEW.set(Some(view));
     }
 
-    /// Draws the best entries of a board.
+    /// Draws the best entries of today's daily level.
     fn draw_short_board(&self, canvas: &mut impl Canvas, area: Rect) {
-        let Some(board) = &self.lobby.board else { return };
         let columns = usize::from(area.width.saturating_sub(4));
-        let level = self.host.catalog.title(&board.level).to_owned();
-        let rows = match &board.rows {
-            None => vec!["…".to_owned()],
-            Some(rows) if rows.is_empty() => vec!["no results yet".to_owned()],
-            Some(rows) => (1..)
-                .zip(rows.iter().take(BOARD_ROWS))
-                .map(|(place, row)| {
-                    let name = format!("{place}. {}", row.name);
-                    apart(&name, &of_steps(row.steps), columns)
-                })
-                .collect(),
-        };
-        let lines: Vec<TextLine> = [level].into_iter().chain(rows).map(TextLine::raw).collect();
-        panel(canvas, area, "board", lines.into());
+        let rows = self.best_of_today();
+        let rows = rows.iter().map(|(name, time)| TextLine::raw(apart(name, time, columns)));
+        let lines: Vec<TextLine> = rows.collect();
+        panel(canvas, area, &self.host.today.title(), lines.into());
     }
 
     /// Draws the names of the visitors, each with the room.
@@ -273,11 +260,11 @@ impl Ui {
             return "in private".to_owned();
         }
         // This host may not have the map of a room on another host.
-        if self.host.catalog.world(&room.level).is_none() {
+        if !self.host.catalog.has(&room.level) {
             return mode.to_owned();
         }
         let level = self.host.catalog.title(&room.level);
-        let forms = [format!("{mode} in {level}"), level.to_owned()];
+        let forms = [format!("{mode} in {level}"), level.into_owned()];
         let fitting = forms.into_iter().find(|form| form.width() + 2 <= columns);
         fitting.unwrap_or_else(|| mode.to_owned())
     }

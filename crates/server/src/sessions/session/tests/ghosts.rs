@@ -25,7 +25,7 @@ fn notify(rig: &Rig, index: usize, level: &str, ghosts: impl IntoIterator<Item =
 }
 
 fn hall() -> Arc<World> {
-    Arc::clone(catalog(HALL).world("hall").unwrap())
+    catalog(HALL).world("hall").unwrap()
 }
 
 fn ghost(name: Option<&str>) -> Ghost {

@@ -95,7 +95,6 @@ fn the_lobby_lists_who_is_here() {
     rig.member("Mara", (80, 24), Speaks::Kitty);
     shows(&rig, ["Mara", "Roam in The Hall"]);
     let kim = in_lobby(&mut rig, "Kim", (80, 24));
-    rig.press(kim, "3");
     rig.press(kim, ENTER);
     rig.press(kim, "2");
     assert!(rig.text(kim).contains("watching Mara"), "{}", rig.text(kim));
@@ -108,12 +107,4 @@ fn the_lobby_lists_who_is_here() {
     rig.press(kim, "\x03");
     rig.press(kim, "\x03");
     assert!(!rig.text(jon).contains("watches"), "{}", rig.text(jon));
-}
-
-#[test]
-fn the_lobby_shows_the_best_of_a_board() {
-    let mut rig = Rig::new(Mode::Roam);
-    let jon = in_lobby(&mut rig, "Jon", (80, 24));
-    let text = rig.text(jon);
-    assert!(text.contains("┌board─") && text.contains("no results yet"), "{text}");
 }

@@ -139,8 +139,6 @@ fn a_room_can_be_opened_and_watched() {
     assert!(rig.text(one).contains("waiting for a second player"), "{}", rig.text(one));
     let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
     rig.press(other, ENTER);
-    // The menu entry after the two rooms and "Open a room".
-    rig.press(other, "4");
     rig.press(other, ENTER);
     rig.press(other, "2");
     assert!(rig.text(other).contains("watching Mara"), "{}", rig.text(other));
@@ -204,7 +202,7 @@ fn boards_settings_and_help_return_to_the_lobby() {
         rig.press(one, ESCAPE);
         assert_eq!(rig.page(one), Page::Lobby, "{number}");
     }
-    rig.press(one, "5\r");
+    rig.press(one, "52");
     assert_eq!(rig.page(one), Page::Board);
     assert!(rig.text(one).contains("Nobody has won it yet."), "{}", rig.text(one));
     rig.press(one, "\x1b[C");
