@@ -22,7 +22,7 @@ use crate::color::palette::ColorDepth;
 use crate::game::{Alarm, Game, GuardView, Health, PlayerView, STEP, Share};
 use crate::terminal::{Fidelity, Protocol};
 use crate::tui::GlyphSet;
-use crate::world::{FieldOfView, Supply};
+use crate::world::Supply;
 
 /// The texts of the line: the player's location and state on the left, progress and help on the
 /// right.
@@ -333,7 +333,7 @@ impl StatusLine {
             Alarm::Wary => "wary",
             Alarm::Raised => "ALARM",
         };
-        let position = player.camera(FieldOfView::default()).position();
+        let position = player.position();
         let distance = |guard: &GuardView| guard.position.distance_squared(position);
         let guards = game.guards().filter(|guard| guard.mood.alarm() == game.alarm());
         let nearest = guards.min_by(|a, b| distance(a).total_cmp(&distance(b)));

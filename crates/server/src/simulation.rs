@@ -38,7 +38,7 @@ use crate::ssh::Visitor;
 use crate::visitors::Visitors;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::map;
-use cellcaster::world::{Difficulty, FieldOfView};
+use cellcaster::world::Difficulty;
 
 pub(crate) const HALL: &str = r##"
 title = "The Hall"
@@ -260,7 +260,7 @@ impl Rig {
             let room = room.expect("a room");
             let member = room.member(session.member().unwrap()).unwrap();
             let player = room.game.seen_by(member.player.unwrap()).unwrap();
-            player.camera(FieldOfView::default()).position()
+            player.position()
         })
     }
 

@@ -92,6 +92,11 @@ impl<'a> PlayerView<'a> {
             .expect("the player stands inside the map, where all places are finite")
     }
 
+    /// The position, in cells.
+    pub fn position(&self) -> DVec2 {
+        self.player.motion.position()
+    }
+
     /// The height of the feet, in cells above the map's own floor.
     pub fn feet(&self) -> f64 {
         self.player.motion.feet()

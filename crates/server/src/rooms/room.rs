@@ -365,8 +365,8 @@ impl Room {
         let is_played = matches!(self.round.phase, Phase::Playing { .. });
         let Some(ways) = self.ways.as_deref().filter(|_| is_played) else { return Vec::new() };
         let way = |member: &Member| {
-            let camera = self.game.seen_by(member.player?)?.camera(FieldOfView::default());
-            Some((ways.from(camera.position())? * 4.0).round() as u32)
+            let position = self.game.seen_by(member.player?)?.position();
+            Some((ways.from(position)? * 4.0).round() as u32)
         };
         self.members.iter().map(|member| (member.id, way(member).unwrap_or(u32::MAX))).collect()
     }

@@ -1,7 +1,7 @@
 //! The looks of members' figures, by which everybody recognises roles without reading.
 
 use cellcaster::game::{Game, PlayerId};
-use cellcaster::world::{FieldOfView, Figure};
+use cellcaster::world::Figure;
 
 /// The opacity of a pale figure, of 255.
 const PALE: u8 = 110;
@@ -27,7 +27,7 @@ pub(crate) fn figures(
     for (player, look) in looks.filter(|it| it.1 != FigureLook::Usual) {
         let Some(player) = game.seen_by(player) else { continue };
         let figures = figures.get_or_insert_with(|| game.world().figures().to_vec());
-        let position = player.camera(FieldOfView::default()).position();
+        let position = player.position();
         let sprite = player.color().and_then(|color| game.sprite_of_players(color));
         let is_own = |it: &&mut Figure| it.position == position && Some(it.sprite) == sprite;
         let Some(figure) = figures.iter_mut().find(is_own) else { continue };

@@ -4,7 +4,7 @@ use super::*;
 use crate::rooms::replayed::replayed;
 use crate::simulation;
 use cellcaster::game::{Intent, Outcome, PlayerColor};
-use cellcaster::world::{Difficulty, FieldOfView};
+use cellcaster::world::Difficulty;
 
 /// Two levels with a hall whose exit is straight ahead of the start.
 fn catalog() -> Arc<Catalog> {
@@ -47,7 +47,7 @@ fn advance(room: &mut Room, steps: u64) {
 fn position(room: &Room, member: MemberId) -> glam::DVec2 {
     let view = room.view();
     let player = view.member(member).unwrap().player.unwrap();
-    view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()
+    view.game.seen_by(player).unwrap().position()
 }
 
 #[test]

@@ -9,7 +9,6 @@ use std::cmp::Ordering;
 
 use crate::line::Line;
 use crate::rooms::room::{Finish, MemberId, MemberView, Mode, Phase, Role, RoomView, SECOND};
-use cellcaster::world::FieldOfView;
 
 /// The number of seconds that are counted down large.
 const COUNTED: u64 = 3;
@@ -147,10 +146,7 @@ pub(crate) fn edge(room: &RoomView, member: &MemberView) -> Edge {
 
 /// The nearness of the nearest seeker to a hidden member.
 fn warmth(room: &RoomView, hidden: &MemberView) -> Edge {
-    let position = |member: &MemberView| {
-        let player = room.game.seen_by(member.player?)?;
-        Some(player.camera(FieldOfView::default()).position())
-    };
+    let position = |member: &MemberView| Some(room.game.seen_by(member.player?)?.position());
     let Some(own) = position(hidden) else { return Edge::Plain };
     let seekers = room.members.iter().filter(|member| member.role == Role::Seeker);
     let nearest = seekers.filter_map(position).map(|it| it.distance(own)).reduce(f64::min);
