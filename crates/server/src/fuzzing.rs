@@ -1,6 +1,7 @@
 //! Parts of the server without connections and tasks, for fuzz targets outside of the crate. The module is
 //! compiled only with the feature `fuzzing`.
 
+use std::fmt::Write as _;
 use std::net::{IpAddr, Ipv4Addr};
 use std::pin::pin;
 use std::sync::{Arc, LazyLock};
@@ -93,9 +94,9 @@ impl Hall {
     pub fn arrive(&mut self, name: &str, options: SessionOptions, size: WindowSize) {
         let name = Line::of(name, NAME_COLUMNS).expect("a name");
         let identity = Profile {
-            has_account: size.columns % 2 == 0,
+            has_account: size.columns.is_multiple_of(2),
             name: name.clone(),
-            is_named: size.rows % 2 == 0,
+            is_named: size.rows.is_multiple_of(2),
             preferences: Preferences::default(),
             ignored: Vec::new(),
             configuration: Configuration::default(),
@@ -318,7 +319,8 @@ impl Hall {
         let entry = Entry { step: self.room.step(), member, command };
         assert_eq!(Entry::parse(&entry.to_string()).as_ref(), Some(&entry), "as it is written");
         self.room.apply(&entry);
-        self.recording += &format!("{entry}\n");
+        // Writing to a string cannot fail.
+        _ = writeln!(self.recording, "{entry}");
     }
 }
 

@@ -71,6 +71,9 @@ impl SharedRoom {
     }
 
     /// Reads a message of the log, without the versions.
+    ///
+    /// # Panics
+    /// If the message does not read as it was written.
     pub fn read(&mut self, bytes: &[u8]) {
         let Ok(message) = LogMessage::parse(&versioned(bytes)) else { return };
         assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
@@ -94,6 +97,9 @@ impl SharedRoom {
     }
 
     /// Receives a broadcast, without the versions.
+    ///
+    /// # Panics
+    /// If the message does not read as it was written.
     pub fn hear(&mut self, bytes: &[u8]) {
         let Ok(message) = PeerMessage::parse(&versioned(bytes)) else { return };
         assert_eq!(PeerMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
@@ -103,7 +109,9 @@ impl SharedRoom {
             PeerMessage::Appended(number, message) => self.apply(number, &message),
             PeerMessage::Commands(commands) => {
                 if let Some(sequencer) = sequencer {
-                    commands.into_iter().for_each(|(id, it)| sequencer.command(id, it, now));
+                    for (member, command) in commands {
+                        sequencer.command(member, command, now);
+                    }
                 }
             }
             PeerMessage::Claim(members) => {
@@ -143,6 +151,7 @@ impl SharedRoom {
     ///
     /// # Panics
     /// If it does not.
+    #[must_use]
     pub fn put(self) -> Self {
         let record = self.record.next(&self.state.room, self.sequencer.is_some());
         assert_eq!(Record::parse(&to_bytes(&record)).as_ref(), Ok(&record));
