@@ -16,7 +16,7 @@ use crate::rooms::room::{CHAT_COLUMNS, Command, NAME_COLUMNS};
 
 const COMMANDS: &str = "Commands: /tell, /reply, /players, /ignore, /unignore, /report";
 const MODERATORS_COMMANDS: &str = ", /mute, /unmute, /kick";
-const WATCHES: &str = "Who watches can't talk in the room; /tell NAME TEXT writes to a player.";
+const WATCHES: &str = "Watchers can't talk in the room; /tell NAME TEXT writes to a player.";
 
 /// The visitors on the pages about players.
 #[derive(Clone, Debug, Default)]

@@ -240,7 +240,7 @@ fn a_player_is_chosen_from_the_list() {
     rig.shows(jon, "Mara (private) hello");
     // A watcher can write to players, but not to the room.
     rig.say(watcher, "faster!");
-    rig.shows(watcher, "Who watches can't talk in the room");
+    rig.shows(watcher, "Watchers can't talk in the room");
     rig.say(watcher, "/tell Mara faster!");
     rig.shows(mara, "Kim (private) faster!");
     rig.press(mara, "7");
