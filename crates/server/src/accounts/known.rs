@@ -40,6 +40,9 @@ pub struct KnownPlayers {
     database: String,
     bans: Vec<Ban>,
     players: BTreeMap<AccountKey, KnownPlayer>,
+    /// The bytes of the players and the bans in the file. Counting all of them at each login took longer the more
+    /// players were known.
+    bytes: usize,
     is_saved: bool,
 }
 
@@ -109,15 +112,11 @@ impl KnownPlayers {
         let database = database.to_owned();
         let content = content.filter(|content| content.database == database);
         let (bans, players) = content.map_or_else(Default::default, |it| (it.bans, it.players));
-        let mut known = Self {
-            file,
-            database,
-            bans: bans.into_iter().filter_map(BanEntry::ban).collect(),
-            players: BTreeMap::new(),
-            is_saved: true,
-        };
-        let players = players.into_iter().filter_map(PlayerEntry::player);
-        known.players.extend(players.map(|player| (player.account.key, player)));
+        let bans: Vec<Ban> = bans.into_iter().filter_map(BanEntry::ban).collect();
+        let bytes = bytes_of(&bans);
+        let mut known =
+            Self { file, database, bans, players: BTreeMap::new(), bytes, is_saved: true };
+        players.into_iter().filter_map(PlayerEntry::player).for_each(|player| known.add(player));
         known.make_room();
         (known, sentence)
     }
@@ -137,21 +136,20 @@ impl KnownPlayers {
 
     /// Remembers settings that the database has just stored.
     pub(crate) fn note_settings(&mut self, key: &AccountKey, settings: &AccountSettings) {
-        if let Some(player) = self.players.get_mut(key) {
-            player.settings = settings.clone();
-            self.is_saved = false;
-            self.make_room();
+        if let Some(player) = self.players.get(key) {
+            self.insert(KnownPlayer { settings: settings.clone(), ..player.clone() });
         }
     }
 
     /// Forgets a key for which the database has just found no account.
     pub(crate) fn forget(&mut self, key: &AccountKey) {
-        self.is_saved &= self.players.remove(key).is_none();
+        self.is_saved &= !self.remove(key);
     }
 
     /// Remembers all bans of the database.
     pub(crate) fn note_bans(&mut self, bans: &[Ban]) {
         if self.bans != bans {
+            self.bytes = self.bytes - bytes_of(&self.bans) + bytes_of(bans);
             self.bans = bans.to_vec();
             self.is_saved = false;
             self.make_room();
@@ -188,19 +186,30 @@ impl KnownPlayers {
     }
 
     fn insert(&mut self, player: KnownPlayer) {
-        self.players.insert(player.account.key, player);
+        self.add(player);
         self.is_saved = false;
         self.make_room();
     }
 
+    fn add(&mut self, player: KnownPlayer) {
+        self.remove(&player.account.key);
+        self.bytes += player.bytes();
+        self.players.insert(player.account.key, player);
+    }
+
+    /// Returns true if the player was known.
+    fn remove(&mut self, key: &AccountKey) -> bool {
+        let removed = self.players.remove(key);
+        self.bytes -= removed.as_ref().map_or(0, KnownPlayer::bytes);
+        removed.is_some()
+    }
+
     /// Forgets players until the rest fits beside the bans.
     fn make_room(&mut self) {
-        let mut bytes: usize = self.bans.iter().map(bytes_of_ban).sum();
-        bytes += self.players.values().map(KnownPlayer::bytes).sum::<usize>();
-        while self.players.len() > MAX_PLAYERS || bytes > MAX_BYTES {
+        while self.players.len() > MAX_PLAYERS || self.bytes > MAX_BYTES {
             let oldest = self.players.values().min_by_key(|player| player.confirmed_at);
             let Some(oldest) = oldest.map(|player| player.account.key) else { return };
-            bytes -= self.players.remove(&oldest).as_ref().map_or(0, KnownPlayer::bytes);
+            self.remove(&oldest);
         }
     }
 }
@@ -208,8 +217,8 @@ impl KnownPlayers {
 /// The bytes of an entry in the file without its texts.
 const ENTRY_BYTES: usize = 400;
 
-fn bytes_of_ban(ban: &Ban) -> usize {
-    ENTRY_BYTES + ban.reason.len() + ban.by.len()
+fn bytes_of(bans: &[Ban]) -> usize {
+    bans.iter().map(|ban| ENTRY_BYTES + ban.reason.len() + ban.by.len()).sum()
 }
 
 impl KnownPlayer {
