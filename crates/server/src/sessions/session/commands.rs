@@ -95,28 +95,10 @@ impl Ui {
                 let lines = self.talk.lines_of(&player);
                 self.ask(Request::Report { player, reason: text(), lines });
             }
-            "mute" => {
-                const USAGE: &str = "Write /mute NAME and 10m, 1h or 1d.";
-                let player = name().ok_or(USAGE)?;
-                let (time, reason) = word(after);
-                let minutes = match time {
-                    "10m" => 10,
-                    "1h" => 60,
-                    "1d" => 24 * 60,
-                    _ => return Err(USAGE.to_owned()),
-                };
-                let act = Moderation::Mute(Duration::from_mins(minutes));
+            "mute" | "unmute" | "kick" => {
+                let (act, reason, usage) = act(verb, after);
+                let (player, act) = name().zip(act).ok_or(usage)?;
                 let reason = Line::of(reason, CHAT_COLUMNS);
-                self.ask(Request::Moderate { player, act, reason });
-            }
-            "unmute" => {
-                let player = name().ok_or("Write /unmute NAME.")?;
-                let (act, reason) = (Moderation::Unmute, None);
-                self.ask(Request::Moderate { player, act, reason });
-            }
-            "kick" => {
-                let player = name().ok_or("Write /kick NAME, and the reason if you like.")?;
-                let (act, reason) = (Moderation::Kick, text());
                 self.ask(Request::Moderate { player, act, reason });
             }
             _ => {
@@ -144,6 +126,22 @@ impl Ui {
         }
         self.save_settings();
         self.advise(format!("You read {player} again."));
+    }
+}
+
+/// A moderator's act, the reason, and how to write the command. `after` is the text after the player's name. The act is
+/// `None` if the time of a mute is missing.
+fn act<'t>(verb: &str, after: &'t str) -> (Option<Moderation>, &'t str, &'static str) {
+    match verb {
+        "mute" => {
+            let (time, reason) = word(after);
+            let times = [("10m", 10), ("1h", 60), ("1d", 24 * 60)];
+            let minutes = times.into_iter().find(|it| it.0 == time).map(|it| it.1);
+            let act = minutes.map(|minutes| Moderation::Mute(Duration::from_mins(minutes)));
+            (act, reason, "Write /mute NAME and 10m, 1h or 1d.")
+        }
+        "unmute" => (Some(Moderation::Unmute), "", "Write /unmute NAME."),
+        _ => (Some(Moderation::Kick), after, "Write /kick NAME, and the reason if you like."),
     }
 }
 

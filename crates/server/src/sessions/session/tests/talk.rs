@@ -51,6 +51,12 @@ impl Rig {
         self.pump(500);
     }
 
+    /// Types a line of chat, after which a visitor reads a text.
+    fn answers(&mut self, (from, line): (usize, &str), (to, text): (usize, &str)) {
+        self.say(from, line);
+        self.shows(to, text);
+    }
+
     fn shows(&self, index: usize, text: &str) {
         assert!(self.text(index).contains(text), "{text}\n{}", self.text(index));
     }
@@ -70,22 +76,29 @@ impl Rig {
     }
 }
 
+/// A room with these visitors, none of whom has an account.
+fn in_a_room<const N: usize>(names: [&str; N]) -> (Rig, [usize; N]) {
+    let mut rig = Rig::new(Mode::Roam);
+    let mut addresses = 1..;
+    let visitors = names.map(|name| rig.in_room(name, addresses.next().unwrap(), None));
+    (rig, visitors)
+}
+
 #[test]
 fn a_visitor_in_a_room_and_one_in_the_lobby_write_to_each_other() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
+    let (mut rig, [mara]) = in_a_room(["Mara"]);
     let jon = rig.in_lobby("Jon", 2);
     let kim = rig.in_lobby("Kim", 3);
-    rig.say(mara, "/tell JON come in, the water is warm");
-    rig.shows(jon, "Mara (private) come in, the water is warm");
+    rig.answers(
+        (mara, "/tell JON come in, the water is warm"),
+        (jon, "Mara (private) come in, the water is warm"),
+    );
     rig.shows(mara, "to JON (private) come in");
     rig.hides(kim, "come in");
-    rig.say(jon, "/reply where are you?");
-    rig.shows(mara, "Jon (private) where are you?");
+    rig.answers((jon, "/reply where are you?"), (mara, "Jon (private) where are you?"));
     rig.hides(kim, "where are you?");
     assert!(rig.lines_in_log().iter().all(|line| !line.contains("water")));
-    rig.say(jon, "/tell Nobody1 hello");
-    rig.shows(jon, "Nobody here is called Nobody1.");
+    rig.answers((jon, "/tell Nobody1 hello"), (jon, "Nobody here is called Nobody1."));
     rig.pump(9_000);
     rig.hides(mara, "where are you?");
 }
@@ -123,11 +136,8 @@ fn a_flood_of_lines_is_limited() {
 
 #[test]
 fn an_ignored_player_is_not_heard_until_the_visitor_stops_ignoring_them() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
-    let jon = rig.in_room("Jon", 2, None);
-    rig.say(mara, "/ignore JON");
-    rig.shows(mara, "You ignore JON");
+    let (mut rig, [mara, jon]) = in_a_room(["Mara", "Jon"]);
+    rig.answers((mara, "/ignore JON"), (mara, "You ignore JON"));
     rig.say(jon, "you are slow");
     rig.say(jon, "/tell Mara do you hear me?");
     rig.press(jon, "1");
@@ -137,8 +147,7 @@ fn an_ignored_player_is_not_heard_until_the_visitor_stops_ignoring_them() {
     }
     rig.say(mara, "/unignore jon");
     rig.pump(2_000);
-    rig.say(jon, "sorry");
-    rig.shows(mara, "Jon sorry");
+    rig.answers((jon, "sorry"), (mara, "Jon sorry"));
     rig.hides(mara, "you are slow");
 }
 
@@ -157,8 +166,7 @@ fn the_ignored_players_of_an_account_are_kept() {
 
 #[test]
 fn the_list_of_ignored_players_is_bounded() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
+    let (mut rig, [mara]) = in_a_room(["Mara"]);
     for number in 0..32 {
         rig.say(mara, &format!("/ignore player{number}x"));
     }
@@ -169,8 +177,7 @@ fn the_list_of_ignored_players_is_bounded() {
 
 #[test]
 fn an_unknown_command_is_explained_and_never_said() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
+    let (mut rig, [mara]) = in_a_room(["Mara"]);
     let before = rig.lines_in_log();
     for (line, sentence) in [
         ("/tel Jon my secret", "Commands: /tell, /reply, /players, /ignore, /unignore, /report."),
@@ -183,8 +190,7 @@ fn an_unknown_command_is_explained_and_never_said() {
         ("/mute Jon 10m", "Only moderators of this host can do that."),
         ("/kick Jon", "Only moderators of this host can do that."),
     ] {
-        rig.say(mara, line);
-        rig.shows(mara, sentence);
+        rig.answers((mara, line), (mara, sentence));
         rig.pump(1_000);
     }
     assert_eq!(rig.lines_in_log(), before);
@@ -196,19 +202,19 @@ fn a_private_line_is_as_long_as_a_line_of_chat() {
     let [mara, jon] = [("Mara", 1), ("Jon", 2)].map(|(name, last)| rig.in_lobby(name, last));
     let longest = "0123456789".repeat(6);
     for (to, from, command) in [(jon, mara, "/tell Jon"), (mara, jon, "/reply")] {
-        rig.say(from, &format!("{command} {longest}x"));
-        rig.shows(to, &format!("(private) {longest}"));
+        rig.answers(
+            (from, &format!("{command} {longest}x")),
+            (to, &format!("(private) {longest}")),
+        );
         rig.hides(to, "9x");
-        rig.say(from, &format!("{longest}y"));
-        rig.shows(to, &longest);
+        rig.answers((from, &format!("{longest}y")), (to, &longest));
         rig.hides(to, "9y");
     }
 }
 
 #[test]
 fn the_help_names_the_keys_of_talk() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
+    let (mut rig, [mara]) = in_a_room(["Mara"]);
     rig.press(mara, "?");
     rig.press(mara, "\x1b[F");
     for text in ["7 lists the players here", "/tell NAME TEXT writes to a player anywhere."] {
@@ -218,9 +224,7 @@ fn the_help_names_the_keys_of_talk() {
 
 #[test]
 fn a_player_is_chosen_from_the_list() {
-    let mut rig = Rig::new(Mode::Roam);
-    let mara = rig.in_room("Mara", 1, None);
-    let jon = rig.in_room("Jon", 2, None);
+    let (mut rig, [mara, jon]) = in_a_room(["Mara", "Jon"]);
     let watcher = rig.in_lobby("Kim", 3);
     rig.press(watcher, ENTER);
     rig.press(watcher, "2");
@@ -239,10 +243,8 @@ fn a_player_is_chosen_from_the_list() {
     assert_eq!(rig.page(mara), Page::Room);
     rig.shows(jon, "Mara (private) hello");
     // A watcher can write to players, but not to the room.
-    rig.say(watcher, "faster!");
-    rig.shows(watcher, "Watchers can't talk in the room");
-    rig.say(watcher, "/tell Mara faster!");
-    rig.shows(mara, "Kim (private) faster!");
+    rig.answers((watcher, "faster!"), (watcher, "Watchers can't talk in the room"));
+    rig.answers((watcher, "/tell Mara faster!"), (mara, "Kim (private) faster!"));
     rig.press(mara, "7");
     rig.press(mara, ENTER);
     rig.press(mara, "2");
@@ -275,12 +277,10 @@ fn reports_reach_moderators_and_are_limited() {
     let jon = rig.in_room("Jon", 2, None);
     let kim = rig.in_room("Kim", 3, None);
     rig.say(jon, "you are slow");
-    rig.say(kim, "/report jon insults");
-    rig.shows(mara, "Kim reports jon: insults");
+    rig.answers((kim, "/report jon insults"), (mara, "Kim reports jon: insults"));
     rig.shows(kim, "You have reported jon to this host.");
     rig.hides(jon, "reports");
-    rig.say(kim, "/report Nobody1");
-    rig.shows(kim, "Nobody here is called Nobody1.");
+    rig.answers((kim, "/report Nobody1"), (kim, "Nobody here is called Nobody1."));
     for _ in 0..3 {
         rig.say(kim, "/report jon");
     }
@@ -306,8 +306,7 @@ fn a_player_muted_by_a_moderator_is_not_heard_and_can_play() {
     let before = rig.lines_in_log();
     let muted = "The moderator Mara has muted you for ";
     for line in ["you are slow", "/tell Kim you are slow"] {
-        rig.say(jon, line);
-        rig.shows(jon, muted);
+        rig.answers((jon, line), (jon, muted));
         rig.pump(1_000);
     }
     rig.press(jon, "1");
@@ -322,19 +321,15 @@ fn a_player_muted_by_a_moderator_is_not_heard_and_can_play() {
     rig.press(jon, "q");
     rig.press(jon, "q");
     assert_eq!(rig.page(jon), Page::Lobby);
-    rig.say(jon, "kim is slow");
-    rig.shows(jon, muted);
+    rig.answers((jon, "kim is slow"), (jon, muted));
     rig.hides(kim, "kim is slow");
     rig.clients[jon].cut();
     let jon = rig.in_room("Ben", 2, None);
     rig.say(jon, "me again");
     assert!(!rig.lines_in_log().contains(&"me again".to_owned()));
-    rig.say(mara, "/unmute ben");
-    rig.shows(mara, "ben may talk again.");
-    rig.say(jon, "thank you");
-    rig.shows(mara, "Ben thank you");
-    rig.say(mara, "/unmute ben");
-    rig.shows(mara, "ben is not muted.");
+    rig.answers((mara, "/unmute ben"), (mara, "ben may talk again."));
+    rig.answers((jon, "thank you"), (mara, "Ben thank you"));
+    rig.answers((mara, "/unmute ben"), (mara, "ben is not muted."));
 }
 
 #[test]
@@ -347,13 +342,13 @@ fn a_player_with_a_key_is_muted_by_key() {
     rig.clients[jon].cut();
     rig.pump(500);
     // The player has gone meanwhile.
-    rig.say(mara, "/mute JON 10m insults");
-    rig.shows(mara, "JON is muted for 10 minutes.");
+    rig.answers((mara, "/mute JON 10m insults"), (mara, "JON is muted for 10 minutes."));
     let jon = rig.in_room("Jon", 4, Some(key(2)));
-    rig.say(jon, "you are slow");
-    rig.shows(jon, "The moderator Mara has muted you for 10 minutes: insults");
-    rig.say(kim, "good evening");
-    rig.shows(mara, "Kim good evening");
+    rig.answers(
+        (jon, "you are slow"),
+        (jon, "The moderator Mara has muted you for 10 minutes: insults"),
+    );
+    rig.answers((kim, "good evening"), (mara, "Kim good evening"));
 }
 
 #[test]
@@ -367,7 +362,6 @@ fn a_moderator_ends_a_session_until_a_reload_ends_their_rights() {
     rig.shows(jon, "The moderator Mara has ended your session: let others play");
     assert!(rig.is_over(jon));
     rig.moderated_by(&[]);
-    rig.say(mara, "/kick kim");
-    rig.shows(mara, "Only moderators of this host can do that.");
+    rig.answers((mara, "/kick kim"), (mara, "Only moderators of this host can do that."));
     assert!(!rig.is_over(kim));
 }
