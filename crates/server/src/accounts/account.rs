@@ -84,6 +84,21 @@ impl UnixTime {
     }
 }
 
+/// A time span in its two largest units, such as `6d 23h` or `10m`.
+pub(crate) fn time_text(seconds: u64) -> String {
+    const UNITS: [(u64, char); 4] = [(86_400, 'd'), (3600, 'h'), (60, 'm'), (1, 's')];
+    let first = UNITS.iter().position(|unit| seconds >= unit.0).unwrap_or(UNITS.len() - 1);
+    let mut left = seconds;
+    let counts = UNITS[first..].iter().take(2).map(|&(unit, name)| {
+        let count = left / unit;
+        left %= unit;
+        (count, name)
+    });
+    let shown = counts.enumerate().filter(|&(place, (count, _))| place == 0 || count > 0);
+    let words: Vec<String> = shown.map(|(_, (count, name))| format!("{count}{name}")).collect();
+    words.join(" ")
+}
+
 impl AccountSettings {
     /// The longest configuration that is stored, in bytes.
     pub const MAX_BYTES: usize = 16 << 10;
@@ -129,6 +144,22 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn a_time_shows_at_most_two_units() {
+        for (seconds, text) in [
+            (0, "0s"),
+            (59, "59s"),
+            (60, "1m"),
+            (61, "1m 1s"),
+            (3601, "1h"),
+            (3661, "1h 1m"),
+            (7 * 86_400 - 1, "6d 23h"),
+            (7 * 86_400, "7d"),
+        ] {
+            assert_eq!(time_text(seconds), text);
+        }
+    }
 
     #[test]
     fn times_are_capped_at_what_a_database_can_store() {

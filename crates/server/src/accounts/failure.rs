@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::UnixTime;
+use super::{UnixTime, time_text};
 
 /// A failure of the store, as a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -61,10 +61,7 @@ impl StoreFailure {
     }
 }
 
-/// The time until a network can create an account, in words.
+/// The time until a network can create an account, rounded up to minutes.
 fn minutes(seconds: u64) -> String {
-    match seconds.div_ceil(60) {
-        0 | 1 => "1 minute".to_owned(),
-        minutes => format!("{minutes} minutes"),
-    }
+    time_text(seconds.max(1).next_multiple_of(60))
 }

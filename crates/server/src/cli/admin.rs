@@ -13,7 +13,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction, ListFormat, ListOptions};
 use super::host_store::{StoreLocation, failed};
-use crate::accounts::{Ban, BanScope, BanTarget, HostStore, Name, UnixTime};
+use crate::accounts::{Ban, BanScope, BanTarget, HostStore, Name, UnixTime, time_text};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
 use crate::operator::socket::{AdminFailure, ask};
 use cellcaster::cli::Error;
@@ -441,17 +441,6 @@ fn table(titles: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     rows.iter().map(line).collect()
 }
 
-/// A time in its two largest units, such as `6d 23h`.
-fn time_text(seconds: u64) -> String {
-    let (minutes, hours, days) = (seconds / 60, seconds / 3600, seconds / 86_400);
-    match (days, hours, minutes) {
-        (0, 0, 0) => format!("{seconds}s"),
-        (0, 0, _) => format!("{minutes}m {}s", seconds % 60),
-        (0, _, _) => format!("{hours}h {}m", minutes % 60),
-        _ => format!("{days}d {}h", hours % 24),
-    }
-}
-
 fn sessions(count: usize) -> String {
     counted(count, "no session", "session")
 }
@@ -498,14 +487,5 @@ mod tests {
         let (line, end) = text.split_at(text.len() - 1);
         assert!(!line.contains(char::is_control) && end == "\n", "{text:?}");
         assert_eq!(serde_json::from_str::<Value>(line).unwrap(), json!([reason]));
-    }
-
-    #[test]
-    fn a_time_shows_at_most_two_units() {
-        for (seconds, text) in
-            [(59, "59s"), (61, "1m 1s"), (3661, "1h 1m"), (7 * 86_400 - 1, "6d 23h")]
-        {
-            assert_eq!(time_text(seconds), text);
-        }
     }
 }

@@ -26,7 +26,7 @@ fn accounts_per_network_are_limited() {
         }
         let refused = create(store, "192.0.2.9", 9, 1).unwrap_err();
         assert_eq!(refused, AccountRefusal::TooManyAccounts { seconds: 179 });
-        let sentence = "Your network has created too many accounts; try again in 3 minutes.";
+        let sentence = "Your network has created too many accounts; try again in 3m.";
         assert_eq!(refused.to_string(), sentence);
         assert_eq!(store.account(&key(9)).unwrap(), None);
         // Other networks do not matter, and neither does a refused name.
@@ -41,7 +41,7 @@ fn accounts_per_network_are_limited() {
         // One more after three minutes.
         create(store, "192.0.2.9", 9, 180).unwrap();
         let refused = create(store, "192.0.2.9", 11, 359).unwrap_err();
-        assert!(refused.to_string().ends_with("try again in 1 minute."), "{refused}");
+        assert!(refused.to_string().ends_with("try again in 1m."), "{refused}");
         // After an hour, the whole allowance again.
         for number in 12..15 {
             create(store, "192.0.2.9", number, 4000).unwrap();

@@ -19,7 +19,7 @@ use super::Shared;
 use super::login;
 use super::visit::{Driver, Reply};
 use crate::accounts::{
-    Ban, BanScope, BanTarget, HostStore, Identity, Name, StoreFailure, UnixTime,
+    Ban, BanScope, BanTarget, HostStore, Identity, Name, StoreFailure, UnixTime, time_text,
 };
 use crate::admin::{AdminReply, AdminRequest, Target, VisitorRow};
 use crate::line::Line;
@@ -224,7 +224,7 @@ impl Shared {
             }
             Moderation::Mute(time) => {
                 let found = found.and_then(|row| row.talker());
-                let sentence = format!("{name} is muted for {}.", duration(time.as_secs()));
+                let sentence = format!("{name} is muted for {}.", time_text(time.as_secs()));
                 let ban = move |target, made_at: UnixTime| Ban {
                     scope: BanScope::Talk,
                     target,
@@ -353,22 +353,11 @@ fn nobody(name: &str) -> String {
 /// The sentence for a muted visitor who tries to talk.
 fn muted(mute: &Ban, now: UnixTime) -> String {
     let left = mute.until.map(|until| until.seconds().saturating_sub(now.seconds()));
-    let time = left.map_or(String::new(), |left| format!(" for {}", duration(left)));
+    let time =
+        left.map_or(String::new(), |left| format!(" for {}", time_text(left.next_multiple_of(60))));
     let author = mute.author();
     match Line::of(&mute.reason, 200) {
         Some(reason) => format!("The {author} has muted you{time}: {reason}"),
         None => format!("The {author} has muted you{time}."),
-    }
-}
-
-/// A time in a unit that fits, rounded up.
-fn duration(seconds: u64) -> String {
-    const UNITS: [(u64, &str); 3] = [(86_400, "day"), (3600, "hour"), (60, "minute")];
-    let is_fit = |unit: u64| seconds == unit || seconds >= 2 * unit;
-    let unit = UNITS.into_iter().find(|(unit, _)| is_fit(*unit));
-    let (unit, name) = unit.unwrap_or((60, "minute"));
-    match seconds.div_ceil(unit).max(1) {
-        1 => format!("1 {name}"),
-        count => format!("{count} {name}s"),
     }
 }

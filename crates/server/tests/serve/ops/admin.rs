@@ -98,12 +98,12 @@ fn a_ban_ends_sessions_and_is_stored() {
     running.wait_for_visitors(1);
     let said =
         running.admin_says(&["ban", "--address", "127.0.0.1", "--for", "7d", "--reason", "floods"]);
-    assert_eq!(said, "banned 127.0.0.1/32 for 7d 0h; ended 1 session\n");
+    assert_eq!(said, "banned 127.0.0.1/32 for 7d; ended 1 session\n");
     visitor.wait_for("You are banned from this host: floods");
     visitor.wait_for_end();
     let bans = running.admin_says(&["bans"]);
     // A second later, the remaining time is less than seven days.
-    let has_time = bans.contains("7d 0h") || bans.contains("6d 23h");
+    let has_time = bans.contains("7d") || bans.contains("6d 23h");
     assert!(has_time && bans.contains("127.0.0.1/32") && bans.contains("floods"), "{bans}");
 }
 

@@ -73,7 +73,7 @@ fn hosts_count_new_accounts_per_network_together() {
     let jon = other.player(Some(&keys[1]));
     jon.wait_for("Enter saves it");
     jon.send("\x15Jon\r");
-    jon.wait_for("Your network has created too many accounts; try again in 3 minutes.");
+    jon.wait_for("Your network has created too many accounts; try again in 3m.");
     // Existing accounts can still log in, and guests can play.
     other.player(Some(&keys[0])).wait_for("> Mara");
     choose(&other.visitor(), "Jon", "\x1b");

@@ -71,7 +71,7 @@ fn a_mute_by_the_operator_survives_a_restart() {
     let mute = ["mute", "jon", "--for", "1h", "--reason", "insults"];
     let muted = running.admin_says(&mute);
     assert!(muted.starts_with("muted jon and SHA256:"), "{muted}");
-    assert!(muted.ends_with(" for 1h 0m\n"), "{muted}");
+    assert!(muted.ends_with(" for 1h\n"), "{muted}");
     let sentence = "The operator of this host has muted you for ";
     let says_nothing = |player: &Player| {
         player.wait_until("is muted", |emulator| {
@@ -124,7 +124,7 @@ fn guests_are_muted_by_address() {
     assert_eq!(running.admin_says(&["unmute", "kim"]), "127.0.0.1/32 may talk again\n");
     assert_eq!(
         running.admin_says(&["mute", "--session", session, "--for", "30m"]),
-        "muted 127.0.0.1/32 for 30m 0s\n"
+        "muted 127.0.0.1/32 for 30m\n"
     );
 }
 
@@ -143,9 +143,9 @@ fn moderators_named_in_the_configuration_mute_and_kick() {
     running.signal(Signal::HUP);
     running.wait_for_log("configuration reloaded");
     say(&mara, "/mute jon 10m shouting");
-    mara.wait_for("jon is muted for 10 minutes.");
+    mara.wait_for("jon is muted for 10m.");
     say(&jon, "HELLO");
-    jon.wait_for("The moderator Mara has muted you for 10 minutes: shouting");
+    jon.wait_for("The moderator Mara has muted you for 10m: shouting");
     assert!(!mara.text().contains("HELLO"), "{}", mara.text());
     assert!(running.admin_says(&["mutes"]).contains("moderator Mara"));
     say(&mara, "/unmute jon");

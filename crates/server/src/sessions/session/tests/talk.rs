@@ -301,7 +301,7 @@ fn a_player_muted_by_a_moderator_is_not_heard_and_can_play() {
     }
     rig.press(mara, "4");
     rig.press(mara, "2");
-    rig.shows(mara, "Jon is muted for 1 hour.");
+    rig.shows(mara, "Jon is muted for 1h.");
     rig.pump(9_000);
     let before = rig.lines_in_log();
     let muted = "The moderator Mara has muted you for ";
@@ -342,12 +342,9 @@ fn a_player_with_a_key_is_muted_by_key() {
     rig.clients[jon].cut();
     rig.pump(500);
     // The player has gone meanwhile.
-    rig.answers((mara, "/mute JON 10m insults"), (mara, "JON is muted for 10 minutes."));
+    rig.answers((mara, "/mute JON 10m insults"), (mara, "JON is muted for 10m."));
     let jon = rig.in_room("Jon", 4, Some(key(2)));
-    rig.answers(
-        (jon, "you are slow"),
-        (jon, "The moderator Mara has muted you for 10 minutes: insults"),
-    );
+    rig.answers((jon, "you are slow"), (jon, "The moderator Mara has muted you for 10m: insults"));
     rig.answers((kim, "good evening"), (mara, "Kim good evening"));
 }
 

@@ -64,7 +64,7 @@ fn private_messages_and_mutes_reach_all_hosts() {
     // The operator of one host mutes a guest of the other host, by address.
     let mute = ["mute", "jon", "--for", "10m", "--store", &hosts.store];
     let muted = hosts.running[0].0.admin_says(&mute);
-    assert!(muted.ends_with("for 10m 0s\n"), "{muted}");
+    assert!(muted.ends_with("for 10m\n"), "{muted}");
     thread::sleep(Duration::from_secs(4));
     say(&jon, "you are slow");
     jon.wait_for("The operator of this host has muted you for ");
