@@ -1,4 +1,5 @@
-//! The latest lines of talk, shown for a while at the lower left of the picture.
+//! The latest lines of talk, shown for a while at the lower left of the picture. In a large lobby, this is the picture
+//! of the liveliest room, so that they cover neither the menu nor a list. A line that is too wide takes several rows.
 //!
 //! Lines come from the room, from the lobby, from single visitors, and from the host. The session also remembers the
 //! last lines of other visitors that it has shown, for reports.
@@ -9,6 +10,7 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line as TextLine, Span};
+use unicode_width::UnicodeWidthChar;
 
 use super::draw::overhead;
 use super::ignored::Ignored;
@@ -187,17 +189,52 @@ pub(crate) fn draw<'r>(
 ) {
     let bottom = picture.bottom() - u16::from(is_typed);
     let rows = (picture.top() + ROWS_ABOVE..bottom).rev();
-    for (y, remark) in rows.zip(remarks.rev()) {
-        let by = remark.by.as_ref();
-        let name = by.map(|(name, color)| {
-            let style = color.map_or(BOLD, |color| overhead::style(color, depth));
-            Span::styled(format!(" {name}"), style)
-        });
-        let text = Span::raw(format!(" {} ", remark.text));
-        let line = name.into_iter().chain([text]).collect::<TextLine<'_>>();
+    let lines =
+        remarks.rev().flat_map(|remark| remark.rows(picture.width, depth).into_iter().rev());
+    for (y, line) in rows.zip(lines) {
         let width = (line.width() as u16).min(picture.width);
         canvas.draw_widget(line, Rect { y, width, height: 1, ..picture });
     }
+}
+
+impl Remark {
+    /// The rows of the remark in this width.
+    fn rows(&self, columns: u16, depth: ColorDepth) -> Vec<TextLine<'static>> {
+        let (name, style) = match &self.by {
+            None => ("", BOLD),
+            Some((name, None)) => (name.as_str(), BOLD),
+            Some((name, Some(color))) => (name.as_str(), overhead::style(*color, depth)),
+        };
+        let whole = format!("{name} {}", self.text);
+        let rows = rows_of(whole.trim_start(), usize::from(columns.saturating_sub(2)));
+        let mut rows = rows.into_iter();
+        let first = rows.next().unwrap_or_default();
+        let (by, text) = first.split_at(if first.starts_with(name) { name.len() } else { 0 });
+        let by = (!by.is_empty()).then(|| Span::styled(format!(" {by}"), style));
+        let blank = if by.is_some() { "" } else { " " };
+        let first = by.into_iter().chain([Span::raw(format!("{blank}{text} "))]).collect();
+        [first].into_iter().chain(rows.map(|row| TextLine::raw(format!(" {row} ")))).collect()
+    }
+}
+
+/// Divides a text into rows of at most `columns` columns, between words where possible.
+fn rows_of(text: &str, columns: usize) -> Vec<&str> {
+    let (mut rows, mut rest) = (Vec::new(), text);
+    while !rest.is_empty() {
+        let mut width = 0;
+        let fits = |(_, character): &(usize, char)| {
+            width += character.width().unwrap_or(0);
+            width > columns
+        };
+        let end = rest.char_indices().find(fits).map_or(rest.len(), |(end, _)| end);
+        // A row takes at least one character, however narrow the picture is.
+        let end = end.max(rest.chars().next().map_or(0, char::len_utf8));
+        let is_last = end == rest.len();
+        let end = rest[..end].rfind(' ').filter(|&blank| blank > 0 && !is_last).unwrap_or(end);
+        rows.push(&rest[..end]);
+        rest = rest[end..].trim_start();
+    }
+    rows
 }
 
 #[cfg(test)]
@@ -210,6 +247,17 @@ mod tests {
 
     fn shown(talk: &Talk) -> Vec<&str> {
         talk.shown().map(|remark| remark.text.as_str()).collect()
+    }
+
+    #[test]
+    fn a_wide_line_is_divided_between_words() {
+        let rows = |text, columns| rows_of(text, columns).join("|");
+        assert_eq!(rows("Jon anybody for a race?", 12), "Jon anybody|for a race?");
+        assert_eq!(rows("Jon anybody", 11), "Jon anybody");
+        assert_eq!(rows("0123456789 ab", 4), "0123|4567|89|ab");
+        assert_eq!(rows("漢字漢字", 5), "漢字|漢字");
+        assert_eq!(rows("漢字", 0), "漢|字");
+        assert_eq!(rows("", 7), "");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use std::mem;
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
 use ratatui::text::{Line as TextLine, Text};
 use unicode_width::UnicodeWidthStr;
 
@@ -110,7 +110,7 @@ impl Ui {
             self.draw_pages(canvas, picture);
         }
         let (page, depth) = (self.page(), self.depth());
-        if page != Page::Name {
+        if page != Page::Name && !is_large {
             talk::draw(canvas, picture, self.talk.shown(), page == Page::Chat, depth);
         }
         if page == Page::Chat {
@@ -142,6 +142,8 @@ impl Ui {
         let below = self.draw_messages(canvas, below);
         let areas = LobbyAreas::of(below);
         self.draw_live_picture(canvas, areas.picture, room);
+        let inside = areas.picture.inner(Margin::new(1, 1));
+        talk::draw(canvas, inside, self.talk.shown(), false, self.depth());
         self.draw_short_board(canvas, areas.board);
         self.draw_visitors(canvas, areas.visitors);
         let page = self.page();

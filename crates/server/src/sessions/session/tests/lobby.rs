@@ -83,6 +83,33 @@ fn the_lobby_draws_few_pictures_a_second() {
 }
 
 #[test]
+fn talk_covers_neither_the_menu_nor_a_list() {
+    for size in [(80, 24), (80, 50), (140, 40)] {
+        let mut rig = Rig::new(Mode::Roam);
+        let jon = in_lobby(&mut rig, "Jon", size);
+        let others = ["Kim", "Lee"].map(|name| in_lobby(&mut rig, name, (80, 24)));
+        let before = rig.text(jon);
+        for (kim, number) in others.into_iter().cycle().zip(1..=4) {
+            rig.press(
+                kim,
+                &format!("/{number}: {}\r", "who comes along to the museum now? ".repeat(2)),
+            );
+        }
+        let text = rig.text(jon);
+        assert!(text.contains("4: who comes along to the"), "{text}");
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        let (before, after) = (lines(&before), lines(&text));
+        // The left column, with the menu, and the panels below the picture are unchanged.
+        let below = after.iter().position(|line| line.contains("nobody is walking")).unwrap();
+        for (row, (one, other)) in before.iter().zip(&after).enumerate() {
+            let columns = if row > below { usize::MAX } else { 34 };
+            let part = |line: &str| line.chars().take(columns).collect::<String>();
+            assert_eq!(part(one), part(other), "{text}");
+        }
+    }
+}
+
+#[test]
 fn the_lobby_lists_who_is_here() {
     let mut rig = Rig::new(Mode::Roam);
     let jon = in_lobby(&mut rig, "Jon", (120, 40));

@@ -198,8 +198,7 @@ fn an_unknown_command_is_explained_and_never_said() {
 
 #[test]
 fn a_private_line_is_as_long_as_a_line_of_chat() {
-    let mut rig = Rig::new(Mode::Roam);
-    let [mara, jon] = [("Mara", 1), ("Jon", 2)].map(|(name, last)| rig.in_lobby(name, last));
+    let (mut rig, [mara, jon]) = in_a_room(["Mara", "Jon"]);
     let longest = "0123456789".repeat(6);
     for (to, from, command) in [(jon, mara, "/tell Jon"), (mara, jon, "/reply")] {
         rig.answers(
