@@ -32,10 +32,11 @@ use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings cannot change.
-const ROOM_KEYS: [&str; 4] = [
+const ROOM_KEYS: [&str; 5] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emote,",
     "Tab lists the members, or watches the next; 7 lists the players here.",
     "In the lobby: / talks. /tell NAME TEXT writes to a player anywhere.",
+    "The daily level is new at midnight in UTC; results count on its day.",
     "Who is \"it\" or seeks glows. A red edge: it is you.",
 ];
 /// Advice for a link that may make pictures coarse.

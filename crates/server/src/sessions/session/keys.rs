@@ -151,6 +151,9 @@ impl Ui {
         if press == Press::Repeat {
             return;
         }
+        if let Some(choice) = self.lobby_choice(key) {
+            return self.carry_out_choice(choice);
+        }
         match self.bindings.action(key) {
             Some(Action::ToggleHelp) if self.page() == Page::Help => self.close(),
             Some(Action::ToggleHelp) => self.open(Page::Help),

@@ -15,13 +15,29 @@ use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use cellcaster::app::parts::{self, Choice as _, Menu, PageKind, of_steps};
+use cellcaster::app::parts::{self, Action, Choice as _, Menu, PageKind, of_steps};
+use cellcaster::game::Intent;
+use cellcaster::terminal::Key;
 use cellcaster::world::Difficulty;
 
 /// The number of rooms listed in the lobby. If there are more, another page lists all of them.
 const ROOMS_IN_LOBBY: usize = 5;
 /// The widest invitation code that can be typed, with blanks.
 const CODE_COLUMNS: usize = 12;
+/// The entries of the lobby after the rooms, each with the key that chooses it there. None of the keys selects an entry
+/// with a usual set of keys.
+const LOBBY_ENTRIES: [(char, &str, Choice); 9] = [
+    ('o', "Open a room", Choice::Open(Page::Modes)),
+    // Its label is the day.
+    ('d', "", Choice::Open(Page::Daily)),
+    ('l', Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone))),
+    ('b', "Board", Choice::Open(Page::Boards)),
+    ('c', "Enter a code", Choice::Open(Page::Code)),
+    ('t', "Settings", Choice::Open(Page::Settings)),
+    ('?', "Help", Choice::Open(Page::Help)),
+    ('p', "Players and talk", Choice::Players),
+    ('q', "Leave", Choice::Open(Page::Leaving)),
+];
 /// The modes in which the daily level can be played: the modes that end at its exit.
 const DAILY_MODES: [Mode; 3] = [Mode::Alone, Mode::Race, Mode::Together];
 /// The level for the first walk.
@@ -188,7 +204,13 @@ impl Ui {
 impl Ui {
     /// Carries out the selected entry.
     pub(crate) fn choose(&mut self) {
-        let Some(choice) = self.pages.menu.choice() else { return };
+        if let Some(choice) = self.pages.menu.choice() {
+            self.carry_out_choice(choice);
+        }
+    }
+
+    /// Carries out a choice.
+    pub(crate) fn carry_out_choice(&mut self, choice: Choice) {
         match choice {
             Choice::Open(page) => {
                 self.is_private = false;
@@ -314,6 +336,13 @@ impl Ui {
 }
 
 impl Ui {
+    /// The entry of the lobby that `key` chooses, besides the digits.
+    pub(crate) fn lobby_choice(&self, key: Key) -> Option<Choice> {
+        let is_chosen = |entry: &&(char, &str, Choice)| Key::Char(entry.0) == key;
+        let entry = LOBBY_ENTRIES.iter().find(is_chosen)?;
+        (self.page() == Page::Lobby).then_some(entry.2)
+    }
+
     /// The menu of `page`; empty if the page has none.
     pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
         match page {
@@ -340,27 +369,31 @@ impl Ui {
         let menu = Menu::new(self.host.name.as_str()).lines(self.lobby_lines());
         let rooms = self.rooms_by_life();
         let offer = self.offer(&rooms);
-        let (label, value) = self.label_of(offer);
-        let menu = menu.entry_with(label, value, Choice::Open(Page::Card(offer)));
         let others = rooms.iter().map(|room| RoomTarget::Existing(room.id));
         let others = others.filter(|&target| target != offer).take(ROOMS_IN_LOBBY);
-        let menu = others.fold(menu, |menu, target| {
+        let cards = [offer].into_iter().chain(others).map(|target| {
             let (label, value) = self.label_of(target);
-            menu.entry_with(label, value, Choice::Open(Page::Card(target)))
+            (label, value, Choice::Open(Page::Card(target)))
         });
-        let menu = match rooms.len() {
-            0..=ROOMS_IN_LOBBY => menu,
-            all => menu.entry_with("All rooms", all.to_string(), Choice::Open(Page::Rooms)),
-        };
-        menu.entry("Open a room", Choice::Open(Page::Modes))
-            .entry(self.host.today.title(), Choice::Open(Page::Daily))
-            .entry(Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone)))
-            .entry("Board", Choice::Open(Page::Boards))
-            .entry("Enter a code", Choice::Open(Page::Code))
-            .entry("Settings", Choice::Open(Page::Settings))
-            .entry("Help", Choice::Open(Page::Help))
-            .entry("Players and talk", Choice::Players)
-            .entry("Leave", Choice::Open(Page::Leaving))
+        let all = (rooms.len() > ROOMS_IN_LOBBY)
+            .then(|| ("All rooms".to_owned(), rooms.len().to_string(), Choice::Open(Page::Rooms)));
+        // There are at most seven, and digits choose the first nine entries of a menu.
+        let menu =
+            (1..).zip(cards.chain(all)).fold(menu, |menu, (digit, (label, value, choice))| {
+                menu.entry_with(label, format!("{value}  {digit}"), choice)
+            });
+        let daily = self.host.today.title();
+        LOBBY_ENTRIES.into_iter().fold(menu, |menu, (key, label, choice)| {
+            let label = if choice == Choice::Open(Page::Daily) { &daily } else { label };
+            let shown = Some(key).filter(|&key| !self.selects(key));
+            menu.entry_with(label, shown.map_or(String::new(), String::from), choice)
+        })
+    }
+
+    /// Returns true if a key selects an entry, because the visitor walks with it.
+    fn selects(&self, key: char) -> bool {
+        let walks = [Intent::Forward, Intent::Back].map(|intent| Some(Action::Want(intent)));
+        walks.contains(&self.bindings.action(Key::Char(key)))
     }
 
     /// The messages that the lobby shows.

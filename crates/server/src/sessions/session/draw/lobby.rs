@@ -38,8 +38,8 @@ const SMALL_BANNER: u16 = 10;
 const MAX_MESSAGE_ROWS: usize = 4;
 /// The least and the greatest width of the menu's column.
 const MENU_COLUMNS: [u16; 2] = [34, 40];
-/// The rows that a menu with the usual number of rooms needs.
-const MENU_ROWS: u16 = 17;
+/// The rows that the longest menu needs: with seven entries for rooms, and a border.
+const MENU_ROWS: u16 = 18;
 /// The least height of the panels below the picture.
 const LEAST_FOOT: u16 = 6;
 /// The greatest number of visitors whose names are shown.

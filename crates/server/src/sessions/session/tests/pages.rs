@@ -2,10 +2,12 @@
 
 use super::*;
 use crate::config::Config;
-use crate::rooms::summary::RoomId;
-use crate::sessions::session::pages::Page;
-use crate::sessions::session::pages::RoomTarget;
+use crate::rooms::room::Phase;
+use crate::rooms::summary::{RoomId, RoomSummary};
+use crate::sessions::session::pages::{Page, RoomTarget};
 use crate::simulation::emulator::{Emulator, Modes};
+use cellcaster::app::Configuration;
+use cellcaster::world::Difficulty;
 
 #[test]
 fn enter_alone_leads_into_a_room() {
@@ -210,13 +212,78 @@ fn boards_settings_and_help_return_to_the_lobby() {
 }
 
 #[test]
-fn rooms_in_missing_maps_are_not_listed() {
-    use crate::rooms::room::Phase;
-    use crate::rooms::summary::RoomSummary;
-    use cellcaster::world::Difficulty;
-
+fn every_entry_of_the_lobby_has_a_key_that_is_shown() {
     let mut rig = Rig::new(Mode::Roam);
-    let room = |id, level: &str| RoomSummary {
+    let others: Vec<_> = (10..17).map(|id| room_elsewhere(id, "hall")).collect();
+    rig.rooms().show_shared(others);
+    let one = rig.visitor("Mara", (80, 40), Speaks::Plain);
+    rig.press(one, ENTER);
+    let text = rig.text(one);
+    let entries = text.lines().filter_map(|line| line.strip_prefix('|')?.split_once(" |"));
+    let entries: Vec<String> = entries.map(|it| it.0.trim_start_matches(" >").to_owned()).collect();
+    let expected = [
+        ("Tag in The Hall", "1/8  1"),
+        ("Tag in The Hall", "1/8  2"),
+        ("Tag in The Hall", "1/8  3"),
+        ("Tag in The Hall", "1/8  4"),
+        ("Tag in The Hall", "1/8  5"),
+        ("Tag in The Hall", "1/8  6"),
+        ("All rooms", "8  7"),
+        ("Open a room", "o"),
+        ("Daily 2001-09-09", "d"),
+        ("Alone, for the board", "l"),
+        ("Board", "b"),
+        ("Enter a code", "c"),
+        ("Settings", "t"),
+        ("Help", "?"),
+        ("Players and talk", "p"),
+        ("Leave", "q"),
+    ];
+    for (entry, (label, key)) in entries.iter().zip(expected) {
+        let is_shown = entry.trim_start().starts_with(label) && entry.ends_with(&format!(" {key}"));
+        assert!(is_shown, "{label} {key}: {text}");
+    }
+    let card = |id| Page::Card(RoomTarget::Existing(RoomId(id)));
+    for (key, page) in [
+        ("1", card(10)),
+        ("6", card(15)),
+        ("7", Page::Rooms),
+        ("d", Page::Daily),
+        ("o", Page::Modes),
+        ("l", Page::Levels(Mode::Alone)),
+        ("b", Page::Boards),
+        ("c", Page::Code),
+        ("t", Page::Settings),
+        ("?", Page::Help),
+        ("p", Page::Players),
+        ("q", Page::Leaving),
+    ] {
+        rig.press(one, key);
+        assert_eq!(rig.page(one), page, "{key}");
+        rig.press(one, ESCAPE);
+        assert_eq!(rig.page(one), Page::Lobby, "{key}");
+    }
+}
+
+#[test]
+fn a_key_that_walks_selects_in_the_lobby_and_is_not_shown() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.session(one, |session, _| {
+        let text = "[keys]\nforward = [\"e\"]\nback = [\"d\"]\n";
+        let configuration = Configuration::parse(text, "settings").unwrap();
+        session.ui.bindings = ui::bindings_of(&configuration);
+    });
+    rig.press(one, ENTER);
+    let text = rig.text(one);
+    assert!(text.contains("  o |") && !text.contains("  d |"), "{text}");
+    rig.press(one, "d");
+    assert!(rig.text(one).contains("> Open a room"), "{}", rig.text(one));
+}
+
+/// A room of another host, in which Kim waits.
+fn room_elsewhere(id: u32, level: &str) -> RoomSummary {
+    RoomSummary {
         id: RoomId(id),
         level: level.to_owned(),
         mode: Mode::Tag,
@@ -225,8 +292,13 @@ fn rooms_in_missing_maps_are_not_listed() {
         members: [line("Kim")].into(),
         watchers: 0,
         code: None,
-    };
-    let elsewhere = |level| vec![room(7, level), room(8, "museum")];
+    }
+}
+
+#[test]
+fn rooms_in_missing_maps_are_not_listed() {
+    let mut rig = Rig::new(Mode::Roam);
+    let elsewhere = |level| vec![room_elsewhere(7, level), room_elsewhere(8, "museum")];
     rig.rooms().show_shared(elsewhere("hall"));
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.press(one, ENTER);
