@@ -398,6 +398,23 @@ fn a_recording_can_be_replayed() {
     assert!(replayed("nonsense", &catalog(), &mut |_| Ok(())).is_err());
 }
 
+#[test]
+fn a_round_that_waits_for_hours_can_be_replayed() {
+    let header = Header::new("hall", Mode::Tag, Difficulty::Normal, 7);
+    let join = Command::Join { color: PlayerColor::ALL[0], name: line("Mara") };
+    let waits = |step| {
+        let entry = |step, command| Entry { step, member: MemberId(1), command };
+        recorded(&header, &[entry(0, join.clone()), entry(step, Command::Again)])
+    };
+    let replay = |step| replayed(&waits(step), &catalog(), &mut |_| Ok(()));
+    let steps = 2 * 60 * 60 * SECOND + 1;
+    assert_eq!(replay(steps).unwrap()[0].steps, steps);
+    for step in [26 * 60 * 60 * SECOND, u64::MAX] {
+        let fault = replay(step).unwrap_err();
+        assert_eq!(fault, "nothing happens in round 1 for longer than a day");
+    }
+}
+
 /// A room with two members. The first one has an account.
 fn room_of_two(mode: Mode) -> (Room, [MemberId; 2]) {
     let mut room = room(mode);
