@@ -1,6 +1,7 @@
 //! The game on a server: real OpenSSH clients that see each other's pictures.
 
 mod cut;
+mod daily;
 pub(crate) mod private;
 mod race;
 mod server;
