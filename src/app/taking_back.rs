@@ -82,7 +82,8 @@ impl App {
         self.notice = Some(match self.takes_left() {
             None => Goal::new("Ten seconds taken back", "Taken back"),
             Some(left) => {
-                Goal::new(&format!("Ten seconds taken back, {left} left"), &format!("{left} left"))
+                let (text, short) = ("Ten seconds taken back", "Taken back");
+                Goal::new(&format!("{text}, {left} left"), &format!("{short}, {left} left"))
             }
         });
         self.follow_outcome();
@@ -96,7 +97,7 @@ impl App {
         } else if self.log.is_empty() {
             ("There is nothing to take back yet", "Nothing yet")
         } else {
-            ("Time was taken back three times, which is the maximum", "None left")
+            ("Time was taken back three times, which is the maximum", "Taken back 3 times already")
         };
         self.notice = Some(Goal::new(text, short));
         self.shown = None;

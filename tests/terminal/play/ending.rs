@@ -61,9 +61,9 @@ fn leaving_asks_first_and_escape_continues_the_game() {
         game.wait_until("went on", |emulator| !emulator.text().contains("cancels"));
     }
     game.send("?");
-    game.wait_for("strafe left");
+    game.wait_for("keep walking");
     game.send("\x1b");
-    game.wait_until("closed the help", |emulator| !emulator.text().contains("strafe left"));
+    game.wait_until("closed the help", |emulator| !emulator.text().contains("keep walking"));
     game.send("\x1b");
     game.wait_for("any other key cancels");
     game.send("\r");

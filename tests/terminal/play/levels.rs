@@ -72,10 +72,12 @@ fn after_a_death_only_enter_and_the_arrows_act() {
         }
         for (key, selected) in [
             ("\x1b[A", "> Try again"),
+            ("\x1b[B", "> Take back 10 s"),
             ("\x1b[B", "> Restart the level"),
             ("\x1b[B", "> Leave"),
             ("\x1b[B", "> Leave"),
             ("\x1b[A", "> Restart the level"),
+            ("\x1b[A", "> Take back 10 s"),
             ("\x1b[A", "> Try again"),
         ] {
             typist.tap(key, 20);

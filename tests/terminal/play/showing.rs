@@ -81,7 +81,7 @@ fn help_names_the_keys_until_it_is_closed() {
     // The key with the slash produces the question mark with Shift.
     for close in ["\x1b[47:63;2u", "\x1b[27u"] {
         game.press(Key::Char('?'));
-        game.wait_for("strafe left");
+        game.wait_for("keep walking");
         game.wait_for("q escape");
         game.send(close);
         game.wait_for_picture(&[]);
