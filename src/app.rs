@@ -23,6 +23,7 @@ mod settings;
 pub(crate) mod status;
 pub mod store;
 mod taking_back;
+mod text;
 mod title;
 
 /// The parts of the program that a server's sessions also use.
@@ -64,6 +65,7 @@ pub use setting::MapDisplay;
 pub use settings::{Configuration, Origin, SettingOrigins, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
+pub use text::play_as_text;
 use title::TmuxOrder;
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 

@@ -357,6 +357,25 @@ impl<C: Copy> Menu<C> {
         std::mem::take(&mut self.text)
     }
 
+    /// The title and the lines of text, without blank ones.
+    pub(crate) fn heading(&self) -> impl Iterator<Item = &str> {
+        let lines = [&self.title].into_iter().chain(&self.text).map(|line| line.trim());
+        lines.filter(|line| !line.is_empty())
+    }
+
+    /// The entries, each with its label and its value.
+    pub(crate) fn lines_of_entries(&self) -> impl Iterator<Item = String> {
+        self.entries.iter().map(|MenuEntry { label, value, .. }| match value.as_str() {
+            "" => label.clone(),
+            value => format!("{label}, {value}"),
+        })
+    }
+
+    /// Selects the entry with index `index`.
+    pub(crate) fn select(&mut self, index: usize) {
+        self.selected = index.min(self.entries.len().saturating_sub(1));
+    }
+
     /// The index of the selected entry.
     pub fn selected(&self) -> usize {
         self.selected

@@ -372,21 +372,26 @@ impl App {
             self.game.step(intents);
             *moves += 1;
         }
+        self.controls.held.step();
+        self.pointer.passed(steps);
+        self.stepped(intents, steps);
+        steps
+    }
+
+    /// Follows the game after `steps` steps with these intents: everything that does not depend on keys.
+    pub(crate) fn stepped(&mut self, intents: Intents, steps: u64) {
         if let Some(ghost) = &mut self.ghost {
             (0..steps).for_each(|_| ghost.step());
         }
         if let Some(game) = self.game.grid() {
             self.watch.look_at(game, PlayerId::FIRST);
         }
-        self.controls.held.step();
-        self.pointer.passed(steps);
         let acted = if intents.is_empty() { 0 } else { steps };
         self.goal.moved(acted);
         self.notice.iter_mut().for_each(|notice| notice.moved(acted));
         self.record(intents, steps);
         self.remember();
         self.follow_outcome();
-        steps
     }
 
     /// Returns true if steps with these intents change only clocks.

@@ -46,6 +46,9 @@ pub(crate) struct Play {
     /// Let --record overwrite a file
     #[arg(long)]
     force: bool,
+    /// Play by commands in lines of text, for screen readers and pipes; time stands still while you type
+    #[arg(long, conflicts_with = "watch")]
+    text: bool,
     #[command(flatten)]
     place: LevelOptions,
 }
@@ -63,6 +66,9 @@ Examples:
 
 /// Plays until the player leaves.
 pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
+    if options.text {
+        check_text_mode(&options)?;
+    }
     let opening = opening(&options)?;
     let level = match options.place.generate {
         None => level::name(options.place.map.as_deref()),
@@ -75,11 +81,34 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let difficulty = options.difficulty.unwrap_or(store.preferences().difficulty);
     let header = header(&opening, level, difficulty);
     let recording = file.as_ref().map(|file| file.recording(header)).unwrap_or_default();
-    let played = app::play(opening, settings, store, recording);
+    let played = if options.text {
+        let (input, output) = (io::stdin().lock(), io::stdout().lock());
+        let played = app::play_as_text(opening, settings, store, recording, input, output);
+        played.map_err(|error| Error::of_output(&error))
+    } else {
+        app::play(opening, settings, store, recording).map_err(about_the_terminal)
+    };
     let written = file.map_or(Ok(()), RecordingFile::finish);
-    let farewell = played.map_err(about_the_terminal)?;
+    let farewell = played?;
     say_farewell(&farewell, damage);
     written
+}
+
+/// Returns an error if an option does not fit text mode.
+fn check_text_mode(options: &Play) -> Result<(), Error> {
+    let is_cast = options.record.as_deref().is_some_and(|path| !RecordingFile::is_script(path));
+    if is_cast {
+        return Err(Error::mistake(
+            "--text shows no screen to record: name a FILE.script instead of a .cast",
+        ));
+    }
+    if options.place.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) {
+        return Err(Error::mistake(
+            "--text reads commands from standard input, so the map can't come from there: name a \
+             map file",
+        ));
+    }
+    Ok(())
 }
 
 /// The header for a script of the first game in the program. The seed is 0 unless the level is a

@@ -8,6 +8,7 @@ mod hostile;
 mod recordings;
 mod replay;
 mod scores;
+mod text_mode;
 
 #[path = "../support/asciicast.rs"]
 mod asciicast;
