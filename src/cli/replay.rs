@@ -174,6 +174,9 @@ fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, boo
     report.line("alarms", tally.alarms);
     report.line("deaths", tally.deaths);
     report.line("stunned", tally.stunned);
+    if script.header().taken_back > 0 {
+        report.line("taken back", script.header().taken_back);
+    }
     if game.is_finished() {
         report.line("rank", tally.rank(par));
     }
