@@ -8,6 +8,7 @@ use super::{Ceiling, Covering, Light, Paint, Tile, TileKind};
 
 /// Properties of all kinds of tile of a world together.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub(crate) struct TileFacts {
     /// `true` if all floors are at 0, and all ceilings, walls and shapes reach 1.
     pub(crate) are_level: bool,

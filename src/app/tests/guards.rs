@@ -108,9 +108,11 @@ fn the_map_shows_where_the_guards_in_view_look() {
     assert!(seen > 10 && behind == 0, "{seen} {behind}\n{}", ascii(&mut rig));
 }
 
-/// A player who has waited in the open until the archer killed them.
+/// A player who tried a door that is not there, and then waited in the open until the archer killed
+/// them.
 fn shot() -> Rig {
     let mut rig = playing_own(GATE, Store::in_memory());
+    rig.tap(Key::Char('e'), 30);
     // The picture explores the map.
     text(&mut rig.app, 80, 24);
     for _ in 0..60_000 {
