@@ -60,6 +60,12 @@ pub struct Config {
     pub maps: Option<PathBuf>,
     /// The address at which metrics are served over HTTP; `None` for none.
     pub metrics: Option<SocketAddr>,
+    /// The address at which browsers watch rooms over HTTP; `None` for none.
+    pub web: Option<SocketAddr>,
+    /// The most browsers that watch a room at a time.
+    pub web_watchers: u32,
+    /// The most of them from one address.
+    pub web_watchers_per_address: u32,
     /// The proxies, whose connections begin with a header that names the visitor.
     pub proxies: Vec<AddressPrefix>,
     /// The keys of the moderators.
@@ -123,6 +129,9 @@ impl Default for Config {
             log: LogFilter::default(),
             maps: None,
             metrics: None,
+            web: None,
+            web_watchers: 200,
+            web_watchers_per_address: 16,
             proxies: Vec::new(),
             moderators: Vec::new(),
             admission: Limits::default(),
@@ -233,6 +242,7 @@ impl fmt::Display for Config {
             let blank = if index > 0 { "\n" } else { "" };
             writeln!(f, "{blank}# {}", about.replace('\n', "\n# "))?;
             match value.write(self) {
+                value if value.is_empty() && *key == WEB.key => writeln!(f, "# {WEB_EXAMPLE}")?,
                 value if value.is_empty() => writeln!(f, "# {MAPS_EXAMPLE}")?,
                 value => writeln!(f, "{key} = {value}")?,
             }
@@ -290,6 +300,7 @@ impl LiveConfig {
             ("listen", LISTEN),
             ("metrics.listen", METRICS_LISTEN),
             ("maps", MAPS),
+            ("web", WEB),
             (RECORDINGS_MEGABYTES.key, RECORDINGS_MEGABYTES),
             (RECORDINGS_DAYS.key, RECORDINGS_DAYS),
         ];
@@ -421,6 +432,7 @@ const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
 const MODERATORS_EXAMPLE: &str = "moderators = [\"SHA256:...\"]";
 const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
 const PROXIES_EXAMPLE: &str = "proxies = [\"10.0.0.5\", \"10.1.0.0/16\"]";
+const WEB_EXAMPLE: &str = "web = \"127.0.0.1:8080\"";
 const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
 
 const LISTEN: Setting<Config> = Setting {
@@ -443,6 +455,18 @@ const MAPS: Setting<Config> = Setting {
         write: |maps| {
             maps.as_ref().map_or_else(String::new, |it| toml_string(&it.to_string_lossy()))
         },
+    },
+};
+
+/// Writes an empty string if there is no value.
+const WEB: Setting<Config> = Setting {
+    key: "web",
+    about: "the address at which browsers watch rooms over HTTP, for a reverse proxy; without this line there\n\
+            is none",
+    value: &Text {
+        at: |it| &mut it.web,
+        read: |entry| Some(address(entry, WEB_EXAMPLE)),
+        write: |web| web.map_or_else(String::new, |address| format!("\"{address}\"")),
     },
 };
 
@@ -471,7 +495,7 @@ const METRICS_LISTEN: Setting<Config> = Setting {
 };
 
 /// The text settings, in the order of a file.
-const TEXTS: [Setting<Config>; 7] = [
+const TEXTS: [Setting<Config>; 8] = [
     LISTEN,
     Setting {
         key: "name",
@@ -490,10 +514,11 @@ const TEXTS: [Setting<Config>; 7] = [
         value: &Text { at: |it| &mut it.log, read: log, write: |log| format!("\"{log}\"") },
     },
     MAPS,
+    WEB,
     Setting {
         key: "proxies",
-        about: "the addresses of proxies; each connection from them must begin with a PROXY header, whose\n\
-                address counts as the visitor's",
+        about: "the addresses of proxies; each SSH connection from them must begin with a PROXY header, whose\n\
+                address counts as the visitor's, and for browsers the header X-Forwarded-For counts",
         value: &Text { at: |it| &mut it.proxies, read: proxies, write: |list| address_list(list) },
     },
     Setting {
@@ -508,7 +533,7 @@ const TEXTS: [Setting<Config>; 7] = [
 ];
 
 /// The number settings, in the order of a file. They follow the texts.
-const NUMBERS: [Setting<Config>; 26] = [
+const NUMBERS: [Setting<Config>; 28] = [
     Setting {
         key: "connections",
         about: "the limit of visitors who have logged in",
@@ -606,6 +631,16 @@ const NUMBERS: [Setting<Config>; 26] = [
         key: "watchers",
         about: "the limit of visitors who watch one room",
         value: &Number(0..=10_000, NumberField::U32(|it| &mut it.watchers)),
+    },
+    Setting {
+        key: "web-watchers",
+        about: "the limits of browsers that watch rooms, in total and from one IPv4 address or IPv6 /64",
+        value: &Number(1..=10_000, NumberField::U32(|it| &mut it.web_watchers)),
+    },
+    Setting {
+        key: "web-watchers-per-address",
+        about: "",
+        value: &Number(1..=10_000, NumberField::U32(|it| &mut it.web_watchers_per_address)),
     },
     Setting {
         key: "empty-room-seconds",

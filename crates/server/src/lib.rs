@@ -38,7 +38,8 @@
 //!   socket.
 //! - A client cannot slow down the others. Connections, bytes and time before authentication are limited, and so are
 //!   the bytes per second after it.
-//! - Policies take the time and random numbers as arguments. Only [`ssh`], [`operator`] and [`metrics`] open sockets.
+//! - Policies take the time and random numbers as arguments. Only [`ssh`], [`operator`], [`metrics`] and `web` open
+//!   sockets.
 //!
 //! Rejected: `russh`'s own accept loop. It has no limit on connections and no deadline before authentication, and its
 //! queue to a channel says nothing about the socket.
@@ -74,6 +75,7 @@ pub mod sessions;
 mod simulation;
 pub mod ssh;
 pub mod visitors;
+mod web;
 
 mod lock {
     use std::sync::{Mutex, PoisonError};

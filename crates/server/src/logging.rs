@@ -226,6 +226,11 @@ pub(crate) fn metrics_listening(address: SocketAddr) {
     info!(target: HOST, %address, "metrics listening");
 }
 
+/// Browsers can watch rooms.
+pub(crate) fn web_listening(address: SocketAddr) {
+    info!(target: HOST, %address, "web listening");
+}
+
 /// The configuration was read again, from `file` if there is one. The settings in `fixed` stay unchanged until the
 /// next start.
 pub(crate) fn reloaded(file: Option<&Path>, fixed: &[&str]) {

@@ -50,6 +50,12 @@ pub struct Metrics {
     pub members: Gauge,
     /// Visitors who watch a room.
     pub watchers: Gauge,
+    /// Browsers that watch a room.
+    pub web_watchers: Gauge,
+    /// Pictures that were drawn for browsers.
+    pub web_pictures: Counter,
+    /// Bytes of pictures that were sent to browsers.
+    pub web_bytes: Counter,
     /// Entries in the logs of all rooms.
     pub entries: Counter,
     checks: Family<Label, Counter>,
@@ -172,6 +178,8 @@ impl Metrics {
             ("log_entries", "Entries of the logs of all rooms", &self.entries),
             ("room_steps_alone", alone, &self.steps_alone),
             ("store_errors", "Failed calls to the store", &self.store_errors),
+            ("web_pictures", "Pictures that were drawn for browsers", &self.web_pictures),
+            ("web_bytes", "Bytes of pictures that were sent to browsers", &self.web_bytes),
         ] {
             page.register(name, help, counter.clone());
         }
@@ -189,6 +197,7 @@ impl Metrics {
             ("rooms", "Open rooms", &self.rooms),
             ("members", "Members of all rooms", &self.members),
             ("watchers", "Visitors who watch a room", &self.watchers),
+            ("web_watchers", "Browsers that watch a room", &self.web_watchers),
             ("results_waiting", "Results that wait for the store", &self.results_waiting),
         ] {
             page.register(name, help, gauge.clone());

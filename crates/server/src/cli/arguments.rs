@@ -70,6 +70,9 @@ pub(crate) struct Serve {
     /// A folder of the host's own maps, in addition to the built-in levels [default: the setting `maps`]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) maps: Option<PathBuf>,
+    /// The address and port at which browsers watch rooms, over HTTP for a reverse proxy [default: the setting `web`]
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
+    pub(crate) web: Option<SocketAddr>,
     /// The format of the log
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) log: LogFormat,

@@ -25,6 +25,7 @@ use crate::sessions::driver::{GameHost, HostParts};
 use crate::ssh::Server;
 use crate::ssh::host_key::HostKey;
 use crate::visitors::Visitors;
+use crate::web::{self, Web};
 use cellcaster::app::store::private;
 use cellcaster::cli::Error;
 use cellcaster::cli::config::MAX_BYTES;
@@ -59,6 +60,12 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             }
             None => None,
         };
+        let web_listener = match config.web {
+            Some(address) => {
+                Some(web::listen(address).map_err(|error| cannot_listen(address, &error))?)
+            }
+            None => None,
+        };
         #[cfg(unix)]
         let admin = bind_admin(&folder)?;
         let server = Server::bind(config, key).await.map_err(cannot)?;
@@ -83,6 +90,11 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         if let Some(listener) = metrics_listener {
             logging::metrics_listening(listener.local_addr().map_err(cannot)?);
             services.spawn(respond(listener, server.metrics()));
+        }
+        if let Some(listener) = web_listener {
+            logging::web_listening(listener.local_addr().map_err(cannot)?);
+            let (rooms, load) = host.rooms();
+            services.spawn(Web::new(server.config(), rooms, load).serve(listener));
         }
         let operator = host.operator(signals.drain());
         services.spawn(operator.clone().answer_others());
@@ -210,9 +222,10 @@ struct Configuration {
     file: Option<PathBuf>,
     /// `true` if the command line names the file, which must then exist.
     is_named: bool,
-    /// From the command line, like the next two fields. They take precedence over the file.
+    /// From the command line, like the next three fields. They take precedence over the file.
     listen: Option<SocketAddr>,
     maps_folder: Option<PathBuf>,
+    web: Option<SocketAddr>,
     recordings: Option<PathBuf>,
     /// The maps, which are read once.
     maps: HostMaps,
@@ -226,6 +239,7 @@ impl Configuration {
             is_named: options.config.is_some(),
             listen: options.listen,
             maps_folder: options.maps.clone(),
+            web: options.web,
             recordings: options.record_room.clone(),
             maps: HostMaps::default(),
         };
@@ -266,6 +280,7 @@ impl Configuration {
         let mut config = Config::parse(text, &self.file_name())?;
         config.listen = self.listen.unwrap_or(config.listen);
         config.maps = self.maps_folder.clone().or(config.maps);
+        config.web = self.web.or(config.web);
         config.recordings.clone_from(&self.recordings);
         Ok(config)
     }

@@ -136,7 +136,8 @@ fn a_running_server_keeps_fixed_settings() {
     wanted.empty_room = Duration::ZERO;
     wanted.maps = Some("/srv/maps".into());
     wanted.recordings_days = 7;
-    let fixed = ["listen", "metrics.listen", "maps", "recordings-days"];
+    wanted.web = Some("127.0.0.1:8080".parse().unwrap());
+    let fixed = ["listen", "metrics.listen", "maps", "web", "recordings-days"];
     assert_eq!(live.replace(wanted), fixed);
     let config = live.get();
     assert_eq!((config.rows, config.listen), (100, Config::default().listen));

@@ -255,6 +255,11 @@ impl GameHost {
         Operator::new(visitors.clone(), self.room_rows(), drain, cluster.clone())
     }
 
+    /// The rooms, and the measurements of how busy the host is.
+    pub(crate) fn rooms(&self) -> (Rooms, Arc<Load>) {
+        (self.shared.rooms.clone(), Arc::clone(&self.shared.load))
+    }
+
     /// A function that lists the rooms for an operator.
     pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
         let summaries = self.shared.rooms.summaries();

@@ -27,7 +27,7 @@ mod ignored;
 mod intent_queue;
 mod keys;
 mod line_entry;
-mod lobby;
+pub(crate) mod lobby;
 mod messages;
 mod pages;
 pub(crate) mod replayed;

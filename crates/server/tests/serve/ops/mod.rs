@@ -18,3 +18,4 @@ mod running;
 mod shared_store;
 mod signals;
 mod talk;
+mod web;

@@ -1,0 +1,484 @@
+//! The service over real sockets, with rooms in this process.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+
+use flate2::read::DeflateDecoder;
+use futures_util::{SinkExt, StreamExt};
+use http::{HeaderName, HeaderValue};
+use serde_json::Value;
+use tokio::io::{AsyncRead, AsyncWrite, duplex};
+use tokio::runtime::Builder;
+use tokio::task::JoinHandle;
+use tokio_websockets::{ClientBuilder, Message, WebSocketStream};
+
+use super::picture::{COLUMNS, Cell, ROWS, draw};
+use super::*;
+use crate::accounts::AddressPrefix;
+use crate::config::Config;
+use crate::metrics::Metrics;
+use crate::rooms::directory::{Place, Recordings, RoomLimits, Seeds};
+use crate::rooms::room::{Catalog, Command, Mode, NAME_COLUMNS};
+use crate::rooms::summary::RoomWish;
+use cellcaster::game::{Intent, Intents};
+use cellcaster::world::Difficulty;
+
+/// Long enough for a machine under load.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A host with the service, whose first room is a standing one.
+struct House {
+    address: SocketAddr,
+    rooms: Rooms,
+    metrics: Arc<Metrics>,
+    service: JoinHandle<()>,
+}
+
+fn wish(mode: Mode) -> RoomWish {
+    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+}
+
+fn name(text: &str) -> Line {
+    Line::of(text, NAME_COLUMNS).unwrap()
+}
+
+impl House {
+    fn open(change: impl FnOnce(&mut Config)) -> Self {
+        let mut config = Config::default();
+        change(&mut config);
+        let metrics = Arc::<Metrics>::default();
+        let load = Arc::new(Load::new(Arc::clone(&metrics)));
+        let limits = RoomLimits {
+            most: 8,
+            most_watchers: 4,
+            closes_after: Duration::ZERO,
+            standing: vec![wish(Mode::Roam)],
+        };
+        let (catalog, seeds) = (Arc::new(Catalog::builtin()), Seeds { rooms: 7, codes: 8 });
+        let recordings = Recordings::new(|_| None);
+        let rooms = Rooms::new(limits, catalog, recordings, Arc::clone(&load), seeds);
+        let listener = listen("127.0.0.1:0".parse().unwrap()).unwrap();
+        let address = listener.local_addr().unwrap();
+        let web = Web::new(LiveConfig::new(config), rooms.clone(), load);
+        let service = tokio::spawn(web.serve(listener));
+        Self { address, rooms, metrics, service }
+    }
+
+    /// The answer to a request, up to the end of the connection.
+    async fn answer(&self, request: &str) -> String {
+        let mut socket = TcpStream::connect(self.address).await.unwrap();
+        // The server may close the connection before it has read everything.
+        _ = socket.write_all(request.as_bytes()).await;
+        let mut answer = String::new();
+        _ = timeout(PATIENCE, socket.read_to_string(&mut answer)).await.expect("an answer");
+        answer
+    }
+
+    async fn get(&self, path: &str) -> String {
+        self.answer(&format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n")).await
+    }
+
+    /// Watches a room, with more headers; fails if the server does not switch protocols.
+    async fn watch_with(
+        &self,
+        room: u32,
+        headers: &[(&'static str, &str)],
+    ) -> Option<WebSocketStream<TcpStream>> {
+        let socket = TcpStream::connect(self.address).await.unwrap();
+        let uri = format!("ws://{}/rooms/{room}/live", self.address);
+        let mut client = ClientBuilder::new().uri(&uri).unwrap();
+        for (name, value) in headers {
+            let value = HeaderValue::from_str(value).unwrap();
+            client = client.add_header(HeaderName::from_static(name), value).unwrap();
+        }
+        timeout(PATIENCE, client.connect_on(socket)).await.unwrap().ok().map(|(it, _)| it)
+    }
+
+    async fn watch(&self, room: u32) -> Option<WebSocketStream<TcpStream>> {
+        self.watch_with(room, &[("origin", &format!("http://{}", self.address))]).await
+    }
+
+    /// Waits until this many browsers watch.
+    async fn watchers(&self, count: i64) {
+        let counted = async {
+            while self.metrics.web_watchers.get() != count {
+                sleep(Duration::from_millis(10)).await;
+            }
+        };
+        timeout(PATIENCE, counted).await.expect("the number of watchers");
+    }
+}
+
+impl Drop for House {
+    fn drop(&mut self) {
+        self.service.abort();
+    }
+}
+
+fn run(act: impl AsyncFnOnce()) {
+    Builder::new_current_thread().enable_all().build().unwrap().block_on(act());
+}
+
+/// What a browser shows.
+#[derive(Default)]
+struct Screen {
+    step: u32,
+    cells: Vec<Cell>,
+    words: Value,
+    /// The number of messages with a whole picture, and with changes.
+    messages: [usize; 2],
+}
+
+impl Screen {
+    /// Waits for the next picture.
+    async fn next<S: AsyncRead + AsyncWrite + Unpin>(&mut self, socket: &mut WebSocketStream<S>) {
+        loop {
+            let message = timeout(PATIENCE, socket.next()).await.expect("a message");
+            let message = message.unwrap().unwrap();
+            if let Some(text) = message.as_text() {
+                self.words = serde_json::from_str(text).unwrap();
+            } else if message.is_binary() {
+                return self.show(message.as_payload());
+            }
+        }
+    }
+
+    fn show(&mut self, message: &[u8]) {
+        let mut bytes = Vec::new();
+        DeflateDecoder::new(message).read_to_end(&mut bytes).unwrap();
+        let (kind, mut rest) = (bytes[0], &bytes[5..]);
+        self.messages[usize::from(kind)] += 1;
+        self.step = u32::from_be_bytes(bytes[1..5].try_into().unwrap());
+        if kind == 0 {
+            assert_eq!(rest[..2], [COLUMNS as u8, ROWS as u8]);
+            rest = &rest[2..];
+            self.cells.clear();
+            while !rest.is_empty() {
+                self.cells.push(take_cell(&mut rest));
+            }
+        }
+        while !rest.is_empty() {
+            let number = |at: usize| usize::from(u16::from_be_bytes([rest[at], rest[at + 1]]));
+            let (first, count) = (number(0), number(2));
+            rest = &rest[4..];
+            for cell in &mut self.cells[first..first + count] {
+                *cell = take_cell(&mut rest);
+            }
+        }
+        assert_eq!(self.cells.len(), usize::from(COLUMNS * ROWS));
+    }
+
+    /// The text cells of the last row.
+    fn caption(&self) -> String {
+        let last = &self.cells[usize::from(COLUMNS * (ROWS - 1))..];
+        let text = last.iter().filter_map(|cell| match cell {
+            Cell::Text(character, _) => Some(*character),
+            Cell::Halves(_) => None,
+        });
+        text.collect()
+    }
+}
+
+fn take_cell(bytes: &mut &[u8]) -> Cell {
+    let (head, rest) = bytes.split_at(1 + usize::from(bytes[0]));
+    let (colors, rest) = rest.split_at(6);
+    *bytes = rest;
+    let colors = [[colors[0], colors[1], colors[2]], [colors[3], colors[4], colors[5]]];
+    let character = str::from_utf8(&head[1..]).unwrap().chars().next();
+    character.map_or(Cell::Halves(colors), |character| Cell::Text(character, colors))
+}
+
+/// Lets a member turn until told otherwise.
+fn turn(place: &Place, turns: bool) {
+    let mut intents = Intents::new();
+    if turns {
+        intents.insert(Intent::TurnLeft);
+    }
+    place.act(Command::Intents { seen: 0, intents }).unwrap();
+}
+
+#[test]
+fn the_page_and_the_list_are_served_and_everything_else_is_rejected() {
+    run(async || {
+        let house = House::open(|config| config.name = "Mara's cellar".to_owned());
+        let page = house.get("/").await;
+        let (head, body) = page.split_once("\r\n\r\n").unwrap();
+        assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");
+        let (_, policy) = head.split_once("Content-Security-Policy: default-src 'none';").unwrap();
+        let (_, nonce) = policy.split_once("script-src 'nonce-").unwrap();
+        assert!(body.contains(&format!("<script nonce=\"{}\">", &nonce[..16])), "{head}");
+        assert!(!body.contains("://") && !body.contains(NONCE), "the page needs another host");
+        let _ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        let _ben = house.rooms.open(&wish(Mode::Tag), true, &name("Ben")).unwrap();
+        let listed = async {
+            loop {
+                let list = house.get("/rooms").await;
+                let list: Value =
+                    serde_json::from_str(list.split_once("\r\n\r\n").unwrap().1).unwrap();
+                if list["rooms"][0]["players"][0] == "Ada" {
+                    return list;
+                }
+            }
+        };
+        let list = timeout(PATIENCE, listed).await.unwrap();
+        assert_eq!(list["name"], "Mara's cellar");
+        assert_eq!(
+            list["rooms"].as_array().unwrap().len(),
+            1,
+            "the private room is listed: {list}"
+        );
+        assert_eq!(list["rooms"][0]["mode"], "Roam");
+        for (request, status) in [
+            ("GET /boards HTTP/1.1\r\n\r\n", "404"),
+            ("GET /rooms/1/live HTTP/1.1\r\nHost: a\r\n\r\n", "426"),
+            ("GET /rooms/x/live HTTP/1.1\r\nHost: a\r\n\r\n", "404"),
+            ("POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "405"),
+            ("\x16\x03\x01\r\n\r\n", "400"),
+            (&format!("GET / HTTP/1.1\r\nX: {}", "x".repeat(9000)), "400"),
+        ] {
+            let answer = house.answer(request).await;
+            assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{request}: {answer}");
+        }
+    });
+}
+
+#[test]
+fn a_live_picture_equals_the_snapshot_of_its_step() {
+    run(async || {
+        let house = House::open(|_| ());
+        let mut ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        turn(&ada, true);
+        let mut views = BTreeMap::new();
+        let mut socket = house.watch(1).await.unwrap();
+        let mut screen = Screen::default();
+        let mut compared = 0;
+        let compare = async {
+            while compared < 8 {
+                tokio::select! {
+                    () = ada.changed() => {
+                        let view = ada.view().unwrap();
+                        views.insert(view.step as u32, view);
+                    }
+                    () = screen.next(&mut socket) => {
+                        let Some(view) = views.get(&screen.step) else { continue };
+                        let drawn = draw(view, house.rooms.catalog());
+                        assert!(screen.cells == drawn, "step {} differs", screen.step);
+                        compared += 1;
+                    }
+                }
+            }
+        };
+        timeout(PATIENCE, compare).await.unwrap();
+        assert_eq!(screen.messages[0], 1, "a browser that reads gets changes only");
+        assert_eq!(screen.words["seen"], "Ada");
+        assert_eq!(screen.words["mode"], "Roam");
+        assert_eq!(screen.words["players"][0]["name"], "Ada");
+    });
+}
+
+#[test]
+fn a_room_is_drawn_once_for_all_watchers_and_not_at_all_for_none() {
+    run(async || {
+        let house = House::open(|_| ());
+        let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        turn(&ada, true);
+        let mut figures = Vec::new();
+        for count in [1, 8] {
+            let mut sockets = Vec::new();
+            for _ in 0..count {
+                sockets.push(house.watch(1).await.unwrap());
+            }
+            house.watchers(count).await;
+            let reads = sockets.iter_mut().map(|socket| async {
+                let mut screen = Screen::default();
+                let end = Instant::now() + Duration::from_secs(2);
+                while Instant::now() < end {
+                    screen.next(socket).await;
+                }
+                screen.cells
+            });
+            let before = [house.metrics.web_pictures.get(), house.metrics.web_bytes.get()];
+            let shown = futures_util::future::join_all(reads).await;
+            let after = [house.metrics.web_pictures.get(), house.metrics.web_bytes.get()];
+            assert_eq!(shown.len() as i64, count);
+            figures.push([after[0] - before[0], after[1] - before[1]]);
+            drop(sockets);
+            house.watchers(0).await;
+        }
+        eprintln!("pictures and bytes in 2 s, for 1 and 8 watchers: {figures:?}");
+        let [one, eight] = figures[..] else { panic!() };
+        assert!(one[0] <= 22 && eight[0] <= 22, "{figures:?}");
+        assert!(eight[1] > 4 * one[1], "{figures:?}");
+        // The task of the room ends within a picture's time.
+        sleep(Duration::from_millis(700)).await;
+        let drawn = house.metrics.web_pictures.get();
+        sleep(Duration::from_millis(500)).await;
+        assert_eq!(house.metrics.web_pictures.get(), drawn);
+    });
+}
+
+#[test]
+fn a_browser_that_sends_data_is_disconnected() {
+    run(async || {
+        let house = House::open(|_| ());
+        let _ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        for data in [Message::text("w"), Message::binary(vec![1]), Message::binary(vec![1; 5000])] {
+            let mut socket = house.watch(1).await.unwrap();
+            house.watchers(1).await;
+            socket.send(data).await.unwrap();
+            house.watchers(0).await;
+        }
+        let mut socket = house.watch(1).await.unwrap();
+        // A few pings are answered, but not many.
+        socket.send(Message::ping("a")).await.unwrap();
+        let answered = async { while !socket.next().await.unwrap().unwrap().is_pong() {} };
+        timeout(PATIENCE, answered).await.unwrap();
+        for _ in 0..50 {
+            _ = socket.send(Message::ping("a")).await;
+        }
+        house.watchers(0).await;
+    });
+}
+
+#[test]
+fn a_browser_that_does_not_read_costs_one_picture() {
+    run(async || {
+        let house = House::open(|_| ());
+        let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        turn(&ada, true);
+        let live = Arc::new(LiveRooms::new(house.rooms.clone(), load(&house)));
+        let pictures = live.watch(RoomId(1)).unwrap();
+        // The link holds a few bytes, so everything else waits in the service.
+        let (near, far) = duplex(64);
+        let metrics = Arc::clone(&house.metrics);
+        let watched = tokio::spawn(async move {
+            watch(ServerBuilder::new().serve(near), pictures, &metrics).await;
+        });
+        let drawn = async {
+            while house.metrics.web_pictures.get() < 12 {
+                sleep(Duration::from_millis(20)).await;
+            }
+        };
+        timeout(PATIENCE, drawn).await.unwrap();
+        assert_eq!(house.metrics.web_bytes.get(), 0, "the words alone fill the link");
+        turn(&ada, false);
+        sleep(Duration::from_millis(500)).await;
+        // The browser reads again. It gets the message that was on its way, and then the newest picture.
+        let mut socket = ClientBuilder::new().take_over(far);
+        let mut screen = Screen::default();
+        let newest = async {
+            loop {
+                screen.next(&mut socket).await;
+                let view = house.rooms.view(RoomId(1)).unwrap();
+                if screen.cells == draw(&view, house.rooms.catalog()) {
+                    return;
+                }
+            }
+        };
+        timeout(PATIENCE, newest).await.unwrap();
+        assert_eq!(screen.messages[0], 2, "{:?}", screen.messages);
+        assert!(screen.messages[1] <= 2, "{:?}", screen.messages);
+        watched.abort();
+    });
+}
+
+fn load(house: &House) -> Arc<Load> {
+    Arc::new(Load::new(Arc::clone(&house.metrics)))
+}
+
+#[test]
+fn other_origins_and_private_rooms_are_rejected() {
+    run(async || {
+        let house = House::open(|_| ());
+        let _ben = house.rooms.open(&wish(Mode::Tag), true, &name("Ben")).unwrap();
+        let _cid = house.rooms.open(&wish(Mode::Alone), false, &name("Cid")).unwrap();
+        assert!(house.watch(1).await.is_some());
+        for room in [2, 3, 99] {
+            assert!(house.watch(room).await.is_none(), "room {room}");
+        }
+        assert!(house.watch_with(1, &[("origin", "https://evil.example.org")]).await.is_none());
+        assert!(house.watch_with(1, &[]).await.is_none());
+    });
+}
+
+#[test]
+fn watchers_are_limited_in_total_and_by_address() {
+    run(async || {
+        let house = House::open(|config| {
+            config.web_watchers = 5;
+            config.web_watchers_per_address = 2;
+            config.proxies = vec![AddressPrefix::parse("127.0.0.0/8").unwrap()];
+        });
+        let origin = format!("http://{}", house.address);
+        let watch = |from: &'static str| {
+            let headers = [("origin", origin.as_str()), ("x-forwarded-for", from)];
+            let house = &house;
+            async move { house.watch_with(1, &headers).await }
+        };
+        let first = watch("192.0.2.7").await;
+        // Only the last address that is not a proxy's counts; the client may have invented those before it.
+        let second = watch("198.51.100.1, 192.0.2.7, 127.0.0.3").await;
+        assert!(first.is_some() && second.is_some());
+        assert!(watch("192.0.2.7").await.is_none());
+        let others = [watch("2001:db8::1").await, watch("2001:db8::2").await];
+        assert!(others.iter().all(Option::is_some));
+        assert!(watch("2001:db8::3").await.is_none(), "a /64 counts as one address");
+        let fifth = watch("192.0.2.9").await;
+        assert!(fifth.is_some());
+        assert!(watch("192.0.2.10").await.is_none(), "the total");
+        drop(first);
+        house.watchers(4).await;
+        assert!(watch("192.0.2.7").await.is_some());
+    });
+}
+
+#[test]
+fn nobody_but_a_proxy_names_an_address() {
+    run(async || {
+        let house = House::open(|config| config.web_watchers_per_address = 1);
+        let origin = format!("http://{}", house.address);
+        let headers = |from| -> [(&'static str, &str); 2] {
+            [("origin", &origin), ("x-forwarded-for", from)]
+        };
+        let first = house.watch_with(1, &headers("192.0.2.7")).await;
+        assert!(first.is_some());
+        assert!(house.watch_with(1, &headers("192.0.2.8")).await.is_none());
+    });
+}
+
+#[test]
+fn silent_connections_do_not_lock_others_out() {
+    run(async || {
+        let house = House::open(|_| ());
+        let mut silent = Vec::new();
+        for _ in 0..2 * MAX_REQUESTS {
+            silent.push(TcpStream::connect(house.address).await.unwrap());
+        }
+        assert!(house.get("/rooms").await.contains("\"mode\":\"Roam\""));
+        let mut first = silent.remove(0);
+        let closed = timeout(PATIENCE, first.read_u8()).await.unwrap();
+        assert!(closed.is_err(), "the oldest connection made room");
+    });
+}
+
+#[test]
+fn a_room_without_players_is_shown_with_a_caption_and_a_closed_room_says_so() {
+    run(async || {
+        let house = House::open(|_| ());
+        let mut socket = house.watch(1).await.unwrap();
+        let mut screen = Screen::default();
+        screen.next(&mut socket).await;
+        assert_eq!(screen.caption(), "nobodyiswalking");
+        assert_eq!(screen.words["seen"], Value::Null);
+        house.rooms.close(RoomId(1), "The room is closed.");
+        let closed = async {
+            loop {
+                let message = socket.next().await.unwrap().unwrap();
+                if let Some((_, reason)) = message.as_close() {
+                    return reason.to_owned();
+                }
+            }
+        };
+        assert_eq!(timeout(PATIENCE, closed).await.unwrap(), "The room has closed.");
+    });
+}
