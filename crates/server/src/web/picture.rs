@@ -80,9 +80,10 @@ pub(crate) fn draw(room: &RoomView, catalog: &Catalog) -> Vec<Cell> {
             options.draw(&*world, &camera, 0.0, &mut canvas, area, &mut view);
         }
         let [text, behind] = TEXT;
-        let style = Style::new().fg(text).bg(behind);
-        let caption = Rect { y: area.bottom() - 1, height: 1, ..area };
-        canvas.draw_widget(Line::styled("nobody is walking", style).right_aligned(), caption);
+        let caption = Line::styled(" nobody is walking ", Style::new().fg(text).bg(behind));
+        let width = caption.width() as u16;
+        let (x, y) = (area.right() - width, area.bottom() - 1);
+        canvas.draw_widget(caption, Rect { x, y, width, height: 1 });
     }
     VIEW.set(Some(view));
     canvas.content.iter().map(cell).collect()

@@ -282,7 +282,7 @@ fn a_room_is_drawn_once_for_all_watchers_and_not_at_all_for_none() {
         let house = House::open(|_| ());
         let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
         turn(&ada, true);
-        let mut figures = Vec::new();
+        let mut bytes = Vec::new();
         for count in [1, 8] {
             let mut sockets = Vec::new();
             for _ in 0..count {
@@ -297,18 +297,19 @@ fn a_room_is_drawn_once_for_all_watchers_and_not_at_all_for_none() {
                 }
                 screen.cells
             });
+            let begun = Instant::now();
             let before = [house.metrics.web_pictures.get(), house.metrics.web_bytes.get()];
             let shown = futures_util::future::join_all(reads).await;
             let after = [house.metrics.web_pictures.get(), house.metrics.web_bytes.get()];
             assert_eq!(shown.len() as i64, count);
-            figures.push([after[0] - before[0], after[1] - before[1]]);
+            let (pictures, most) =
+                (after[0] - before[0], begun.elapsed().as_secs_f64() * 10.0 + 2.0);
+            assert!(pictures as f64 <= most, "{pictures} pictures for {count} watchers");
+            bytes.push(after[1] - before[1]);
             drop(sockets);
             house.watchers(0).await;
         }
-        eprintln!("pictures and bytes in 2 s, for 1 and 8 watchers: {figures:?}");
-        let [one, eight] = figures[..] else { panic!() };
-        assert!(one[0] <= 22 && eight[0] <= 22, "{figures:?}");
-        assert!(eight[1] > 4 * one[1], "{figures:?}");
+        assert!(bytes[1] > 4 * bytes[0], "each of eight watchers gets the pictures: {bytes:?}");
         // The task of the room ends within a picture's time.
         sleep(Duration::from_millis(700)).await;
         let drawn = house.metrics.web_pictures.get();

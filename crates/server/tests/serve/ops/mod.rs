@@ -4,6 +4,8 @@ mod admin;
 #[cfg(feature = "system-tests")]
 mod away;
 #[cfg(feature = "system-tests")]
+mod browser;
+#[cfg(feature = "system-tests")]
 mod cluster;
 mod documents;
 #[cfg(all(target_os = "linux", feature = "system-tests"))]

@@ -10,7 +10,7 @@ use crate::play::private::open_private;
 use crate::transport::{TIMEOUT, wait_until};
 
 /// A server with the service, and its ports for browsers and for metrics.
-fn watched(option: &[&str]) -> (Running, [u16; 2]) {
+pub(crate) fn watched(option: &[&str]) -> (Running, [u16; 2]) {
     let [web, metrics] = [free_port(), free_port()];
     let address = format!("127.0.0.1:{web}");
     let (config, options) = match option {
@@ -32,7 +32,7 @@ fn get(port: u16, path: &str) -> String {
 }
 
 /// Asks for the pictures of a room; returns the socket after the server's answer.
-fn watch(port: u16, room: u32) -> (TcpStream, String) {
+pub(crate) fn watch(port: u16, room: u32) -> (TcpStream, String) {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
     stream.set_read_timeout(Some(TIMEOUT)).unwrap();
     write!(
