@@ -13,6 +13,7 @@ mod page;
 mod picture;
 mod playback;
 mod played;
+mod rebinding;
 mod recording;
 mod results;
 mod run;
@@ -124,6 +125,8 @@ struct App {
     /// `true` after the player went on from the middle of a recorded run.
     is_unranked: bool,
     settings: Settings,
+    /// The bindings without the player's own keys.
+    usual_keys: Bindings,
     terminal: TerminalLook,
     controls: Controls,
     pointer: Pointer,
@@ -162,6 +165,7 @@ impl App {
             map: MapPanel::new(settings.minimap),
             views: Views::new(View::with_caster(settings.caster.clone())),
             pointer: Pointer::new(settings.mouse),
+            usual_keys: settings.bindings.clone(),
             levels,
             game,
             settings,
@@ -172,6 +176,7 @@ impl App {
     /// A game that opens with the levels or the title in `opening`, and with the state in `store`.
     fn opened(opening: InitialState, settings: Settings, store: Store) -> Self {
         let mut app = Self { store, ..Self::new(Levels::default(), settings) };
+        app.settings.bindings = app.usual_keys.clone().with_own(app.store.keys());
         match opening {
             InitialState::Levels(levels) => {
                 app.difficulty = app.usual_difficulty();

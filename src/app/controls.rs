@@ -10,6 +10,7 @@
 //! Positions are converted to angles first, and then subtracted. Rounding errors therefore do not
 //! add up: a pointer that returns to its old position has not turned the player at all.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use crate::game::{Intent, Intents, Look, STEP, STEPS_PER_SECOND};
@@ -124,7 +125,18 @@ impl Action {
 
     /// The action called `name`.
     pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(_, _, action, _)| action)
+        Self::entry(name).map(|(_, action)| action)
+    }
+
+    /// The name of the action called `name` for as long as the program runs, and the action.
+    pub(crate) fn entry(name: &str) -> Option<(&'static str, Self)> {
+        let entry = Self::ALL.into_iter().find(|&(known, ..)| known == name);
+        entry.map(|(known, _, action, _)| (known, action))
+    }
+
+    /// A short description of the action.
+    pub(crate) fn does(self) -> &'static str {
+        Self::ALL.iter().find(|&&(.., known, _)| known == self).map_or("", |&(_, does, ..)| does)
     }
 
     /// Returns true if the two actions cancel each other.
@@ -154,6 +166,36 @@ impl Bindings {
         self.keys.retain(|&(key, action)| !rebound.contains(&action) && !is_bound(key));
         self.keys.extend(bound);
         self.in_order()
+    }
+
+    /// Replaces the keys of `action` by `keys`, which any other action loses.
+    pub(crate) fn with_keys(self, action: Action, keys: Vec<Key>) -> Self {
+        self.rebound(&[action], keys.into_iter().map(|key| (key, action)).collect())
+    }
+
+    /// Replaces the keys of the actions in `own`. If two of them have the same key, the first one
+    /// keeps it.
+    pub(crate) fn with_own(self, own: &OwnKeys) -> Self {
+        let (mut actions, mut bound) = (Vec::new(), Vec::<(Key, Action)>::new());
+        for (name, keys) in own {
+            let Some(action) = Action::named(name) else { continue };
+            actions.push(action);
+            for &key in keys {
+                if bound.iter().all(|&(other, _)| other != key) {
+                    bound.push((key, action));
+                }
+            }
+        }
+        self.rebound(&actions, bound)
+    }
+
+    /// The keys of the actions that have other keys than in `usual`.
+    pub(crate) fn differences(&self, usual: &Self) -> OwnKeys {
+        let differs = |&(.., action, _): &(_, _, Action, _)| {
+            !self.keys(action).eq(usual.keys(action))
+        };
+        let changed = Action::ALL.into_iter().filter(differs);
+        changed.map(|(name, _, action, _)| (name, self.keys(action).collect())).collect()
     }
 
     /// Removes the bindings of `keys`.
@@ -199,6 +241,9 @@ impl Bindings {
         self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
     }
 }
+
+/// The keys that a player has chosen, by the name of the action.
+pub(crate) type OwnKeys = BTreeMap<&'static str, Vec<Key>>;
 
 /// A keyboard layout with its own set of bindings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -16,7 +16,8 @@
 //! asks for a choice is a menu, and the same keys work in all of them: the arrows or the walking
 //! keys select, Enter or Space chooses, a digit chooses the entry with that number, Escape or
 //! Backspace goes back. On a result page, only Enter and the arrows act, and the selection stops at
-//! both ends. A list that is higher than the window scrolls, and the text above it is cut first.
+//! both ends. A list that is higher than the window scrolls, and the text above it is cut first,
+//! unless it tells what the last key did.
 //!
 //! The help is a panel with the keys of all actions. Its first line says how to close it. If the
 //! help is higher than the window, it scrolls with keys that every terminal has: the arrows, the
@@ -262,6 +263,8 @@ const REPETITION: Duration = Duration::from_millis(150);
 pub struct Menu<C> {
     title: String,
     text: Vec<String>,
+    /// `true` if the text stays above a list that is higher than the window.
+    keeps_text: bool,
     entries: Vec<MenuEntry<C>>,
     selected: usize,
     /// The first visible entry, and the number of entries visible in the last drawing.
@@ -299,7 +302,7 @@ const GAP: usize = 2;
 impl<C> Default for Menu<C> {
     fn default() -> Self {
         let (title, text, entries) = (String::new(), Vec::new(), Vec::new());
-        Self { title, text, entries, selected: 0, first: 0, page: 0 }
+        Self { title, text, keeps_text: false, entries, selected: 0, first: 0, page: 0 }
     }
 }
 
@@ -318,6 +321,12 @@ impl<C: Copy> Menu<C> {
     /// Adds lines of text above the entries.
     pub fn lines(self, lines: impl IntoIterator<Item = impl Into<String>>) -> Self {
         lines.into_iter().fold(self, Self::line)
+    }
+
+    /// Keeps the text above a list that is higher than the window, in up to half of its height.
+    #[must_use]
+    pub(crate) fn keeping_text(self) -> Self {
+        Self { keeps_text: true, ..self }
     }
 
     /// Adds an entry.
@@ -450,11 +459,12 @@ impl<C: Copy> Menu<C> {
     fn shown(&mut self, room: Size, least: u16) -> (String, Text<'static>) {
         let most_rows = usize::from(room.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(room.width.saturating_sub(BORDERS + PADDING)).max(1);
-        self.page = self.entries.len().min(most_rows);
-        self.scroll();
-        let least_columns = usize::from(least.saturating_sub(BORDERS + PADDING));
         let mut text: Vec<String> =
             self.text.iter().flat_map(|line| wrapped(line, most_columns)).collect();
+        let kept = if self.keeps_text { text.len().min(most_rows / 2) } else { 0 };
+        self.page = self.entries.len().min(most_rows - kept);
+        self.scroll();
+        let least_columns = usize::from(least.saturating_sub(BORDERS + PADDING));
         let room_for_text = most_rows - self.page;
         text.truncate(room_for_text);
         let is_separated = !text.is_empty() && text.len() < room_for_text && self.page > 0;

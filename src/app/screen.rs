@@ -39,6 +39,10 @@ pub(crate) enum AppScreen {
     /// The offer to begin again in place of a saved game that cannot continue.
     Outdated(SaveId),
     Settings,
+    /// The keys of all actions.
+    Keys,
+    /// The question for a new key of an action.
+    Binding(Action),
     /// The question whether to tell tmux that its terminal shows 24-bit colours.
     Tmux,
     #[default]
@@ -103,7 +107,7 @@ pub(crate) enum MenuChoice {
 impl Page for AppScreen {
     fn kind(self) -> PageKind {
         match self {
-            Self::Playing => PageKind::Bare,
+            Self::Playing | Self::Binding(_) => PageKind::Bare,
             Self::Help => PageKind::Help,
             Self::Leaving => PageKind::Leaving,
             Self::LevelDone | Self::Dead | Self::End => PageKind::Result,
@@ -182,6 +186,8 @@ impl App {
             AppScreen::Outdated(id) => self.outdated_menu(id),
             AppScreen::Paused => self.pause_menu(),
             AppScreen::Settings => self.settings_menu(),
+            AppScreen::Keys => self.keys_menu(),
+            AppScreen::Binding(action) => self.binding_menu(action),
             AppScreen::Tmux => self.tmux_menu(),
             AppScreen::Dead => self.death_menu(),
             AppScreen::LevelDone => self.level_done_menu(),
@@ -313,6 +319,11 @@ impl App {
     }
 }
 
+/// Returns true if `key` restores the usual keys of the selected action.
+fn restores(key: Key) -> bool {
+    matches!(key, Key::Backspace | Key::Delete)
+}
+
 fn new_game_menu(usual: Difficulty) -> Menu<MenuChoice> {
     let about = |difficulty| match difficulty {
         Difficulty::Easy => "you keep what you've found",
@@ -337,11 +348,19 @@ impl App {
     /// Handles a key press, repeat or release at time `now`.
     pub(crate) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
-        let event = self.settings.bindings.resolve(event);
+        let binds = match self.screen() {
+            AppScreen::Binding(action) => Some(action),
+            _ => None,
+        };
+        let event = if binds.is_some() { event } else { self.settings.bindings.resolve(event) };
         let key_context = self.key_context();
         let press = self.controls.handle(event, now, &self.settings.bindings, key_context);
-        if let Some(press) = press {
-            self.press(event.key, press);
+        let is_modifier = matches!(event.key, Key::Shift | Key::Control | Key::Alt);
+        match (binds, press) {
+            (Some(action), None) if is_modifier => self.bind(action, event.key),
+            (Some(_), Some(_)) if is_modifier => {}
+            (_, Some(press)) => self.press(event.key, press),
+            (_, None) => {}
         }
     }
 
@@ -384,6 +403,9 @@ impl App {
                 Some(MenuChoice::Continue(id)) if self.removes(key) => {
                     self.open(AppScreen::Remove(id));
                 }
+                Some(MenuChoice::Open(AppScreen::Binding(action))) if restores(key) => {
+                    self.restore_keys(action);
+                }
                 _ => self.press_command(key, press),
             },
             effect => self.carry_out(effect),
@@ -393,7 +415,9 @@ impl App {
     fn carry_out(&mut self, effect: Effect) {
         match effect {
             Effect::Answer(key) => {
-                if self.plays() && self.settings.bindings.action(key) == Some(Action::TakeBack) {
+                if let AppScreen::Binding(action) = self.screen() {
+                    self.bind(action, key);
+                } else if self.plays() && self.settings.bindings.action(key) == Some(Action::TakeBack) {
                     self.take_back();
                 }
             }
@@ -411,6 +435,9 @@ impl App {
         if self.screen() == AppScreen::Playing && self.press_in_playback(key, press) {
             return;
         }
+        if let AppScreen::Binding(_) = self.screen() {
+            return self.press_to_bind(key, press);
+        }
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),
             Some(Action::NarrowView) => self.widen_view(false),
@@ -422,6 +449,17 @@ impl App {
             Some(action) if press != Press::Repeat => self.command(key, action),
             _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
             _ => {}
+        }
+    }
+
+    /// Uses `key` as the answer to the question for a new key. Escape cancels.
+    fn press_to_bind(&mut self, key: Key, press: Press) {
+        if key != Key::Escape {
+            let bindings = &self.settings.bindings;
+            let effect = self.pages.press_to_answer(key, press, bindings, self.now);
+            self.carry_out(effect);
+        } else if press != Press::Repeat {
+            self.close();
         }
     }
 

@@ -22,7 +22,8 @@
 //!
 //! The store keeps the player's choices on this page, apart from the map and the mouse, which start
 //! as the configuration file says. A flag or the configuration file overrides a stored choice, and
-//! the page says so beside the value. The program never writes the configuration file.
+//! the page says so beside the value. Keys that the player chooses on the page of keys apply over
+//! the file, which gives the usual keys. The program never writes the configuration file.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -382,8 +383,12 @@ impl fmt::Display for Configuration {
 
 /// The keys of `action` as a TOML array.
 fn list(bindings: &Bindings, action: Action) -> String {
-    let keys: Vec<String> =
-        bindings.keys(action).map(|key| toml_string(&key.to_string())).collect();
+    toml_keys(bindings.keys(action))
+}
+
+/// `keys` as a TOML array.
+pub(crate) fn toml_keys(keys: impl Iterator<Item = Key>) -> String {
+    let keys: Vec<String> = keys.map(|key| toml_string(&key.to_string())).collect();
     format!("[{}]", keys.join(", "))
 }
 
@@ -445,7 +450,12 @@ impl App {
             let value = row.value.label(&choices) + origin(given, row.key);
             (row.about, value, screen::MenuChoice::Change(index))
         });
+        let changed = match self.store.keys().len() {
+            0 => "usual".to_owned(),
+            count => format!("{count} changed"),
+        };
         settings_menu(note, self.detection.ascii_locale.is_none(), rows)
+            .entry_with("Keys", changed, screen::MenuChoice::Open(screen::AppScreen::Keys))
     }
 
     /// The current values.

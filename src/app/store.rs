@@ -4,7 +4,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `progress.toml` | best results, the saved games, preferences, daily runs |
+//! | `progress.toml` | best results, the saved games, preferences, keys, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
 //! | `runs/saved.HASH.script` | the steps of a saved game; there are at most [`MAX_SAVES`] |
 //! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
@@ -36,6 +36,7 @@ pub mod private;
 mod progress;
 mod text;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use home::{Home, MAX_SCRIPT_FILE_BYTES};
@@ -45,7 +46,9 @@ pub use progress::{
 };
 use progress::{Change, Progress};
 
+use crate::app::controls::OwnKeys;
 pub use crate::app::setting::Preferences;
+use crate::terminal::Key;
 use crate::world::Difficulty;
 
 /// One player's store, in a folder or in memory.
@@ -178,6 +181,24 @@ impl Store {
         let before = self.progress.preferences;
         if before != preferences {
             self.change(Change::Preferences { before, after: preferences });
+        }
+    }
+
+    /// The keys that the player has chosen, by the name of the action.
+    pub(crate) fn keys(&self) -> &OwnKeys {
+        &self.progress.keys
+    }
+
+    /// Sets the keys that the player has chosen. Actions that do not change here keep the choice that
+    /// another game may have made.
+    pub(crate) fn set_keys(&mut self, keys: OwnKeys) {
+        let before = &self.progress.keys;
+        let removed = before.keys().filter(|&name| !keys.contains_key(name));
+        let mut changed: BTreeMap<_, _> = removed.map(|&name| (name, None)).collect();
+        let is_new = |(name, keys): &(&'static str, Vec<Key>)| before.get(name) != Some(keys);
+        changed.extend(keys.into_iter().filter(is_new).map(|(name, keys)| (name, Some(keys))));
+        if !changed.is_empty() {
+            self.change(Change::Keys(changed));
         }
     }
 

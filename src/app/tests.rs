@@ -10,6 +10,7 @@ mod missions;
 mod panels;
 mod playback;
 mod questions;
+mod rebinding;
 mod redraws;
 mod saved;
 mod screens;

@@ -11,10 +11,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::mem;
 
+use crate::app::controls::OwnKeys;
 use crate::app::setting::Preferences;
 use crate::game::{Game, Outcome, Rank, Rules, Script, Tally};
 use crate::generate::floors_below;
 use crate::rng;
+use crate::terminal::Key;
 use crate::world::{Difficulty, World};
 
 /// The content of `progress.toml`.
@@ -25,6 +27,7 @@ pub(crate) struct Progress {
     /// The saved games, newest last. No two have the same [`SaveId`].
     pub(crate) saves: Vec<SavedEntry>,
     pub(crate) preferences: Preferences,
+    pub(crate) keys: OwnKeys,
     /// The result of the daily run, by date.
     pub(crate) dailies: BTreeMap<u32, Reached>,
     pub(crate) descent: Option<Reached>,
@@ -162,6 +165,8 @@ pub(crate) enum Change {
     Removed(SaveId),
     /// The player changed the preferences that differ between the two.
     Preferences { before: Preferences, after: Preferences },
+    /// The player chose the keys of these actions; `None` for the usual keys.
+    Keys(BTreeMap<&'static str, Option<Vec<Key>>>),
     /// The daily run of a date reached this point.
     Daily { date: u32, reached: Reached, script: String },
     /// A descent reached this point.
@@ -178,7 +183,7 @@ impl Change {
             Self::Saved(game) => Some((of_saved(&game.script), &game.script)),
             Self::Daily { date, reached, script } => Some((of_daily(*date, *reached)?, script)),
             Self::Descent { reached, script } => Some((of_descent(*reached)?, script)),
-            Self::Removed(_) | Self::Preferences { .. } => None,
+            Self::Removed(_) | Self::Preferences { .. } | Self::Keys(_) => None,
         }
     }
 
@@ -200,6 +205,14 @@ impl Progress {
             }
             Change::Removed(id) => self.remove_save(*id),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
+            Change::Keys(changed) => {
+                for (&name, keys) in changed {
+                    match keys {
+                        Some(keys) => drop(self.keys.insert(name, keys.clone())),
+                        None => drop(self.keys.remove(name)),
+                    }
+                }
+            }
             Change::Daily { date, reached, .. } => self.add_daily(*date, *reached),
             Change::Descent { reached, .. } => self.descent = self.descent.max(Some(*reached)),
         }
@@ -215,6 +228,7 @@ impl Progress {
             self.add_save(entry);
         }
         self.preferences.choose(Preferences::default(), known.preferences);
+        self.keys.clone_from(&known.keys);
     }
 
     fn add_best(&mut self, key: (String, Difficulty), best: Best) {

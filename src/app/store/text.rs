@@ -15,11 +15,13 @@ use toml::de::DeValue;
 
 use super::progress::{Best, Reached};
 use super::progress::{Descent, Progress, Save, SavedEntry};
-use crate::app::setting::toml_string;
-use crate::app::setting::{PREFERENCES, Preferences};
+use crate::app::controls::{Action, OwnKeys};
+use crate::app::setting::{PREFERENCES, Preferences, toml_string};
+use crate::app::settings::toml_keys;
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};
+use crate::terminal::Key;
 use crate::world::Difficulty;
 
 /// The version of the format. Version 2 added the saved descent, the checksum of saved games, and
@@ -34,6 +36,8 @@ const OLDEST_PREFERENCES: usize = 5;
 /// The key of the number of times that time was taken back, which is left out if it is 0.
 const TAKEN_BACK: &str = "taken-back";
 
+/// The table of the keys that the player has chosen.
+const KEYS: &str = "keys";
 /// The table of saved games. Its sections have numbers, and the newest game has the largest one.
 const SAVES: &str = "saves";
 /// The sections for the only saved level and the only saved descent in older versions.
@@ -56,6 +60,7 @@ pub(crate) fn read(content: &[u8]) -> Result<(Progress, bool), u64> {
         match entry.key {
             "version" => version = checked(&entry, number(&entry)),
             "preferences" => read_preferences(&entry, &mut progress.preferences),
+            KEYS => read_keys(&entry, &mut progress.keys),
             SAVED | SAVED_DESCENT => saved(&entry).into_iter().for_each(|it| progress.add_save(it)),
             SAVES => read_saves(&entry, &mut progress),
             "descent" => progress.descent = reached(&entry),
@@ -78,6 +83,20 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
             None => damaged(&entry),
         }
     }
+}
+
+fn read_keys(section: &Entry<'_, '_>, own: &mut OwnKeys) {
+    for entry in inner(section) {
+        let keys = Action::entry(entry.key).zip(keys(&entry));
+        if let Some(((name, _), keys)) = checked(&entry, keys) {
+            own.insert(name, keys);
+        }
+    }
+}
+
+fn keys(entry: &Entry<'_, '_>) -> Option<Vec<Key>> {
+    let DeValue::Array(names) = entry.value else { return None };
+    names.iter().map(|name| name.get_ref().as_str()?.parse().ok()).collect()
 }
 
 /// Reads the saved games in the order of their numbers.
@@ -228,6 +247,12 @@ impl fmt::Display for Progress {
         writeln!(f, "# The progress of a player of Cellcaster. The game replaces this file.")?;
         writeln!(f, "version = {VERSION}")?;
         write_preferences(f, &self.preferences)?;
+        if !self.keys.is_empty() {
+            writeln!(f, "\n[{KEYS}]")?;
+        }
+        for (name, keys) in &self.keys {
+            writeln!(f, "{name} = {}", toml_keys(keys.iter().copied()))?;
+        }
         for (number, saved) in (1..).zip(&self.saves) {
             write_saved(f, number, saved)?;
         }
