@@ -97,7 +97,7 @@ fn the_map_shows_where_the_guards_in_view_look() {
     // The panel in the upper right corner.
     let watched = |rig: &mut Rig| {
         let shown = ascii(rig);
-        let panel = shown.lines().take(6).flat_map(|line| line.chars().skip(54));
+        let panel = shown.lines().take(6).flat_map(|line| line.chars().skip(64));
         panel.filter(|&character| character == '%').count()
     };
     let mut rig = playing_own(HALL, Store::in_memory());
@@ -115,6 +115,8 @@ fn shot() -> Rig {
     rig.tap(Key::Char('e'), 30);
     // The picture explores the map.
     text(&mut rig.app, 80, 24);
+    // Guards notice nobody who has not acted.
+    rig.tap(Key::Char('e'), 30);
     for _ in 0..60_000 {
         rig.wait(1);
         if rig.app.screen() == AppScreen::Dead {
