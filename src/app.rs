@@ -176,6 +176,7 @@ impl App {
     /// A game that opens with the levels or the title in `opening`, and with the state in `store`.
     fn opened(opening: InitialState, settings: Settings, store: Store) -> Self {
         let mut app = Self { store, ..Self::new(Levels::default(), settings) };
+        app.controls.toggles.runs_by_default = app.store.preferences().runs;
         app.settings.bindings = app.usual_keys.clone().with_own(app.store.keys());
         match opening {
             InitialState::Levels(levels) => {

@@ -191,9 +191,8 @@ impl Bindings {
 
     /// The keys of the actions that have other keys than in `usual`.
     pub(crate) fn differences(&self, usual: &Self) -> OwnKeys {
-        let differs = |&(.., action, _): &(_, _, Action, _)| {
-            !self.keys(action).eq(usual.keys(action))
-        };
+        let differs =
+            |&(.., action, _): &(_, _, Action, _)| !self.keys(action).eq(usual.keys(action));
         let changed = Action::ALL.into_iter().filter(differs);
         changed.map(|(name, _, action, _)| (name, self.keys(action).collect())).collect()
     }
@@ -340,8 +339,10 @@ const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
 /// The movement modes that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Toggles {
-    /// Running.
+    /// Running, or walking if the player runs by default.
     pub runs: bool,
+    /// `true` if the player runs unless a key asks for walking.
+    pub runs_by_default: bool,
     /// Ducking.
     pub ducks: bool,
     /// Walking on without a key.
@@ -447,17 +448,38 @@ impl Controls {
     pub fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
             Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
+            Some(Action::Want(Intent::Run)) if self.toggles.runs_by_default => None,
             Some(Action::Want(intent)) => Some((intent, hold)),
             _ => None,
         });
         let shifted = self.shifted.filter(|_| !self.held.reports_releases());
-        let runs = self.toggles.runs || shifted.is_some_and(|key| self.held.hold(key) != Hold::Up);
+        let changes =
+            self.toggles.runs || shifted.is_some_and(|key| self.held.hold(key) != Hold::Up);
+        let runs = if self.toggles.runs_by_default {
+            let is_wanted = |(key, hold)| {
+                hold != Hold::Up && bindings.action(key) == Some(Action::Want(Intent::Run))
+            };
+            !(changes || self.held.iter().any(is_wanted)) && self.walks(bindings)
+        } else {
+            changes
+        };
         let others = [
             runs.then_some(Intent::Run),
             self.toggles.ducks.then_some(Intent::Duck),
             self.toggles.keeps_walking.then_some(Intent::Forward),
         ];
         wanted(keys.chain(others.into_iter().flatten().map(|intent| (intent, Hold::Held))))
+    }
+}
+
+impl Controls {
+    /// Returns true if a key or a mode makes the player walk.
+    fn walks(&self, bindings: &Bindings) -> bool {
+        let walks = |(key, hold)| {
+            let action = bindings.action(key);
+            hold != Hold::Up && matches!(action, Some(Action::Want(intent)) if intent.walks())
+        };
+        self.toggles.keeps_walking || self.held.iter().any(walks)
     }
 }
 

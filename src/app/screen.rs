@@ -8,6 +8,7 @@ use crate::app::App;
 use crate::app::controls::{Action, KeyContext};
 use crate::app::page::{Effect, Menu, Page, PageKind};
 use crate::app::picture::widened;
+use crate::app::setting::ViewAngle;
 use crate::app::status::{of_steps, whole_seconds};
 use crate::app::store::{Best, Preferences, SaveId};
 use crate::game::{Game, Intents};
@@ -417,7 +418,9 @@ impl App {
             Effect::Answer(key) => {
                 if let AppScreen::Binding(action) = self.screen() {
                     self.bind(action, key);
-                } else if self.plays() && self.settings.bindings.action(key) == Some(Action::TakeBack) {
+                } else if self.plays()
+                    && self.settings.bindings.action(key) == Some(Action::TakeBack)
+                {
                     self.take_back();
                 }
             }
@@ -516,6 +519,7 @@ impl App {
         let mut preferences = self.store.preferences();
         change(&mut preferences);
         self.store.set_preferences(preferences);
+        self.controls.toggles.runs_by_default = preferences.runs;
         self.shown = None;
     }
 
@@ -568,7 +572,9 @@ impl App {
     }
 
     fn widen_view(&mut self, widens: bool) {
-        self.settings.field_of_view = widened(self.settings.field_of_view, widens);
+        let view = widened(self.settings.field_of_view, widens);
+        self.settings.field_of_view = view;
+        self.prefer(|it| it.field_of_view = Some(ViewAngle::nearest(view)));
     }
 }
 

@@ -308,6 +308,73 @@ impl Value for FieldOfView {
     }
 }
 
+/// A field of view that the settings page offers: whole degrees, from 30 to 120.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "u8", into = "u8")]
+pub struct ViewAngle(u8);
+
+impl ViewAngle {
+    const LEAST: u8 = 30;
+    const MOST: u8 = 120;
+    /// The difference between two values that the settings page offers.
+    const STEP: u8 = 6;
+
+    /// The angle that is nearest to `view`.
+    pub(crate) fn nearest(view: FieldOfView) -> Self {
+        let degrees = view.degrees().round();
+        Self(degrees.clamp(Self::LEAST.into(), Self::MOST.into()) as u8)
+    }
+
+    /// The angle as a field of view.
+    pub(crate) fn field_of_view(self) -> FieldOfView {
+        FieldOfView::from_degrees(self.0.into()).unwrap_or_default()
+    }
+}
+
+impl TryFrom<u8> for ViewAngle {
+    type Error = &'static str;
+
+    fn try_from(degrees: u8) -> Result<Self, Self::Error> {
+        let is_offered = (Self::LEAST..=Self::MOST).contains(&degrees);
+        is_offered.then_some(Self(degrees)).ok_or("a field of view has 30 to 120 degrees")
+    }
+}
+
+impl From<ViewAngle> for u8 {
+    fn from(angle: ViewAngle) -> Self {
+        angle.0
+    }
+}
+
+/// `None` means the default. The smallest angle follows the largest one.
+impl Value for Option<ViewAngle> {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let view = FieldOfView::read(entry)?;
+        Some(Some(ViewAngle::nearest(view)))
+    }
+
+    fn write(self) -> String {
+        let view = self.unwrap_or(ViewAngle::nearest(FieldOfView::default()));
+        view.0.to_string()
+    }
+
+    fn after(self, forward: bool) -> Self {
+        let ViewAngle(degrees) = self.unwrap_or(ViewAngle::nearest(FieldOfView::default()));
+        let (least, most, step) = (ViewAngle::LEAST, ViewAngle::MOST, ViewAngle::STEP);
+        let after = match forward {
+            true if degrees >= most => least,
+            true => (degrees + step).min(most),
+            false if degrees <= least => most,
+            false => (degrees - step).max(least),
+        };
+        Some(ViewAngle(after))
+    }
+
+    fn label(self) -> String {
+        format!("{}°", self.write())
+    }
+}
+
 /// The default maximum frame rate, in frames per second.
 pub(crate) const FRAME_RATE: NonZeroU32 = NonZeroU32::new(30).unwrap();
 /// The frame rates that a settings page offers.
@@ -454,6 +521,10 @@ pub struct Preferences {
     pub correction: Correction,
     /// The maximum frame rate; `None` for the default.
     pub frames_per_second: Option<NonZeroU32>,
+    /// `true` to run unless a key asks for walking.
+    pub runs: bool,
+    /// The field of view; `None` for the default.
+    pub field_of_view: Option<ViewAngle>,
 }
 
 impl Default for Preferences {
@@ -469,6 +540,8 @@ impl Default for Preferences {
             colors: None,
             correction: Correction::None,
             frames_per_second: None,
+            runs: false,
+            field_of_view: None,
         }
     }
 }
@@ -491,7 +564,7 @@ impl Preferences {
 }
 
 /// The preferences, in the order of the file.
-pub(crate) const PREFERENCES: [Setting<Preferences>; 10] = [
+pub(crate) const PREFERENCES: [Setting<Preferences>; 12] = [
     Setting::CROSSHAIR,
     Setting::COMPASS,
     Setting::BELL,
@@ -502,6 +575,8 @@ pub(crate) const PREFERENCES: [Setting<Preferences>; 10] = [
     Setting::CORRECTION,
     Setting::FRAME_RATE,
     Setting::MARKS,
+    Setting::RUNS,
+    Setting::FIELD_OF_VIEW,
 ];
 
 /// The preferences as settings of any type that contains them, with their labels on a settings
@@ -537,4 +612,10 @@ impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// The maximum frame rate.
     pub const FRAME_RATE: Self =
         Self::new("fps", "Frames a second", &At(|it: &mut C| &mut it.as_mut().frames_per_second));
+    /// Whether the player runs unless a key asks for walking.
+    pub const RUNS: Self =
+        Self::new("runs", "Run by default", &At(|it: &mut C| &mut it.as_mut().runs));
+    /// The field of view.
+    pub const FIELD_OF_VIEW: Self =
+        Self::new("fov", "Field of view", &At(|it: &mut C| &mut it.as_mut().field_of_view));
 }

@@ -37,7 +37,7 @@ use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen;
 use crate::app::setting::{
-    At, Choice, FRAME_RATE, Field, MapDisplay, Preferences, Setting, toml_string,
+    At, Choice, FRAME_RATE, Field, MapDisplay, Preferences, Setting, ViewAngle, toml_string,
 };
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
@@ -92,6 +92,8 @@ pub struct SettingOrigins {
     pub depth: Option<Origin>,
     /// The origin of the frame time.
     pub frame_time: Option<Origin>,
+    /// The origin of the field of view.
+    pub field_of_view: Option<Origin>,
 }
 
 /// The source of a setting's value.
@@ -115,6 +117,9 @@ impl Settings {
         }
         if let (None, Some(frames)) = (self.given.frame_time, preferences.frames_per_second) {
             self.frame_time = Duration::from_secs(1) / frames.get();
+        }
+        if let (None, Some(angle)) = (self.given.field_of_view, preferences.field_of_view) {
+            self.field_of_view = angle.field_of_view();
         }
         self
     }
@@ -425,8 +430,9 @@ impl<C: AsMut<Choices> + Clone> Setting<C> {
 }
 
 /// The rows, in the order of the page.
-const ROWS: [Setting<Choices>; 12] = [
+const ROWS: [Setting<Choices>; 14] = [
     Setting::DIFFICULTY,
+    Setting::RUNS,
     Setting::CROSSHAIR,
     Setting::COMPASS,
     Setting::GHOST,
@@ -434,6 +440,7 @@ const ROWS: [Setting<Choices>; 12] = [
     Setting::BELL,
     Setting::MAP,
     Setting::MOUSE,
+    Setting::FIELD_OF_VIEW,
     Setting::GLYPHS,
     Setting::COLORS,
     Setting::CORRECTION,
@@ -454,8 +461,11 @@ impl App {
             0 => "usual".to_owned(),
             count => format!("{count} changed"),
         };
-        settings_menu(note, self.detection.ascii_locale.is_none(), rows)
-            .entry_with("Keys", changed, screen::MenuChoice::Open(screen::AppScreen::Keys))
+        settings_menu(note, self.detection.ascii_locale.is_none(), rows).entry_with(
+            "Keys",
+            changed,
+            screen::MenuChoice::Open(screen::AppScreen::Keys),
+        )
     }
 
     /// The current values.
@@ -503,6 +513,7 @@ impl Settings {
             glyphs: Some(self.glyphs),
             colors: self.depth,
             frames_per_second: NonZeroU32::new(rate),
+            field_of_view: Some(ViewAngle::nearest(self.field_of_view)),
             ..preferences
         }
     }
@@ -522,6 +533,11 @@ impl Settings {
             self.frame_time = Duration::from_secs(1) / rate.get();
             self.given.frame_time = None;
         }
+        let angle = after.field_of_view;
+        if let Some(angle) = angle.filter(|_| angle != before.field_of_view) {
+            self.field_of_view = angle.field_of_view();
+            self.given.field_of_view = None;
+        }
     }
 }
 
@@ -531,6 +547,7 @@ fn origin(given: SettingOrigins, key: &str) -> &'static str {
         "glyphs" => given.glyphs,
         "colors" => given.depth,
         "fps" => given.frame_time,
+        "fov" => given.field_of_view,
         _ => None,
     };
     match origin {

@@ -214,7 +214,7 @@ impl StatusLine {
     /// Writes the movement modes, the mouse and the lamp, if they are on.
     pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
         let modes = [
-            (toggles.runs, "running"),
+            (toggles.runs, if toggles.runs_by_default { "walking" } else { "running" }),
             (toggles.ducks, "ducking"),
             (toggles.keeps_walking, "walking on"),
             (mouse, "mouse"),

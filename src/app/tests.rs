@@ -1,5 +1,6 @@
 //! The keys of the game in simulated time, from timed bytes to the player's motion.
 
+mod by_default;
 mod colours;
 mod gestures;
 mod guards;

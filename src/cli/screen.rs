@@ -62,13 +62,17 @@ impl ScreenOptions {
         let configured = configuration.art.as_ref().map(|folder| beside.join(folder));
         replace_art(art.or(configured).as_deref())?;
         let frames_per_second = self.frames_per_second.unwrap_or(configuration.frames_per_second);
-        let usual = Configuration::default().frames_per_second;
+        let usual = Configuration::default();
         let given = SettingOrigins {
             glyphs: origin(glyphs.is_some(), configuration.glyphs.is_some()),
             depth: origin(view.depth.is_some(), configuration.colors.is_some()),
             frame_time: origin(
                 self.frames_per_second.is_some(),
-                configuration.frames_per_second != usual,
+                configuration.frames_per_second != usual.frames_per_second,
+            ),
+            field_of_view: origin(
+                view.field_of_view.is_some(),
+                configuration.field_of_view != usual.field_of_view,
             ),
         };
         Ok(Settings {

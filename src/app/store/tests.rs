@@ -10,8 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
+use crate::app::setting::ViewAngle;
 use crate::color::palette::ColorDepth;
 use crate::game::{Rank, Rules, Share, Tally};
+use crate::terminal::Key;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty::{Easy, Hard, Normal};
 
@@ -112,8 +114,12 @@ fn fill(store: &mut Store) {
         colors: Some(ColorDepth::Indexed16),
         correction: Correction::RedGreen,
         frames_per_second: NonZeroU32::new(60),
+        runs: true,
+        field_of_view: ViewAngle::try_from(90).ok(),
         ..Preferences::default()
     });
+    let own = [("forward", vec![Key::Char('z'), Key::Up]), ("strike", Vec::new())];
+    store.set_keys(own.into());
     store.begin_daily(20_261_122);
     let script = || "4 s forward\n".to_owned();
     store.record_daily(20_261_122, Reached { floors: 3, treasure: 90, steps: 4000 }, script());
@@ -128,6 +134,7 @@ fn shown(store: &Store) -> String {
     let won: Vec<&str> = store.won(Normal).collect();
     let kept =
         (all_saved(store), store.preferences(), store.daily(20_261_122), store.best_descent());
+    let kept = (kept, store.keys());
     format!("{scripts:?} {won:?} {kept:?}")
 }
 

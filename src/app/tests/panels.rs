@@ -19,6 +19,8 @@ fn screens() -> Vec<(&'static str, Rig)> {
         rig.choose(label);
         rig
     };
+    let mut keys = opened("Settings");
+    keys.choose("Keys");
     let mut paused = danger();
     paused.tap(Key::Char('p'), 30);
     let mut hud = danger();
@@ -31,6 +33,7 @@ fn screens() -> Vec<(&'static str, Rig)> {
         ("new_game", opened("New game")),
         ("levels", opened("Levels")),
         ("settings", opened("Settings")),
+        ("keys", keys),
         ("help", opened("Help")),
         ("paused", paused),
         ("hud", hud),

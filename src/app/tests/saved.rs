@@ -424,8 +424,8 @@ fn settings_are_kept_unless_a_flag_or_a_file_sets_them() {
     assert_eq!((next.glyphs, next.depth), (GlyphSet::Quadrant, Some(ColorDepth::True)));
     assert_eq!(next.frame_time, Duration::from_secs(1) / 60);
 
-    let given =
-        SettingOrigins { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
+    let given = SettingOrigins { frame_time: Some(Origin::File), ..SettingOrigins::default() };
+    let given = SettingOrigins { glyphs: Some(Origin::Flag), ..given };
     let next = Settings { given, ..plain }.preferring(&kept);
     assert_eq!((next.glyphs, next.frame_time), (GlyphSet::Half, thirty));
     assert_eq!(next.depth, Some(ColorDepth::True));

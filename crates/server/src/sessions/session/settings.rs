@@ -38,8 +38,9 @@ const CHAT: Setting<SessionChoices> =
     Setting { key: "chat", about: "Chat", value: &At(|it: &mut SessionChoices| &mut it.chat) };
 
 /// The rows in the order of the page. The last one appears only in a room.
-const ROWS: [Setting<SessionChoices>; 13] = [
+const ROWS: [Setting<SessionChoices>; 14] = [
     Setting::DIFFICULTY,
+    Setting::RUNS,
     PRESET,
     Setting::MOUSE,
     Setting::CROSSHAIR,
@@ -53,7 +54,7 @@ const ROWS: [Setting<SessionChoices>; 13] = [
     CHAT,
     Setting::MAP,
 ];
-const ROWS_OUTSIDE_OF_ROOMS: usize = 12;
+const ROWS_OUTSIDE_OF_ROOMS: usize = 13;
 
 impl Ui {
     pub(crate) fn settings_menu(&self) -> Menu<Choice> {
@@ -90,8 +91,9 @@ impl Ui {
         let before = self.choices();
         let mut after = before;
         change(&mut after);
-        let Self { identity, stay, pointer, bindings, .. } = self;
+        let Self { identity, stay, pointer, bindings, controls, .. } = self;
         identity.preferences.choose(before.common.preferences, after.common.preferences);
+        controls.toggles.runs_by_default = identity.preferences.runs;
         if after.preset != before.preset {
             identity.configuration.set_preset(after.preset);
             *bindings = bindings_of(&identity.configuration);

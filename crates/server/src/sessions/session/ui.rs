@@ -98,11 +98,13 @@ impl Ui {
         idle.restart(now);
         let mut clock = Clock::default();
         clock.skip_to(now);
+        let mut controls = Controls::default();
+        controls.toggles.runs_by_default = identity.preferences.runs;
         Self {
             entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
             requests: Vec::new(),
             bindings: bindings_of(&identity.configuration),
-            controls: Controls::default(),
+            controls,
             pointer: Pointer::new(identity.configuration.mouse),
             clock,
             terminal: TerminalLook::default(),
