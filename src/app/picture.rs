@@ -13,6 +13,8 @@
 //!   aside.
 //! - **Suspicion.** A guard in view who has noticed something has a mark above the head: `?` to `???`
 //!   the surer they are, `<?>` while they search, and `!!!` while they follow the player.
+//! - **The map** is darker while the guards are wary or alarmed, so that the picture stands out. The
+//!   marks of guards, the floor that they look at and the exit keep their colours.
 //! - **The flash.** It is red on the side of the blow when the player is hurt, and golden when the
 //!   player finds something. It tints the pixels before they are painted, so every colour depth
 //!   shows it. Without colours, the edge is drawn in characters.
@@ -28,7 +30,8 @@ use crate::app::setting::{MapDisplay, Preferences};
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::{
-    Flash, FlashKind, Game, GuardView, Heard, Mood, PlayerId, PlayerView, SightCone, SoundKind,
+    Alarm, Flash, FlashKind, Game, GuardView, Heard, Mood, PlayerId, PlayerView, SightCone,
+    SoundKind,
 };
 use crate::render::{Filter, Frame, Renderable};
 use crate::sort;
@@ -252,8 +255,9 @@ impl<'a> Overlay<'a> {
             .color_depth(options.depth)
             .marks(&marks)
             .cones(&cones)
+            .faded(game.alarm() > Alarm::Calm)
             .ghost(ghost);
-        if let Some(place) = page::minimap(area, &map, panel.is_narrow) {
+        if let Some(place) = page::minimap(area, &map, panel.is_narrow_in(area.width)) {
             let inside = framed(canvas, place, "map");
             map.paint(inside, canvas);
             let extent = map.extent_within(inside.as_size());
@@ -638,6 +642,8 @@ pub struct MapPanel {
 
 /// The maximum number of zoom levels in each direction.
 const MAX_ZOOM: i32 = 6;
+/// The widest picture with a narrow map at home, in columns.
+const NARROW_COLUMNS: u16 = 80;
 /// The fraction of the visible part by which one key press moves the map.
 const MOVED_BY: f64 = 0.25;
 
@@ -651,6 +657,12 @@ impl MapPanel {
     #[must_use]
     pub fn narrow(self) -> Self {
         Self { is_narrow: true, ..self }
+    }
+
+    /// Returns true if the panel is narrow in a picture with `columns` columns. In a picture of up to
+    /// 80 columns at home, it is narrow until the player enlarges the map.
+    fn is_narrow_in(&self, columns: u16) -> bool {
+        self.is_narrow || (columns <= NARROW_COLUMNS && self.zoom <= 0)
     }
 
     /// The content of the map, as the settings page shows it.

@@ -36,6 +36,7 @@ pub struct Minimap<'a> {
     marks: &'a [MapMark],
     cones: &'a [SightCone],
     shows_all_marks: bool,
+    is_faded: bool,
     ghost: Option<MapMark>,
     glyphs: GlyphSet,
     depth: ColorDepth,
@@ -54,6 +55,7 @@ impl<'a> Minimap<'a> {
             marks: &[],
             cones: &[],
             shows_all_marks: false,
+            is_faded: false,
             ghost: None,
             glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
@@ -92,6 +94,13 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn showing_all_marks(self) -> Self {
         Self { shows_all_marks: true, ..self }
+    }
+
+    /// Draws the map darker, apart from the marks, the exit and the floor that guards look at. The field of view is
+    /// not tinted.
+    #[must_use]
+    pub fn faded(self, is_faded: bool) -> Self {
+        Self { is_faded, ..self }
     }
 
     /// Sets the mark of a ghost. It shows wherever it is on the map.
@@ -150,8 +159,8 @@ impl Minimap<'_> {
                 self.draw_mosaics(&picture, area, canvas);
             }
             GlyphSet::Ascii | GlyphSet::Ramp => draw_characters(area, canvas, |x, y| {
-                let point = picture.point(x, y);
-                let colors = [point.color(), Rgb::BLACK];
+                let point = self.shown(picture.point(x, y));
+                let colors = [self.color(point), Rgb::BLACK];
                 (point.look().character, colors.map(|color| color_at(self.depth, color)))
             }),
         }
@@ -262,16 +271,17 @@ impl Minimap<'_> {
     }
 
     fn draw_mosaics(&self, picture: &MapPicture, area: Rect, canvas: &mut impl Canvas) {
-        let color = |point: MapPoint| match self.depth {
-            ColorDepth::Indexed16 => palette::of_256(point.look().index_of_16),
-            _ => point.color(),
+        let color = |point: MapPoint| match (self.depth, self.is_faded && !point.stays()) {
+            (ColorDepth::Indexed16, false) => palette::of_256(point.look().index_of_16),
+            (ColorDepth::Indexed16, true) => palette::of_256(point.look().faded_index_of_16()),
+            _ => self.color(point),
         };
         if self.depth == ColorDepth::Mono {
             return self.draw_lit_mosaics(picture, area, canvas);
         }
         blocks::draw(area, canvas, self.glyphs, self.depth, |y| {
             let row = picture.row(y);
-            move |x| color(row.point(x))
+            move |x| color(self.shown(row.point(x)))
         });
     }
 
@@ -282,7 +292,7 @@ impl Minimap<'_> {
             let dots = || {
                 let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
                 let places = places.map(|(x, y)| (columns * column + x, rows * row + y));
-                places.map(|(x, y)| (picture.point(x, y), (x, y)))
+                places.map(|(x, y)| (self.shown(picture.point(x, y)), (x, y)))
             };
             let thing = dots().find(|(point, _)| point.is_thing());
             let lit = || blocks::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
@@ -290,6 +300,15 @@ impl Minimap<'_> {
                 thing.map_or_else(|| lit().character(), |(point, _)| point.look().character);
             (character, [Color::Reset; 2])
         });
+    }
+
+    /// `point` as the map shows it.
+    fn shown(&self, point: MapPoint) -> MapPoint {
+        if self.is_faded { point.out_of_view() } else { point }
+    }
+
+    fn color(&self, point: MapPoint) -> Rgb {
+        if self.is_faded { point.faded_color() } else { point.color() }
     }
 
     /// The text and the background of a mark.

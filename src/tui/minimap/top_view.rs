@@ -297,6 +297,8 @@ const TINT: Rgb = Rgb::new(0x7a, 0x72, 0x50);
 const TINT_SHARE: f64 = 0.7;
 /// The tint of floor that a guard looks at.
 const WATCHED: Rgb = Rgb::new(0xa8, 0x64, 0x10);
+/// The share of black on a faded map.
+const FADED_SHARE: f64 = 0.45;
 /// Points outside of the map.
 const VOID: Rgb = Rgb::BLACK;
 /// The cell to reach.
@@ -315,13 +317,13 @@ const SAME_HEIGHT: f64 = 0.05;
 
 impl Floor {
     /// Water at `height`.
-    fn water(height: f64) -> Self {
+    pub(crate) fn water(height: f64) -> Self {
         let depth = height.min(0.0).abs();
         Self::of(FloorKind::Water, mix(BASE, WATER, (depth + 0.3) / (depth + 0.6)))
     }
 
     /// Floor at `height` with the mean colour `color`.
-    fn new(height: f64, color: Rgb) -> Self {
+    pub(crate) fn new(height: f64, color: Rgb) -> Self {
         // The share is one half at the height or depth `half`.
         let share = |half: f64| height.abs() / (height.abs() + half);
         if height > SAME_HEIGHT {
@@ -384,6 +386,24 @@ impl MapPoint {
         }
     }
 
+    /// The point without the tint of the field of view.
+    pub(crate) fn out_of_view(self) -> Self {
+        match self {
+            Self::InView(floor) => Self::Floor(floor),
+            other => other,
+        }
+    }
+
+    /// Returns true if the point is as bright on a faded map as on any other.
+    pub(crate) fn stays(self) -> bool {
+        matches!(self, Self::Exit | Self::Watched(_))
+    }
+
+    /// The colour on a faded map.
+    pub(crate) fn faded_color(self) -> Rgb {
+        if self.stays() { self.color() } else { mix(self.color(), VOID, FADED_SHARE) }
+    }
+
     /// Returns true if the point's pixel at this position of the screen is lit when there are no colours.
     pub(crate) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
@@ -427,6 +447,13 @@ impl MapPoint {
             Self::Exit => (('X', 10), 8),
         };
         PointLook { character, index_of_16, importance }
+    }
+}
+
+impl PointLook {
+    /// The index of the colour among the 16 on a faded map: a dark one.
+    pub(crate) fn faded_index_of_16(&self) -> u8 {
+        if self.index_of_16 == 7 { 8 } else { self.index_of_16 % 8 }
     }
 }
 
