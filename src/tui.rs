@@ -38,6 +38,8 @@ pub use self::correction::Correction;
 pub use self::first_person::{FirstPerson, View};
 pub use self::glyphs::{CellAspect, GlyphSet, color_at, rgb_of};
 pub use self::held::{CHORD, HeldKeys, Hold, LINGER, Press, tap_steps, wanted};
+#[cfg(feature = "terminal")]
+pub(crate) use self::minimap::legend;
 pub use self::minimap::{Explored, MapMark, Minimap};
 
 #[cfg(test)]

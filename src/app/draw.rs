@@ -26,6 +26,7 @@ use crate::app::{App, Shown, page, title};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
 use crate::tui::canvas::Canvas;
+use crate::tui::legend;
 use crate::world::{Camera, Figure};
 
 impl App {
@@ -86,7 +87,9 @@ impl App {
                 let (further, bindings) =
                     self.playback_help().unwrap_or_else(|| (Vec::new(), bindings.clone()));
                 let keys = (&further[..], &bindings);
-                self.pages.help.draw(canvas, picture, keys, self.detection.lines());
+                let legend = legend(self.settings.glyphs, self.depth());
+                let notes = legend.into_iter().map(str::to_owned).chain(self.detection.lines());
+                self.pages.help.draw(canvas, picture, keys, notes);
             }
             AppScreen::Leaving => {
                 page::leaving(canvas, picture, bindings, self.effect_of_leaving());

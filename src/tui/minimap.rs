@@ -4,6 +4,8 @@
 //! cells. Nothing on the map is as bright as the arrow for the player.
 
 mod explored;
+#[cfg(feature = "terminal")]
+mod legend;
 mod top_view;
 
 use glam::DVec2;
@@ -13,6 +15,8 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 pub use self::explored::Explored;
+#[cfg(feature = "terminal")]
+pub(crate) use self::legend::legend;
 use self::top_view::{MapPoint, MapRow, TopView};
 use super::canvas::{Canvas, draw_characters};
 use super::glyphs::color_at;
