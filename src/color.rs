@@ -5,6 +5,8 @@
 //! averages, compares or reduces colours. Rejected: a crate for colour spaces. Pictures must be identical, bit
 //! for bit, on every machine and in every version.
 
+#[cfg(test)]
+pub(crate) mod blindness;
 pub mod lab;
 pub mod oklab;
 pub mod palette;

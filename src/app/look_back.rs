@@ -293,3 +293,14 @@ fn color(suspicion: Option<Suspicion>) -> Rgb {
         Some(Suspicion::Alarmed) => ALARMED,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::blindness::assert_apart;
+
+    #[test]
+    fn everybody_can_tell_calm_wary_and_alarmed_guards_apart() {
+        assert_apart(&[("calm", CALM), ("wary", WARY), ("alarmed", ALARMED)]);
+    }
+}

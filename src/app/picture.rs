@@ -522,9 +522,10 @@ impl Suspicion {
 /// The colours of a flash.
 const HURT: Rgb = Rgb::new(0xe8, 0x18, 0x10);
 const GAIN: Rgb = Rgb::new(0xff, 0xd0, 0x40);
-/// The opacity of the tint at the edge, out of 255.
+/// The opacity of the tint at the edge, out of 255. Gold needs as much as this to differ from red in a
+/// dark picture for people without green cones.
 const HURT_OPACITY: f64 = 210.0;
-const GAIN_OPACITY: f64 = 130.0;
+const GAIN_OPACITY: f64 = 175.0;
 /// The width of the tint as a fraction of the picture's shorter side, on the side of the blow and
 /// on the other sides.
 const NEAR_SIDE: f64 = 0.3;

@@ -114,32 +114,8 @@ pub(crate) fn outline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::oklab::Oklab;
-    use crate::color::srgb::linear;
+    use crate::color::blindness::{BLIND, distance};
     use crate::render::{FrameSize, PixelAspect};
-
-    /// Matrices for the colours that people without green cones, and people without red cones, see (Machado and
-    /// others, 2009).
-    const BLIND: [[[f64; 3]; 3]; 2] = [
-        [
-            [0.367_322, 0.860_646, -0.227_968],
-            [0.280_085, 0.672_501, 0.047_413],
-            [-0.011_820, 0.042_940, 0.968_881],
-        ],
-        [
-            [0.152_286, 1.052_583, -0.204_868],
-            [0.114_503, 0.786_281, 0.099_216],
-            [-0.003_882, -0.048_116, 1.051_998],
-        ],
-    ];
-
-    fn seen(color: Rgb, blind: [[f64; 3]; 3]) -> Oklab {
-        let light = linear(color);
-        Oklab::from_linear(blind.map(|row| {
-            let sum: f64 = row.iter().zip(light).map(|(weight, light)| weight * light).sum();
-            sum.clamp(0.0, 1.0)
-        }))
-    }
 
     #[test]
     fn reds_and_greens_of_one_lightness_differ_for_the_red_green_blind() {
@@ -149,11 +125,9 @@ mod tests {
             [Rgb::new(90, 160, 60), Rgb::new(190, 120, 60)],
         ];
         for pair in pairs {
-            for blind in BLIND {
-                let distance = |[one, other]: [Rgb; 2]| {
-                    libm::sqrt(seen(one, blind).distance_squared(&seen(other, blind)))
-                };
-                assert!(distance(pair.map(apart)) > distance(pair) + 0.02, "{pair:?}");
+            for blind in &BLIND {
+                let apart = distance(pair.map(apart), blind);
+                assert!(apart > distance(pair, blind) + 0.02, "{pair:?}");
             }
         }
         let grey = Rgb::new(90, 90, 90);

@@ -2,6 +2,7 @@ use ratatui::buffer::{Buffer, Cell};
 use std::collections::BTreeSet;
 
 use super::*;
+use crate::color::blindness::assert_apart;
 use crate::render::{FrameSize, PixelAspect};
 
 #[test]
@@ -126,4 +127,28 @@ fn the_view_direction_is_in_the_middle() {
     for (degrees, letter) in [(0.0, 'E'), (90.0, 'S'), (180.0, 'W'), (270.0, 'N')] {
         assert_eq!(strip(degrees).chars().nth(15), Some(letter));
     }
+}
+
+/// The colour of the outermost pixel of a grey picture under `kind` of flash; `None` for no flash.
+fn edge(grey: u8, kind: Option<FlashKind>) -> Rgb {
+    let mut frame = Frame::new(FrameSize::new(80, 46).unwrap(), PixelAspect::SQUARE);
+    frame.rows_mut().for_each(|row| row.fill(Rgb::new(grey, grey, grey)));
+    if let Some(kind) = kind {
+        tint(&mut frame, &Flash { kind, left: u16::MAX }, Heading::from_degrees(0.0).unwrap());
+    }
+    frame.pixel(0, 23)
+}
+
+#[test]
+fn everybody_can_tell_pain_from_gain_and_a_threat_from_a_sound() {
+    for grey in [0, 20, 40, 70, 128, 200] {
+        let kinds = [None, Some(FlashKind::Hurt { bearing: None }), Some(FlashKind::Gain)];
+        let [plain, hurt, gain] = kinds.map(|kind| edge(grey, kind));
+        assert_apart(&[("no flash", plain), ("hurt", hurt), ("gain", gain)]);
+    }
+    let color = |kind| match style(kind, ColorDepth::True).fg {
+        Some(Color::Rgb(red, green, blue)) => Rgb::new(red, green, blue),
+        other => panic!("{other:?} is not a colour of that depth"),
+    };
+    assert_apart(&[("sound", color(SoundKind::Walking)), ("threat", color(SoundKind::Shout))]);
 }

@@ -288,10 +288,11 @@ enum FloorKind {
 
 /// Floor at the height of the map's own floor.
 pub(crate) const BASE: Rgb = Rgb::new(0x24, 0x24, 0x2c);
-/// The colours that raised floor, lowered floor and water approach with their height or depth.
+/// The colours that raised floor, lowered floor and water approach with their height or depth. They are so light that
+/// pits are red and water is blue among 256 colours, too.
 const LEDGE: Rgb = Rgb::new(0x66, 0x66, 0x70);
-const PIT: Rgb = Rgb::new(0x54, 0x18, 0x1c);
-const WATER: Rgb = Rgb::new(0x10, 0x48, 0x80);
+const PIT: Rgb = Rgb::new(0xa0, 0x1c, 0x1c);
+const WATER: Rgb = Rgb::new(0x10, 0x60, 0xb8);
 /// The tint of visible floor, and its share.
 const TINT: Rgb = Rgb::new(0x7a, 0x72, 0x50);
 const TINT_SHARE: f64 = 0.7;
@@ -301,10 +302,10 @@ const WATCHED: Rgb = Rgb::new(0xa8, 0x64, 0x10);
 const FADED_SHARE: f64 = 0.45;
 /// Points outside of the map.
 const VOID: Rgb = Rgb::BLACK;
-/// The cell to reach.
-const EXIT: Rgb = Rgb::new(0x3c, 0xc8, 0x64);
+/// The cell to reach. It is lighter than a key, for people who cannot tell green from gold.
+const EXIT: Rgb = Rgb::new(0x50, 0xd8, 0x78);
 /// A key to take.
-const KEY: Rgb = Rgb::new(0xe0, 0xa0, 0x28);
+const KEY: Rgb = Rgb::new(0xd0, 0x90, 0x20);
 /// Treasure, a tool or a note.
 const ITEM: Rgb = Rgb::new(0xc8, 0x78, 0xc8);
 /// An obstacle, or a decoration.
@@ -464,4 +465,31 @@ pub(crate) struct PointLook {
     pub(crate) index_of_16: u8,
     /// A pixel that covers several points shows the most important one.
     pub(crate) importance: u8,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::blindness::assert_apart;
+
+    /// Marks differ in shape. The field of view is left out, because its shape tells it from higher floor.
+    #[test]
+    fn everybody_can_tell_the_colours_of_the_map_apart() {
+        let floor = |height| Floor::new(height, Rgb::WHITE).color;
+        assert_apart(&[
+            ("unexplored", VOID),
+            ("floor", BASE),
+            ("higher floor", floor(1.0)),
+            ("pit", floor(-1.0)),
+            ("water", Floor::water(-1.0).color),
+            ("watched floor", Floor::new(0.0, Rgb::WHITE).watched),
+            ("exit", EXIT),
+            ("key", KEY),
+            ("item", ITEM),
+        ]);
+        assert_apart(&[("floor", BASE), ("floor in view", Floor::new(0.0, Rgb::WHITE).lit)]);
+        for depth in [0.0, -0.5, -2.0] {
+            assert_apart(&[("floor", BASE), ("water", Floor::water(depth).color)]);
+        }
+    }
 }
