@@ -338,6 +338,7 @@ const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
 
 /// The movement modes that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a mode of its own")]
 pub struct Toggles {
     /// Running, or walking if the player runs by default.
     pub runs: bool,

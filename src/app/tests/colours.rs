@@ -145,8 +145,8 @@ fn map_colors(rig: &mut Rig) -> Vec<Rgb> {
 
 #[test]
 fn the_map_is_darker_while_guards_are_alarmed_and_the_exit_stays() {
-    let [mut calm, mut alarmed] = [playing_own(AMBUSH, Store::in_memory()), struck()];
-    let [calm, alarmed] = [map_colors(&mut calm), map_colors(&mut alarmed)];
+    let calm = map_colors(&mut playing_own(AMBUSH, Store::in_memory()));
+    let alarmed = map_colors(&mut struck());
     let mean = |colors: &[Rgb]| {
         let luma = colors.iter().map(|color| u32::from(color.luma())).sum::<u32>();
         f64::from(luma) / colors.len() as f64

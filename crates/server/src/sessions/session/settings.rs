@@ -40,7 +40,6 @@ const CHAT: Setting<SessionChoices> =
 /// The rows in the order of the page. The last one appears only in a room.
 const ROWS: [Setting<SessionChoices>; 14] = [
     Setting::DIFFICULTY,
-    Setting::RUNS,
     PRESET,
     Setting::MOUSE,
     Setting::CROSSHAIR,
@@ -51,6 +50,7 @@ const ROWS: [Setting<SessionChoices>; 14] = [
     Setting::COLORS,
     Setting::CORRECTION,
     Setting::MARKS,
+    Setting::RUNS,
     CHAT,
     Setting::MAP,
 ];
