@@ -38,7 +38,7 @@ pub struct SightCone {
 }
 
 impl SightCone {
-    const RAYS: usize = 32;
+    const RAYS: usize = 16;
     /// The height of the middle of a player, in cells.
     const MIDDLE: f64 = 0.35;
 
