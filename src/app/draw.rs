@@ -88,7 +88,7 @@ impl App {
                     self.playback_help().unwrap_or_else(|| (Vec::new(), bindings.clone()));
                 let keys = (&further[..], &bindings);
                 let legend = legend(self.settings.glyphs, self.depth());
-                let notes = legend.into_iter().map(str::to_owned).chain(self.detection.lines());
+                let notes = self.detection.lines().chain(legend.into_iter().map(str::to_owned));
                 self.pages.help.draw(canvas, picture, keys, notes);
             }
             AppScreen::Leaving => {

@@ -110,7 +110,7 @@ fn help_scrolls_in_a_small_window() {
     for _ in 0..9 {
         game.send("\x1b[6~");
     }
-    game.wait_for("link statistics");
+    game.wait_for("notes violet");
     game.send("?");
     game.wait_until("closed help", |emulator| !emulator.text().contains("closes"));
 }
