@@ -64,6 +64,7 @@ fn without_utf8_in_the_locale_only_ascii_is_sent() {
         game.wait_for_releases();
         game.send("?");
         game.wait_for(&format!("ASCII only: {}={} is not UTF-8", locale.0, locale.1));
+        game.send("?");
         game.wait_for("+map");
         assert!(game.bytes().is_ascii());
     }
