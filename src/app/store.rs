@@ -47,7 +47,7 @@ pub use progress::{
 use progress::{Change, Progress};
 
 use crate::app::controls::OwnKeys;
-pub use crate::app::setting::Preferences;
+pub use crate::app::setting::{Preferences, ViewAngle};
 use crate::terminal::Key;
 use crate::world::Difficulty;
 

@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::*;
-use crate::app::setting::ViewAngle;
 use crate::color::palette::ColorDepth;
 use crate::game::{Rank, Rules, Share, Tally};
 use crate::terminal::Key;
