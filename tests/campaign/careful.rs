@@ -271,7 +271,7 @@ fn feared(game: &Game) -> Vec<(glam::DVec2, glam::DVec2)> {
 }
 
 /// The additional cost of a cell near guards or in front of them.
-fn dread(feared: &[(glam::DVec2, glam::DVec2)], cell: Cell) -> u32 {
+pub(crate) fn dread(feared: &[(glam::DVec2, glam::DVec2)], cell: Cell) -> u32 {
     let cost = |&(position, ahead): &(glam::DVec2, glam::DVec2)| {
         let to = cell.center() - position;
         let distance = to.length();

@@ -2,9 +2,11 @@
 //! the shortest way loses it.
 
 mod careful;
+mod curve;
 mod fixtures;
 mod lazy;
 mod levels;
+mod person;
 mod route;
 mod scripts;
 mod taps;

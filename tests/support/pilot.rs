@@ -274,7 +274,7 @@ impl Pilot {
     }
 
     /// The angle from the player's heading to a direction, in degrees.
-    fn error(&self, to: DVec2) -> f64 {
+    pub(crate) fn error(&self, to: DVec2) -> f64 {
         let ahead = self.game.camera(FieldOfView::default()).direction();
         ahead.perp_dot(to).atan2(ahead.dot(to)).to_degrees()
     }
