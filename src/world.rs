@@ -275,7 +275,7 @@ impl World {
         self.grid.tile_in(cell).map(|id| &self.tiles[usize::from(id.0)])
     }
 
-    /// What all kinds of tile have in common.
+    /// The properties that all kinds of tile share.
     pub(crate) fn tile_facts(&self) -> &TileFacts {
         &self.tile_facts
     }

@@ -179,7 +179,7 @@ const LEAST: (u16, u16) = (64, 14);
 const MENU_COLUMNS: u16 = 36;
 /// The largest zoom of the map.
 const MAX_ZOOM: i32 = 3;
-/// The width of the margin around everybody whom the map shows, in cells.
+/// The width of the margin around everybody on the map, in cells.
 const MARGIN: f64 = 2.0;
 
 /// The colours of the paths, and of guards by what they suspect.

@@ -459,7 +459,7 @@ fn style(kind: SoundKind, depth: ColorDepth) -> Style {
     }
 }
 
-/// What a guard suspects.
+/// The suspicion of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Suspicion {
     /// The guard notices something, or wonders. The number of thirds of what raises the alarm.
@@ -476,7 +476,7 @@ const ROWS_ABOVE_MARKS: f64 = 2.0;
 const LEAST_AWARENESS: u16 = 30;
 
 impl Suspicion {
-    /// What `guard` suspects; `None` if the guard is calm.
+    /// The suspicion of `guard`; `None` if the guard is calm.
     pub(crate) fn of(guard: &GuardView) -> Option<Self> {
         let awareness = guard.awareness.min(GuardView::SURE - 1);
         let thirds = (3 * awareness / GuardView::SURE) as u8 + 1;

@@ -64,7 +64,7 @@ pub(crate) struct Playback {
     perspective: Perspective,
     /// The place of the line on the screen.
     bar: Bar,
-    /// What the screen shows: the step, the camera, and how much was read.
+    /// The state on the screen: the step, the camera, and the number of steps read.
     drawn: Option<(u64, Perspective, u64)>,
 }
 
@@ -222,7 +222,7 @@ impl Playback {
         mark.map(|mark| (mark.step, mark.kind))
     }
 
-    /// What the time line says about the speed.
+    /// The text about the speed on the time line.
     fn speed_name(&self) -> &'static str {
         if self.wanted.is_some() {
             "reading"

@@ -158,7 +158,7 @@ struct TextMode<W> {
     output: W,
     runs: bool,
     ducks: bool,
-    /// What has happened during the command. A sound that goes on is said once.
+    /// The events of the command. A sound that goes on is said once.
     said: Vec<String>,
 }
 
@@ -382,7 +382,7 @@ impl<W: Write> TextMode<W> {
         self.look()
     }
 
-    /// The intents of a step, with the ones that last.
+    /// The intents of a step, with the lasting ones.
     fn held(&self, intents: &[Intent]) -> Intents {
         let lasting = [(self.runs, Intent::Run), (self.ducks, Intent::Duck)];
         let lasting = lasting.into_iter().filter(|(lasts, _)| *lasts).map(|(_, intent)| intent);

@@ -1,4 +1,4 @@
-//! What the screen of a replay shows, as an animated PNG or a GIF.
+//! The screen of a replay, as an animated PNG or a GIF.
 //!
 //! A frame stores the smallest rectangle with all cells that differ from the frame before. A frame without a
 //! difference extends the one before. The file begins with the number of frames and their palette, so the

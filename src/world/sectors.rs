@@ -124,7 +124,7 @@ impl Sectors {
         }
     }
 
-    /// Merges the sector at index `open`, which is under the sky in the world's own `list`, with the one that
+    /// Merges the sector at index `open`, which is under the sky in the world's own `list`, with the sector that
     /// has a ceiling at `top_of_sky`.
     fn merge_with_roofed(&mut self, list: &[Sector], open: usize, top_of_sky: f64) {
         let Sector { bottom, holds, .. } = list[open];

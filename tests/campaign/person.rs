@@ -56,7 +56,7 @@ const ESCAPE: Range<u32> = 30..u32::MAX;
 /// One in this many jumps fails.
 const CLUMSY: usize = 12;
 
-/// What the player does until a step.
+/// The player's intents until a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Plan {
     /// Go on with the errands.
@@ -69,7 +69,7 @@ enum Plan {
     Flee,
 }
 
-/// What the player perceives at a time.
+/// The perceptions of the player at a time.
 #[derive(Clone, Debug)]
 struct Glimpse {
     guards: Vec<GuardView>,

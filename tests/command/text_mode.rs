@@ -45,7 +45,7 @@ fn path(test: &str, name: &str) -> String {
     folder.join(name).to_str().unwrap().to_owned()
 }
 
-/// What the program says to `commands` in `map`, in an empty folder of the test `test`.
+/// The program's answers to `commands` in `map`, in an empty folder of the test `test`.
 fn play(test: &str, map: &str, more: &[&str], commands: &[&str]) -> String {
     _ = fs::remove_dir_all(path(test, ""));
     fs::create_dir_all(path(test, "data")).unwrap();

@@ -14,7 +14,7 @@ use crate::tui::canvas::Canvas;
 /// The minimum width of the line itself. Below it, the words to the right are left out.
 const MIN_BAR: u16 = 10;
 
-/// What the row shows.
+/// The contents of the row.
 pub(crate) struct TimeLine<'a> {
     pub(crate) run: &'a RecordedRun,
     /// The number of steps before the place that is shown.

@@ -1,4 +1,4 @@
-//! What the screen shows of guards: what they suspect, where they look, and how they found the
+//! Guards on the screen: their suspicion, where they look, and how they found the
 //! player.
 
 use ratatui::buffer::Buffer;

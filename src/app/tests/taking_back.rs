@@ -160,7 +160,7 @@ fn a_dead_player_can_take_time_back() {
     assert_eq!(rig.app.screen(), AppScreen::Playing);
 }
 
-/// What a recorder has written.
+/// The text that a recorder has written.
 #[derive(Clone, Default)]
 struct Written(Arc<Mutex<Vec<u8>>>);
 

@@ -21,19 +21,19 @@ const STRIDE: f64 = 0.25;
 const FAR: f64 = 64.0;
 
 /// The surroundings of the player.
-pub(super) struct Surroundings<'a> {
+pub(crate) struct Surroundings<'a> {
     game: &'a Game,
     camera: Camera,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn of(game: &'a Game) -> Self {
+    pub(crate) fn of(game: &'a Game) -> Self {
         Self { game, camera: game.camera(FieldOfView::default()) }
     }
 
     /// A sentence about the player's place, one for each of four directions, and one for each thing and guard in
     /// view, from near to far.
-    pub(super) fn sentences(&self) -> Vec<String> {
+    pub(crate) fn sentences(&self) -> Vec<String> {
         let camera = &self.camera;
         let DVec2 { x, y } = camera.position().floor();
         let compass = COMPASS[eighth(camera.heading.degrees())];
@@ -67,7 +67,7 @@ impl<'a> Surroundings<'a> {
         format!("{name}, {direction}, {}, {}", cells(distance), mood(guard))
     }
 
-    /// What is along `direction`, up to the first obstacle.
+    /// The first step or obstacle along `direction`.
     fn along(&self, direction: DVec2) -> String {
         let (world, origin) = (self.game.world(), self.camera.position());
         let hit = Ray::new(origin, direction).ok().and_then(|ray| Exact.cast(world.grid(), &ray));
@@ -120,8 +120,8 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// What a player notices in one step.
-pub(super) struct Moment {
+/// The things that a player can notice in one step.
+pub(crate) struct Moment {
     camera: Camera,
     health: Health,
     hurt_from: Option<&'static str>,
@@ -132,14 +132,14 @@ pub(super) struct Moment {
 }
 
 /// Something that happens in a step.
-pub(super) struct Event {
-    pub(super) sentence: String,
+pub(crate) struct Event {
+    pub(crate) sentence: String,
     /// `true` if the player may want to do something else.
-    pub(super) threatens: bool,
+    pub(crate) threatens: bool,
 }
 
 impl Moment {
-    pub(super) fn of(game: &Game) -> Self {
+    pub(crate) fn of(game: &Game) -> Self {
         let surroundings = Surroundings::of(game);
         let camera = surroundings.camera;
         let hurt_from = game.flash().and_then(|flash| match flash.kind {
@@ -159,7 +159,7 @@ impl Moment {
     }
 
     /// The events that led from `before` to this moment.
-    pub(super) fn events_since(&self, before: &Self) -> Vec<Event> {
+    pub(crate) fn events_since(&self, before: &Self) -> Vec<Event> {
         let mut events = Vec::new();
         let mut add = |sentence: String, threatens| events.push(Event { sentence, threatens });
         let Health { points, most } = self.health;
@@ -206,7 +206,7 @@ impl Moment {
 }
 
 /// Sentences about the player's health, alarm, possessions and time.
-pub(super) fn status(game: &Game) -> Vec<String> {
+pub(crate) fn status(game: &Game) -> Vec<String> {
     let Health { points, most } = game.health();
     let alarm = match game.alarm() {
         Alarm::Calm => "Nobody has noticed you",
@@ -303,7 +303,7 @@ fn sound(kind: SoundKind) -> &'static str {
 }
 
 /// `text` as a sentence, with a capital letter and a full stop.
-pub(super) fn sentence(text: &str) -> String {
+pub(crate) fn sentence(text: &str) -> String {
     let ends = text.ends_with(['.', '!', '?', ':']);
     capitalized(text) + if ends { "" } else { "." }
 }

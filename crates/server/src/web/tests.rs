@@ -119,7 +119,7 @@ fn run(act: impl AsyncFnOnce()) {
     Builder::new_current_thread().enable_all().build().unwrap().block_on(act());
 }
 
-/// What a browser shows.
+/// The contents of a browser's page.
 #[derive(Default)]
 struct Screen {
     step: u32,

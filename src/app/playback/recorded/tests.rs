@@ -23,7 +23,7 @@ fn read(levels: Levels, script: &Script) -> (RecordedRun, Played) {
     (run, start)
 }
 
-/// What tells one state from another.
+/// The properties by which two states differ.
 fn state(played: &Played) -> (Option<u64>, String) {
     let place = format!("{:?}", played.viewpoint(FieldOfView::default()));
     (played.grid().map(Game::checksum), place)

@@ -90,7 +90,7 @@ fn a_win_in_the_daily_level_is_on_its_board() {
     let jon = in_lobby(&mut rig, "Jon", (40, 12));
     rig.press(jon, "3");
     shows(&rig, jon, &["Daily 2001-09-09", "1. Mara 0:0", "Race"]);
-    // Its board is the first one, and the boards before it are those of earlier days.
+    // Its board is the first one, and the boards before it are the boards of earlier days.
     for keys in ["\x1b", "5", "1"] {
         rig.press(jon, keys);
     }

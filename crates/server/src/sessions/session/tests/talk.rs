@@ -76,7 +76,7 @@ impl Rig {
     }
 }
 
-/// A room with these visitors, none of whom has an account.
+/// A room with these visitors, who have no accounts.
 fn in_a_room<const N: usize>(names: [&str; N]) -> (Rig, [usize; N]) {
     let mut rig = Rig::new(Mode::Roam);
     let mut addresses = 1..;
