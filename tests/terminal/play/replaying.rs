@@ -66,7 +66,7 @@ fn a_run_is_watched_from_all_sides_and_played_on() {
 fn leaving_a_replay_asks_nothing() {
     let data = folder("left");
     let mut player = replay(Path::new("maps/scripts/cellar.normal.script"), &data);
-    player.wait_for("0:28");
+    player.wait_for("| 0:");
     player.send("q");
     let ending = player.wait_for_end();
     ending.assert_given_back();
