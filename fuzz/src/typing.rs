@@ -14,9 +14,9 @@ use crate::bytes::Bytes;
 /// The byte at which a frame is drawn.
 const CUT: u8 = 0;
 const MAX_PARTS: usize = 16;
-/// The number of bytes allocated for a byte that arrives, which may rebuild a page, and for each
+/// The number of bytes allocated for a byte that arrives, which may rebuild a page of 39 kB, and for each
 /// arrival.
-const BYTES_OF_A_BYTE: u64 = 32 << 10;
+const BYTES_OF_A_BYTE: u64 = 48 << 10;
 const BYTES_OF_A_PART: u64 = 256 << 10;
 
 /// Lets one visitor type.
