@@ -75,7 +75,7 @@ pub(crate) fn public_rooms(rooms: &Rooms) -> Vec<RoomSummary> {
 /// Returns true if a room is open to everybody, runs on this host, and is in a level that the host has.
 fn is_public(rooms: &Rooms, room: &RoomSummary) -> bool {
     let is_open = room.mode != Mode::Alone && room.code.is_none();
-    is_open && rooms.catalog().world(&room.level).is_some() && rooms.view(room.id).is_some()
+    is_open && rooms.catalog().has(&room.level) && rooms.view(room.id).is_some()
 }
 
 impl LiveRooms {
