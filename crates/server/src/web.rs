@@ -32,7 +32,7 @@ use std::time::Duration;
 
 use serde_json::json;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, copy, join, sink};
-use tokio::net::{TcpListener, TcpSocket, TcpStream};
+use tokio::net::{TcpListener, TcpStream};
 use tokio::task::{AbortHandle, JoinSet};
 use tokio::time::{Instant, sleep, timeout};
 use tokio_websockets::{Limits as MessageLimits, ServerBuilder};
@@ -47,6 +47,7 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::Rooms;
 use crate::rooms::summary::RoomId;
+use crate::service;
 use cellcaster::rng::SplitMix64;
 
 /// The most requests at a time. One more displaces the oldest of the busiest network.
@@ -98,13 +99,7 @@ struct Answer {
 /// # Errors
 /// Fails if the address cannot be bound.
 pub(crate) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
-    let socket = if address.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
-    #[cfg(unix)]
-    socket.set_reuseaddr(true)?;
-    // By default the system would buffer megabytes for a browser that does not read.
-    socket.set_send_buffer_size(SEND_BUFFER)?;
-    socket.bind(address)?;
-    socket.listen(BACKLOG)
+    service::listen(address, SEND_BUFFER, BACKLOG)
 }
 
 impl Web {

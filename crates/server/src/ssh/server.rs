@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::net::{TcpListener, TcpSocket, TcpStream};
+use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
@@ -19,6 +19,7 @@ use crate::admission::{Outcome, Refusal};
 use crate::config::{Config, LiveConfig};
 use crate::logging;
 use crate::metrics::Metrics;
+use crate::service::listen;
 
 /// A listening server.
 #[derive(Debug)]
@@ -49,7 +50,7 @@ impl Server {
     /// Fails if the address cannot be bound.
     #[expect(clippy::unused_async, reason = "a listener is made within a runtime")]
     pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
-        let listener = listen(config.listen)?;
+        let listener = listen(config.listen, SEND_BUFFER, BACKLOG)?;
         Ok(Self { listener, config: LiveConfig::new(config), key, metrics: Arc::default() })
     }
 
@@ -166,15 +167,4 @@ fn tell(tasks: &mut JoinSet<()>, socket: TcpStream, sentence: Option<String>) {
     if let Some(sentence) = sentence {
         tasks.spawn(explain(socket, sentence));
     }
-}
-
-fn listen(address: SocketAddr) -> io::Result<TcpListener> {
-    let socket = if address.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
-    // Same as `TcpListener::bind`: another server may just have released the address.
-    #[cfg(unix)]
-    socket.set_reuseaddr(true)?;
-    // Connections inherit this size. By default the system would buffer megabytes for a client that does not read.
-    socket.set_send_buffer_size(SEND_BUFFER)?;
-    socket.bind(address)?;
-    socket.listen(BACKLOG)
 }
