@@ -14,6 +14,7 @@ use crate::app::page::{BORDERS, framed};
 use crate::app::picture::{DrawOptions, MapPanel, Suspicion};
 use crate::app::recording::RunLog;
 use crate::app::screen::AppScreen;
+use crate::app::text::sentences::{COMPASS, eighth};
 use crate::color::Rgb;
 use crate::game::{Alarm, Game, GuardView, STEP, STEPS_PER_SECOND};
 use crate::tui::MapMark;
@@ -133,10 +134,6 @@ impl Moment {
     }
 }
 
-/// The directions, clockwise from east, which is heading 0.
-const DIRECTIONS: [&str; 8] =
-    ["east", "south-east", "south", "south-west", "west", "north-west", "north", "north-east"];
-
 impl Noticed {
     fn sentence(&self, world: &World, when: &str) -> String {
         let Self { guard, player, .. } = self;
@@ -153,7 +150,7 @@ impl Noticed {
         let place = if cells < 2.0 {
             "beside you".to_owned()
         } else {
-            let direction = DIRECTIONS[(degrees / 45.0).round().rem_euclid(8.0) as usize];
+            let direction = COMPASS[eighth(degrees)];
             let door = if is_at_door(world, guard.position) { "at a door " } else { "" };
             format!("{door}{cells} cells to the {direction}")
         };

@@ -11,7 +11,7 @@
 //!
 //! Rejected: time that runs on. A screen reader needs seconds for a sentence.
 
-mod sentences;
+pub(crate) mod sentences;
 
 use std::io::{self, BufRead, Read, Write};
 

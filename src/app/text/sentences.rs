@@ -232,11 +232,12 @@ pub(crate) fn status(game: &Game) -> Vec<String> {
     sentences
 }
 
-const COMPASS: [&str; 8] =
+/// The directions of the map, clockwise from east, which is heading 0.
+pub(crate) const COMPASS: [&str; 8] =
     ["east", "south-east", "south", "south-west", "west", "north-west", "north", "north-east"];
 
 /// The eighth of a circle that contains an angle, in degrees.
-fn eighth(degrees: f64) -> usize {
+pub(crate) fn eighth(degrees: f64) -> usize {
     (degrees / 45.0).round().rem_euclid(8.0) as usize
 }
 
