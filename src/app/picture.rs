@@ -19,6 +19,8 @@
 //!   player finds something. It tints the pixels before they are painted, so every colour depth
 //!   shows it. Without colours, the edge is drawn in characters.
 
+use std::cell::OnceCell;
+
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier, Style};
@@ -163,6 +165,8 @@ pub struct Overlay<'a> {
     player: PlayerView<'a>,
     options: &'a DrawOptions,
     preferences: Preferences,
+    /// The guards in the picture, for the map and for the marks above their heads.
+    guards_in_sight: OnceCell<Vec<GuardView>>,
 }
 
 impl<'a> Overlay<'a> {
@@ -173,7 +177,15 @@ impl<'a> Overlay<'a> {
         options: &'a DrawOptions,
         preferences: Preferences,
     ) -> Option<Self> {
-        Some(Self { game, player: game.seen_by(player)?, options, preferences })
+        let (player, guards_in_sight) = (game.seen_by(player)?, OnceCell::new());
+        Some(Self { game, player, options, preferences, guards_in_sight })
+    }
+
+    fn guards_in_sight(&self) -> &[GuardView] {
+        self.guards_in_sight.get_or_init(|| {
+            let camera = self.player.camera(self.options.field_of_view);
+            self.player.guards_in_sight(&camera).collect()
+        })
     }
 
     /// Draws the middle mark, the flash at the edge, and the compass. If `shows_events`, also draws
@@ -208,8 +220,8 @@ impl<'a> Overlay<'a> {
         let camera = player.camera(options.field_of_view);
         let cell = options.cell_aspect.of_pixels(GlyphSet::Ascii);
         let projection = Projection::new(&camera, size, cell);
-        for guard in player.guards_in_sight(&camera) {
-            let Some(suspicion) = Suspicion::of(&guard) else { continue };
+        for guard in self.guards_in_sight() {
+            let Some(suspicion) = Suspicion::of(guard) else { continue };
             let text = suspicion.text();
             let place = projection.place(guard.position);
             let head = projection.row_at(guard.feet + guard.kind.height(), place.depth);
@@ -247,8 +259,8 @@ impl<'a> Overlay<'a> {
         let others = player.others_on_map();
         let others = others.map(|it| MapMark { position: it.position, heading: it.heading });
         let marks: Vec<MapMark> = guards.chain(others).collect();
-        let seen = player.guards_in_sight(camera);
-        let cones: Vec<SightCone> = seen.filter_map(|guard| game.sight_cone(&guard)).collect();
+        let seen = self.guards_in_sight().iter();
+        let cones: Vec<SightCone> = seen.filter_map(|guard| game.sight_cone(guard)).collect();
         let map = panel.minimap(game, camera, view);
         let map = map
             .glyphs(options.glyphs)
