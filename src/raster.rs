@@ -11,14 +11,12 @@
 //! a scene never runs the loops of the kinds that it lacks, and no pixel needs a branch.
 
 mod band;
-mod blended;
 mod column_batch;
 mod direct_columns;
 mod faces;
 mod layers;
 mod pieces;
 mod planes;
-mod sampling;
 mod shaded_texels;
 mod sky;
 mod span;
@@ -27,21 +25,18 @@ mod target;
 mod texel_runs;
 
 pub(crate) use band::Band;
-use blended::WholeColumns;
 use column_batch::BatchMemory;
 use planes::PlaneMemory;
 pub(crate) use sky::{SkyMemory, SkyView};
 pub(crate) use target::{SurfaceBuffer, Target};
 
-use crate::visibility::{DrawList, Filter, FrameContext};
-use sampling::{Means, MipLevels, Sampling};
+use crate::visibility::{DrawList, FrameContext};
 
 /// The memory of a drawing thread, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RasterMemory {
     planes: PlaneMemory,
     batch: BatchMemory,
-    wholes: WholeColumns,
 }
 
 /// Draws the rows of `list` that `target` covers.
@@ -52,24 +47,7 @@ pub(crate) fn draw(
     memory: &mut RasterMemory,
     target: &mut Target<'_>,
 ) {
-    match scene.plan.filter {
-        Filter::Mip | Filter::Nearest => {
-            draw_surfaces::<MipLevels>(scene, list, sky, memory, target);
-        }
-        Filter::Area => draw_surfaces::<Means>(scene, list, sky, memory, target),
-    }
+    planes::draw(scene, list, sky, &mut memory.planes, target);
+    faces::draw(scene, list, &mut memory.batch, target);
     layers::draw(scene, list, target);
-}
-
-/// Draws the planes and the faces of `list`, which are behind its layers.
-fn draw_surfaces<M: Sampling>(
-    scene: FrameContext<'_>,
-    list: &DrawList,
-    sky: &SkyView<'_>,
-    memory: &mut RasterMemory,
-    target: &mut Target<'_>,
-) {
-    planes::draw::<M>(scene, list, sky, &mut memory.planes, target);
-    let RasterMemory { batch, wholes, .. } = memory;
-    faces::draw::<M>(scene, list, (batch, wholes), target);
 }

@@ -13,6 +13,7 @@
 
 mod frame;
 mod renderable;
+mod samples;
 #[cfg(all(test, feature = "terminal"))]
 mod tests;
 mod threads;
@@ -29,12 +30,12 @@ pub use renderable::{Options, Renderable};
 pub use threads::{Threads, WhyOne};
 
 pub use crate::cast::DynCaster;
-use crate::raster::{self, RasterMemory, SkyMemory, SkyView, SurfaceBuffer};
+use crate::raster::{self, SkyMemory, SkyView, SurfaceBuffer};
 use crate::visibility::{self, DrawList, FrameContext, StatsCounter, VisibilityMemory};
 #[cfg(feature = "terminal")]
 use crate::world::Figure;
 use crate::world::{Camera, World};
-use threads::draw_bands;
+use threads::{ThreadMemory, draw_bands};
 
 /// Draws frames, and reuses its memory from frame to frame.
 ///
@@ -81,8 +82,7 @@ struct Memory {
     sky: SkyMemory,
     surfaces: SurfaceBuffer,
     next_change: Option<f64>,
-    /// One for each thread.
-    raster: Vec<RasterMemory>,
+    threads: Vec<ThreadMemory>,
 }
 
 impl Renderer {
@@ -136,8 +136,8 @@ impl Renderer {
         let mut counted = StatsCounter::kept();
         let (plan, threads) = self.draw(world, camera, frame, &mut counted);
         let mut stats = counted.counts();
-        let size = u64::from(frame.width()) * u64::from(frame.height());
-        stats.overwritten = stats.pixels() - size;
+        let samples = u64::from(self.filter.samples(frame.size()).get());
+        stats.overwritten = stats.pixels() - frame.size().area() as u64 * samples * samples;
         Explanation { plan, threads, stats }
     }
 
@@ -177,8 +177,10 @@ impl Renderer {
     ) -> (FramePlan, Threads) {
         let Self { caster, filter, seconds, threads, memory } = self;
         let plan = FramePlan::new(world, *filter);
-        let threads = Threads::new(frame.size(), *threads);
-        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let samples = filter.samples(frame.size());
+        let threads = Threads::new(frame.size(), samples, *threads);
+        let projection =
+            Projection::of_samples(camera, frame.size(), frame.pixel_aspect(), samples.get());
         let scene =
             FrameContext { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
         let caster = Some(&*caster).filter(|caster| !caster.is_default());
@@ -186,9 +188,10 @@ impl Renderer {
         memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);
         let sky = &SkyView::new(scene, list.shows_sky(), &mut memory.sky);
         let bands = (frame, &mut memory.surfaces);
-        draw_bands(threads, bands, &mut memory.raster, stats, |memory, target| {
+        draw_bands(threads, samples, bands, &mut memory.threads, stats, |memory, target| {
             raster::draw(scene, list, sky, memory, target);
         });
+        samples::keep_middles(&mut list.distances, samples.get());
         (plan, threads)
     }
 }

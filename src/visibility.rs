@@ -14,7 +14,6 @@
 
 mod billboard;
 mod draw_list;
-mod edges;
 mod face;
 mod fan;
 mod layers;
@@ -32,7 +31,6 @@ pub(crate) use billboard::Billboard;
 #[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
 pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, PlaneKind, VisiblePlane};
-pub(crate) use edges::{FaceEdges, SlopedEdge};
 pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};

@@ -69,8 +69,8 @@ pub(crate) struct PictureOptions {
     /// two colours, or one as a character for its colour (ascii) or brightness (ramp) [default: half]
     #[arg(long, value_name = "SET", value_parser = choice::<GlyphSet>())]
     pub(crate) glyphs: Option<GlyphSet>,
-    /// How textures are sampled: averaged in the distance (mip), as single texels (nearest), or averaged over each
-    /// pixel, with smooth edges (area)
+    /// How pixels are sampled: from textures averaged in the distance (mip), as single texels (nearest), or as the mean
+    /// of nine samples (area)
     #[arg(long, value_name = "FILTER", default_value = Filter::default().name(), value_parser = filter())]
     pub(crate) filter: Filter,
     /// Replace built-in pictures with the PNG files in this folder that have the same names, as in maps/art

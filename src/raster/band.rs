@@ -86,13 +86,6 @@ impl<'a> Band<'a> {
         self.pixels.get_mut(start + x as usize..end).unwrap_or_default()
     }
 
-    /// The pixel in column `x` of `row`, which is in the band.
-    #[inline]
-    pub(crate) fn pixel_mut(&mut self, x: u32, row: u32) -> &mut Rgb {
-        let place = self.places(row..row).start + x as usize;
-        &mut self.pixels[place]
-    }
-
     /// Passes the pixels of `N` columns from `x` on in these rows, which are in the band, to
     /// `draw`, row by row.
     #[inline]

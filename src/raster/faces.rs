@@ -11,10 +11,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::blended::{FaceColors, SharedPart, WholeColumns, draw_ends, draw_shared, whole_rows};
 use super::column_batch::{BatchMemory, ColumnBatch};
 use super::direct_columns::{self, DirectColumns};
-use super::sampling::Sampling;
 use super::target::Target;
 use crate::cast::Side;
 use crate::color::Rgb;
@@ -23,85 +21,35 @@ use crate::visibility::{
     SideLit, Surface,
 };
 use crate::world::texture::MipLevel;
-use crate::world::{Glass, Paint, TextureId};
+use crate::world::{Glass, Paint, Texture, TextureId};
 
 /// Draws the faces of `list` that hide what is behind them.
-pub(crate) fn draw<M: Sampling>(
+pub(crate) fn draw(
     scene: FrameContext<'_>,
     list: &DrawList,
-    (memory, wholes): (&mut BatchMemory, &mut WholeColumns),
+    memory: &mut BatchMemory,
     target: &mut Target<'_>,
 ) {
     let are_direct = direct_columns::are_for(scene, target.band_mut());
-    // Farther faces are drawn first, because nearer ones may be blended over them.
-    let mut rest = list.faces.as_slice();
-    while let [.., face] = rest {
-        let is_joined = |face: &&Face| face.edges.is_some_and(|edges| edges.is_joined);
-        let others = rest[..rest.len() - 1].iter().rev().take_while(is_joined).count();
-        let (before, shared) = rest.split_at(rest.len() - 1 - others);
-        rest = before;
+    for face in &list.faces {
         let Material::Opaque(paint) = face.material else { continue };
-        let mut shown = ShownFace::new(scene, list, face);
+        let shown = ShownFace::new(scene, list, face);
         shown.record(paint, target);
-        if others > 0 {
-            draw_shared_column::<M>(scene, list, shared, target);
-            continue;
-        }
-        if let Some(edges) = &face.edges {
-            wholes.find(scene.projection, (face, edges), shown.columns);
-            shown.draw_ends::<M>(paint, wholes, target);
-            shown.columns = &wholes.columns;
-        }
         let lighting = if scene.plan.walls.faded { None } else { shown.side() };
         if let Some(side) = lighting {
             let batch = &mut ColumnBatch::new(memory, target, are_direct);
-            shown.draw::<M, _>(paint, batch, |_| SideLit(side));
+            shown.draw::<_>(paint, batch, |_| SideLit(side));
             batch.draw();
         } else {
             let batch = &mut ColumnBatch::new(memory, target, are_direct);
-            shown.draw::<M, _>(paint, batch, |index| shown.lighting(index));
+            shown.draw::<_>(paint, batch, |index| shown.lighting(index));
             batch.draw();
         }
     }
 }
 
-/// Draws the parts of walls that share a column.
-fn draw_shared_column<M: Sampling>(
-    scene: FrameContext<'_>,
-    list: &DrawList,
-    faces: &[Face],
-    target: &mut Target<'_>,
-) {
-    /// The most walls that share a column. Further walls are left out.
-    const MAX: usize = 4;
-    let band = target.rows();
-    let mut parts = [const { None }; MAX];
-    let mut rows = band.end..band.start;
-    for (part, face) in parts.iter_mut().zip(faces) {
-        let shown = ShownFace::new(scene, list, face);
-        let of_part = shown.columns.first().map_or(0..0, |column| column.rows.within(&band));
-        if let (false, Some(edges)) = (of_part.is_empty(), face.edges) {
-            rows = rows.start.min(of_part.start)..rows.end.max(of_part.end);
-            let (Some(column), Some(colors)) = (shown.columns.first(), shown.colors::<M>()) else {
-                continue;
-            };
-            let x = face.columns.start;
-            let across = edges.across(x);
-            let limits = edges.limits(scene.projection, face, x);
-            *part = Some(SharedPart {
-                limits,
-                width: across.end - across.start,
-                whole: whole_rows(scene.projection, limits, column.rows),
-                colors,
-            });
-        }
-    }
-    let x = faces.first().map_or(0, |face| face.columns.start);
-    draw_shared((x, rows), &parts, target.band_mut());
-}
-
 /// A face, with the state that its columns share.
-pub(crate) struct ShownFace<'a> {
+struct ShownFace<'a> {
     scene: FrameContext<'a>,
     list: &'a DrawList,
     face: &'a Face,
@@ -109,7 +57,7 @@ pub(crate) struct ShownFace<'a> {
 }
 
 impl<'a> ShownFace<'a> {
-    pub(crate) fn new(scene: FrameContext<'a>, list: &'a DrawList, face: &'a Face) -> Self {
+    fn new(scene: FrameContext<'a>, list: &'a DrawList, face: &'a Face) -> Self {
         let columns = &list.face_columns[face.first..][..face.columns.len()];
         Self { scene, list, face, columns }
     }
@@ -144,8 +92,16 @@ impl<'a> ShownFace<'a> {
         }
     }
 
+    /// The level of detail of `texture` in a column.
+    #[inline]
+    fn lod(&self, texture: &Texture, index: usize) -> usize {
+        let t = self.columns[index].t;
+        let area = self.scene.projection.pixel_area_on_wall(t, self.slope(index));
+        self.scene.plan.filter.lod(area * texture.area())
+    }
+
     /// The lighting of a column.
-    pub(crate) fn lighting(&self, index: usize) -> Faded {
+    fn lighting(&self, index: usize) -> Faded {
         let FaceColumn { t, u, .. } = self.columns[index];
         let (light, fog) = (self.face.light.at(u), self.scene.world.fog());
         match self.face.facing {
@@ -177,58 +133,7 @@ impl<'a> ShownFace<'a> {
         }
     }
 
-    /// Blends the face over the pixels that it covers in part.
-    fn draw_ends<M: Sampling>(&self, paint: Paint, wholes: &WholeColumns, target: &mut Target<'_>) {
-        let rows = target.rows();
-        let band = target.band_mut();
-        let mut draw = |index: usize, colors: &dyn Fn() -> FaceColors<'a>| {
-            let rows = self.columns[index].rows.within(&rows);
-            let whole = wholes.columns[index].rows;
-            if whole.start > rows.start || whole.end < rows.end {
-                let x = self.face.columns.start + index as u32;
-                draw_ends((x, rows), whole, wholes.limits[index], &colors(), band);
-            }
-        };
-        match paint {
-            Paint::Color(color) => {
-                for index in 0..self.columns.len() {
-                    draw(index, &|| FaceColors::Color(self.lighting(index).apply(color)));
-                }
-            }
-            Paint::Texture(id) => self.for_each_level::<M>(id, |level, range| {
-                let texels = self.texels(level);
-                for index in range {
-                    draw(index, &|| self.texels_of(index, level, texels));
-                }
-            }),
-        }
-    }
-
-    /// The colours of a face that is a pixel wide.
-    fn colors<M: Sampling>(&self) -> Option<FaceColors<'a>> {
-        match self.face.material {
-            Material::Opaque(Paint::Texture(id)) => {
-                let texture = self.scene.world.texture(id);
-                let t = self.columns.first()?.t;
-                let lod = M::lod_on_face(self.scene, texture, t, self.slope(0));
-                let level = M::level_on_face(texture, lod);
-                Some(self.texels_of(0, level, self.texels(level)))
-            }
-            Material::Opaque(Paint::Color(color)) => {
-                Some(FaceColors::Color(self.lighting(0).apply(color)))
-            }
-            Material::Masked(_) | Material::Translucent(_) => None,
-        }
-    }
-
-    /// The texels of a column in `level`.
-    fn texels_of(&self, index: usize, level: &'a MipLevel, texels: FaceTexels) -> FaceColors<'a> {
-        let FaceColumn { t, u, .. } = self.columns[index];
-        let lighting = self.lighting(index);
-        FaceColors::Texels { texels: level.column(u), stepper: texels.at(t), lighting }
-    }
-
-    fn draw<M: Sampling, L: Lighting>(
+    fn draw<L: Lighting>(
         &self,
         paint: Paint,
         batch: &mut ColumnBatch<'_, '_, 'a, L>,
@@ -246,7 +151,7 @@ impl<'a> ShownFace<'a> {
                 }
             }
             Paint::Texture(id) => {
-                self.for_each_level::<M>(id, |level, range| {
+                self.for_each_level(id, |level, range| {
                     self.draw_level(level, range, batch, &lighting);
                 });
             }
@@ -255,20 +160,14 @@ impl<'a> ShownFace<'a> {
 
     /// Passes each level of the texture `id` that the face shows to `draw`, with its columns.
     #[inline]
-    fn for_each_level<M: Sampling>(
-        &self,
-        id: TextureId,
-        mut draw: impl FnMut(&'a MipLevel, Range<usize>),
-    ) {
+    fn for_each_level(&self, id: TextureId, mut draw: impl FnMut(&'a MipLevel, Range<usize>)) {
         let texture = self.scene.world.texture(id);
-        let lod = |index: usize| {
-            M::lod_on_face(self.scene, texture, self.columns[index].t, self.slope(index))
-        };
+        let lod = |index: usize| self.lod(texture, index);
         let mut first = 0;
         while first < self.columns.len() {
             let level = lod(first);
             let end = self.end_of_level(first, |index| lod(index) == level);
-            draw(M::level_on_face(texture, level), first..end);
+            draw(texture.level(level), first..end);
             first = end;
         }
     }
@@ -353,8 +252,7 @@ impl ShownFace<'_> {
             let FaceColumn { t, u, .. } = *column;
             target.count_pixels(Pass::SeeThrough, rows.len());
             target.count_texels(Pass::SeeThrough, rows.len());
-            let area = self.scene.projection.pixel_area_on_wall(t, self.slope(index));
-            let level = texture.level(self.scene.plan.filter.lod(area * texture.area()));
+            let level = texture.level(self.lod(texture, index));
             let texels = level.column(u);
             let Some(alphas) = level.alpha_column(u) else { return };
             let lighting = self.lighting(index);

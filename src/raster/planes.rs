@@ -17,7 +17,6 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::sampling::Sampling;
 use super::sky::SkyView;
 use super::span::{self, PlaneSpan};
 use super::span_pair::SpanPairs;
@@ -70,7 +69,7 @@ struct JoinedRows {
 }
 
 /// Draws the backdrops and the planes of `list`.
-pub(crate) fn draw<M: Sampling>(
+pub(crate) fn draw(
     scene: FrameContext<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
@@ -83,7 +82,7 @@ pub(crate) fn draw<M: Sampling>(
     for rows in joined.iter_mut() {
         rows.begin(scene.projection.columns());
     }
-    sort::<M>(scene, list, order);
+    sort(scene, list, order);
     let is_whole = target.rows() == (0..scene.projection.rows());
     // The planes to draw next, together with their mirror image if that follows.
     let mut waiting: Option<PlaneDrawing<'_>> = None;
@@ -91,9 +90,9 @@ pub(crate) fn draw<M: Sampling>(
     while let Some((&(.., first), others)) = rest.split_first() {
         let mut drawing = PlaneDrawing::new(scene, list, &list.planes[first]);
         if let Some(before) = waiting.take_if(|before| before.side == drawing.side) {
-            before.draw::<M>(sky, joined, spans, target);
+            before.draw(sky, joined, spans, target);
         }
-        let is_alike = |key: &PlaneKey| M::JOINS_PLANES && drawing.is_alike(&list.planes[key.3]);
+        let is_alike = |key: &PlaneKey| drawing.is_alike(&list.planes[key.3]);
         let is_joined = others.first().is_some_and(is_alike);
         rest = others;
         if is_joined {
@@ -106,17 +105,17 @@ pub(crate) fn draw<M: Sampling>(
         drawing.is_joined = is_joined;
         match waiting.take() {
             Some(before) if is_whole && drawing.is_mirror_image(&before, joined) => {
-                drawing.draw_with_mirror_image::<M>(&before, joined, spans, target);
+                drawing.draw_with_mirror_image(&before, joined, spans, target);
             }
             Some(before) => {
-                before.draw::<M>(sky, joined, spans, target);
+                before.draw(sky, joined, spans, target);
                 waiting = Some(drawing);
             }
             None => waiting = Some(drawing),
         }
     }
     if let Some(last) = waiting {
-        last.draw::<M>(sky, joined, spans, target);
+        last.draw(sky, joined, spans, target);
     }
 }
 
@@ -124,9 +123,9 @@ pub(crate) fn draw<M: Sampling>(
 /// index.
 type PlaneKey = (u64, usize, u8, usize);
 
-/// Fills `order` with the planes of `list`. If planes may be joined, they are sorted: planes that
-/// may be joined are next to each other, and the planes that may be their mirror images follow.
-fn sort<M: Sampling>(scene: FrameContext<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
+/// Fills `order` with the planes of `list`: planes that may be joined are next to each other, and
+/// the planes that may be their mirror images follow.
+fn sort(scene: FrameContext<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
     order.clear();
     order.reserve(list.planes.capacity());
     let eye = scene.projection.eye();
@@ -134,9 +133,7 @@ fn sort<M: Sampling>(scene: FrameContext<'_>, list: &DrawList, order: &mut Vec<P
         let from_eye = (plane.height - eye).abs().to_bits();
         (from_eye, list.index_of_image(plane.image), plane.kind.side() as u8, index)
     }));
-    if M::JOINS_PLANES {
-        order.sort_unstable();
-    }
+    order.sort_unstable();
 }
 
 /// Draws the backdrops: the rows above or below the horizon that show one colour or the sky in all
@@ -402,7 +399,7 @@ impl<'a> PlaneDrawing<'a> {
     }
 
     /// Draws the plane, and its mirror image `other`.
-    fn draw_with_mirror_image<M: Sampling>(
+    fn draw_with_mirror_image(
         &self,
         other: &Self,
         joined: &[JoinedRows; 2],
@@ -414,7 +411,7 @@ impl<'a> PlaneDrawing<'a> {
         let (Some(of_floor), Some(of_ceiling)) = (floor.even, ceiling.even) else { return };
         let SpanMemory { starts, mappings, .. } = memory;
         mappings.set_height(floor.plane.height);
-        let mut pairs = SpanPairs::<M>::new(self.scene, [of_ceiling, of_floor]);
+        let mut pairs = SpanPairs::new(self.scene, [of_ceiling, of_floor]);
         let rows = target.rows();
         let (first, columns) = floor.rows(joined);
         for_each_span(first, columns, &rows, starts, |row, columns| {
@@ -422,7 +419,7 @@ impl<'a> PlaneDrawing<'a> {
         });
     }
 
-    fn draw<M: Sampling>(
+    fn draw(
         &self,
         sky: &SkyView<'_>,
         joined: &[JoinedRows; 2],
@@ -445,11 +442,11 @@ impl<'a> PlaneDrawing<'a> {
             if let Some(DrawnPlane { light, covering, .. }) = self.even {
                 lights.clear();
                 lights.push((columns, light));
-                self.draw_span::<M>(sky, row, covering, mapping, lights, target);
+                self.draw_span(sky, row, covering, mapping, lights, target);
             } else {
                 let lines = direct.before_and_behind(self.scene.projection.origin());
                 let lines = lines.map(|line| line.seen_in_mirrors(self.plane.image));
-                self.draw_cells::<M>(sky, row, columns, (mapping, lines), lights, target);
+                self.draw_cells(sky, row, columns, (mapping, lines), lights, target);
             }
         });
     }
@@ -457,7 +454,7 @@ impl<'a> PlaneDrawing<'a> {
     /// Draws `columns` of `row`, with a span for each run of columns that show one covering. The
     /// cell of a pixel is the cell just `before` its point, or the cell just `behind` the point if
     /// the first one is not in the sector.
-    fn draw_cells<M: Sampling>(
+    fn draw_cells(
         &self,
         sky: &SkyView<'_>,
         row: u32,
@@ -486,7 +483,7 @@ impl<'a> PlaneDrawing<'a> {
                 _ => latest.insert((tile, self.look_of(tile))).1,
             };
             if !lights.is_empty() && look.covering != covering {
-                self.draw_span::<M>(sky, row, covering, mapping, lights, target);
+                self.draw_span(sky, row, covering, mapping, lights, target);
                 lights.clear();
             }
             covering = look.covering;
@@ -496,11 +493,11 @@ impl<'a> PlaneDrawing<'a> {
                 _ => lights.push((columns, light)),
             }
         }
-        self.draw_span::<M>(sky, row, covering, mapping, lights, target);
+        self.draw_span(sky, row, covering, mapping, lights, target);
     }
 
     /// Draws neighbouring columns of `row`, each range of `lights` in its light.
-    fn draw_span<M: Sampling>(
+    fn draw_span(
         &self,
         sky: &SkyView<'_>,
         row: u32,
@@ -517,7 +514,7 @@ impl<'a> PlaneDrawing<'a> {
         };
         let first = columns.start;
         let span = PlaneSpan { pass: pass_of(self.side), row, columns, covering, mapping };
-        let pixels = span::draw::<M>(self.scene, &span, target);
+        let pixels = span::draw(self.scene, &span, target);
         for (columns, light) in lights {
             let faded = Faded::of_plane(*light, self.scene.world.fog(), mapping.distance);
             if let Some(faded) = faded {

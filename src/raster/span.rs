@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::pieces;
-use super::sampling::Sampling;
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
@@ -23,7 +22,7 @@ pub(crate) struct PlaneSpan<'m> {
 }
 
 /// Draws `span` in full light and without fog. Returns its pixels.
-pub(crate) fn draw<'p, M: Sampling>(
+pub(crate) fn draw<'p>(
     scene: FrameContext<'_>,
     span: &PlaneSpan<'_>,
     target: &'p mut Target<'_>,
@@ -36,7 +35,7 @@ pub(crate) fn draw<'p, M: Sampling>(
             let [one, other] = paints.map(|paint| sampler.mean(paint));
             mean_of_two(one, other)
         }
-        Pattern::Plain(paint) => match sampler.sample::<M>(paint) {
+        Pattern::Plain(paint) => match sampler.sample(paint) {
             Sample::Color(color) => color,
             Sample::Level(level) => {
                 target.count_texels(pass, columns.len());
@@ -46,11 +45,11 @@ pub(crate) fn draw<'p, M: Sampling>(
             }
         },
         Pattern::Checker(paints) => {
-            let samples = paints.map(|it| sampler.sample::<M>(it));
+            let samples = paints.map(|it| sampler.sample(it));
             return pieces::draw::<true>(span, &samples, target);
         }
         Pattern::Stripes(paints) => {
-            let samples = paints.map(|it| sampler.sample::<M>(it));
+            let samples = paints.map(|it| sampler.sample(it));
             return pieces::draw::<false>(span, &samples, target);
         }
     };
@@ -175,20 +174,20 @@ impl<'a> Sampler<'a> {
     }
 
     /// The sample of `paint` at the distance of the span.
-    fn sample<M: Sampling>(self, paint: Paint) -> Sample<'a> {
+    fn sample(self, paint: Paint) -> Sample<'a> {
         match paint {
             Paint::Color(color) => Sample::Color(color),
             Paint::Texture(id) => {
                 let texture = self.scene.world.texture(id);
-                Sample::Level(M::level_on_plane(texture, self.lod_of::<M>(texture)))
+                Sample::Level(texture.level(self.lod_of(texture)))
             }
         }
     }
 
     /// The level of detail of `texture`, which fills one repeat.
     #[inline]
-    pub(crate) fn lod_of<M: Sampling>(self, texture: &Texture) -> M::Lod {
-        M::lod_on_plane(self.scene, texture, self.mapping, self.per_cell)
+    pub(crate) fn lod_of(self, texture: &Texture) -> usize {
+        self.lod(texture.area())
     }
 
     /// The level of detail of a pattern whose pieces count as `texels` texels each.

@@ -8,7 +8,6 @@
 use std::ops::Range;
 
 use super::planes::DrawnPlane;
-use super::sampling::Sampling;
 use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
@@ -18,12 +17,12 @@ use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
 /// Draws a ceiling together with a floor that is its mirror image.
-pub(crate) struct SpanPairs<'a, M: Sampling> {
+pub(crate) struct SpanPairs<'a> {
     scene: FrameContext<'a>,
     /// The ceiling and the floor.
     planes: [DrawnPlane; 2],
     /// The textures of the planes, if both have textures of the same size and the same light.
-    textures: Option<TexturePair<'a, M>>,
+    textures: Option<TexturePair<'a>>,
 }
 
 /// A span of the ceiling and its mirror image, a span of the floor.
@@ -54,24 +53,24 @@ impl<'m> SpanPair<'m> {
 }
 
 /// Two textures of the same size, on planes with the same light.
-struct TexturePair<'a, M: Sampling> {
+struct TexturePair<'a> {
     textures: [&'a Texture; 2],
     /// The number of repeats of the textures in a cell.
     per_cell: f64,
     light: Light,
     /// The levels of the previous pair.
-    levels: Option<LevelPair<'a, M>>,
+    levels: Option<LevelPair<'a>>,
 }
 
 /// Two mip levels of the same size.
 #[derive(Clone, Copy)]
-struct LevelPair<'a, M: Sampling> {
-    lod: M::Lod,
+struct LevelPair<'a> {
+    lod: usize,
     upper: MipLevelByShifts<'a>,
     lower: &'a [Rgb],
 }
 
-impl<'a, M: Sampling> SpanPairs<'a, M> {
+impl<'a> SpanPairs<'a> {
     /// Prepares to draw these `planes`: a ceiling and a floor.
     pub(crate) fn new(scene: FrameContext<'a>, planes: [DrawnPlane; 2]) -> Self {
         Self { scene, planes, textures: TexturePair::new(scene, &planes) }
@@ -92,7 +91,7 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
         if drawn.is_none() {
             for (span, light) in pair.spans().into_iter().flatten() {
                 let faded = Faded::of_plane(light, scene.world.fog(), mapping.distance);
-                let pixels = span::draw::<M>(scene, &span, target);
+                let pixels = span::draw(scene, &span, target);
                 if let Some(faded) = faded {
                     faded.apply_to_all(pixels);
                 }
@@ -101,7 +100,7 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
     }
 }
 
-impl<'a, M: Sampling> TexturePair<'a, M> {
+impl<'a> TexturePair<'a> {
     fn new(scene: FrameContext<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
         let [upper, lower] = planes;
         let (covering, light) = (upper.covering?, upper.light);
@@ -127,7 +126,7 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
         if Faded::of_plane(self.light, scene.world.fog(), mapping.distance).is_some() {
             return None;
         }
-        let lod = Sampler { scene, mapping, per_cell }.lod_of::<M>(self.textures[0]);
+        let lod = Sampler { scene, mapping, per_cell }.lod_of(self.textures[0]);
         let levels = match self.levels {
             Some(levels) if levels.lod == lod => levels,
             _ => *self.levels.insert(LevelPair::new(self.textures, lod)?),
@@ -137,31 +136,31 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
             return None;
         }
         match levels.lower.len() {
-            16384 => draw_texels::<_, 16384>(levels, places, pair, target),
-            4096 => draw_texels::<_, 4096>(levels, places, pair, target),
-            1024 => draw_texels::<_, 1024>(levels, places, pair, target),
-            256 => draw_texels::<_, 256>(levels, places, pair, target),
-            64 => draw_texels::<_, 64>(levels, places, pair, target),
-            16 => draw_texels::<_, 16>(levels, places, pair, target),
-            4 => draw_texels::<_, 4>(levels, places, pair, target),
-            1 => draw_texels::<_, 1>(levels, places, pair, target),
+            16384 => draw_texels::<16384>(levels, places, pair, target),
+            4096 => draw_texels::<4096>(levels, places, pair, target),
+            1024 => draw_texels::<1024>(levels, places, pair, target),
+            256 => draw_texels::<256>(levels, places, pair, target),
+            64 => draw_texels::<64>(levels, places, pair, target),
+            16 => draw_texels::<16>(levels, places, pair, target),
+            4 => draw_texels::<4>(levels, places, pair, target),
+            1 => draw_texels::<1>(levels, places, pair, target),
             _ => None,
         }
     }
 }
 
-impl<'a, M: Sampling> LevelPair<'a, M> {
+impl<'a> LevelPair<'a> {
     /// The levels of two `textures` of the same size; `None` if a lookup of their texels needs
     /// multiplications.
-    fn new(textures: [&'a Texture; 2], lod: M::Lod) -> Option<Self> {
-        let [upper, lower] = textures.map(|texture| M::level_on_plane(texture, lod).by_shifts());
+    fn new(textures: [&'a Texture; 2], lod: usize) -> Option<Self> {
+        let [upper, lower] = textures.map(|texture| texture.level(lod).by_shifts());
         Some(Self { lod, upper: upper?, lower: lower?.texels() })
     }
 }
 
 /// Draws `pair` from `levels`, which have `N` texels each.
-fn draw_texels<M: Sampling, const N: usize>(
-    levels: LevelPair<'_, M>,
+fn draw_texels<const N: usize>(
+    levels: LevelPair<'_>,
     places: TexelPlaces,
     pair: &SpanPair<'_>,
     target: &mut Target<'_>,

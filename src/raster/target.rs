@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::band::Band;
 use crate::color::Rgb;
-use crate::visibility::{Pass, StatsCounter, Surface};
+use crate::visibility::{FrameSize, Pass, StatsCounter, Surface};
 use crate::world::Paint;
 
 /// A band of a frame with its part of the surface buffer, and the cost of drawing it.
@@ -159,8 +159,11 @@ impl<'a> Target<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceBuffer {
     are_kept: bool,
+    /// The number of samples along both sides of each pixel.
+    samples: usize,
+    /// The number of samples in a row.
     width: usize,
-    /// The surfaces, in the order of a frame's pixels. Empty if surfaces are not recorded.
+    /// The surfaces, in the order of a frame's samples. Empty if surfaces are not recorded.
     surfaces: Vec<Option<Surface>>,
 }
 
@@ -171,31 +174,34 @@ impl SurfaceBuffer {
         self.surfaces.clear();
     }
 
-    /// Removes all surfaces, and prepares for a frame of this size.
-    pub(crate) fn begin(&mut self, width: u32, height: u32) {
+    /// Removes all surfaces, and prepares for a frame of this size with `samples` along both sides
+    /// of each pixel.
+    pub(crate) fn begin(&mut self, size: FrameSize, samples: u32) {
         if self.are_kept {
-            self.width = width as usize;
+            self.samples = samples as usize;
+            self.width = size.width.get() as usize * self.samples;
             self.surfaces.clear();
-            self.surfaces.resize(width as usize * height as usize, None);
+            self.surfaces.resize(size.area() * self.samples * self.samples, None);
         }
     }
 
-    /// The surfaces in bands of `rows` rows each. The iterator never ends: bands below the frame
+    /// The surfaces in bands of `rows` rows of samples each. The iterator never ends: bands below the frame
     /// are empty.
     pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = SurfaceRows<'_>> {
-        let (width, rows) = (self.width, rows.get());
+        let (width, rows) = (self.width, rows.get() as usize);
         let mut rest = &mut self.surfaces[..];
-        (0..).step_by(rows as usize).map(move |first| {
-            let count = rest.len().min(width * rows as usize);
+        (0..).step_by(rows).map(move |first| {
+            let count = rest.len().min(width * rows);
             let surfaces = rest.split_off_mut(..count).unwrap_or_default();
             SurfaceRows { width, first, surfaces }
         })
     }
 
-    /// The surface of pixel `(x, y)`, if it was recorded.
+    /// The surface in the middle of pixel `(x, y)`, if it was recorded.
     pub(crate) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let row = self.surfaces.chunks(self.width.max(1)).nth(y as usize)?;
-        *row.get(x as usize)?
+        let middle = |pixel: u32| pixel as usize * self.samples + self.samples / 2;
+        let row = self.surfaces.chunks(self.width.max(1)).nth(middle(y))?;
+        *row.get(middle(x))?
     }
 }
 

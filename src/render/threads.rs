@@ -8,11 +8,12 @@ use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::{fmt, thread};
 
+use super::samples::{MAX_SAMPLED_ROWS, SampleMemory};
 use super::{Frame, FrameSize};
-use crate::raster::{SurfaceBuffer, Target};
+use crate::raster::{Band, RasterMemory, SurfaceBuffer, Target};
 use crate::visibility::StatsCounter;
 
-/// The least number of pixels for each thread. For fewer pixels, starting the thread takes longer
+/// The least number of samples for each thread. For fewer samples, starting the thread takes longer
 /// than it saves. The number is small under fuzzing, because a fuzz target compares numbers of
 /// threads in small pictures.
 const PIXELS_OF_A_THREAD: usize = 1 << if cfg!(fuzzing) { 8 } else { 19 };
@@ -45,11 +46,11 @@ pub enum WhyOne {
 }
 
 impl Threads {
-    /// The threads for a frame of this size, at most `most` or the number that the machine runs at
-    /// once.
-    pub(crate) fn new(size: FrameSize, most: Option<NonZero<usize>>) -> Self {
-        let (width, height) = (size.width.get() as usize, size.height.get() as usize);
-        let worthwhile = (width * height / PIXELS_OF_A_THREAD).min(height);
+    /// The threads for a frame of this size with this number of `samples` along both sides of each
+    /// pixel, at most `most` or the number that the machine runs at once.
+    pub(crate) fn new(size: FrameSize, samples: NonZeroU32, most: Option<NonZero<usize>>) -> Self {
+        let all = size.area() * (samples.get() * samples.get()) as usize;
+        let worthwhile = (all / PIXELS_OF_A_THREAD).min(size.height.get() as usize);
         if worthwhile < 2 {
             return Self::One(WhyOne::Small);
         }
@@ -91,28 +92,46 @@ impl fmt::Display for Threads {
     }
 }
 
-/// Draws all bands of `frame` and its surface buffer with these threads, each of which has its own
-/// memory. Adds the counts to `stats`.
-pub(crate) fn draw_bands<M: Default + Send>(
+/// Memory that a thread reuses from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ThreadMemory {
+    raster: RasterMemory,
+    samples: SampleMemory,
+}
+
+/// Draws all bands of `frame` and its surface buffer with these threads, with `samples` along both
+/// sides of each pixel. Adds the counts to `stats`.
+pub(crate) fn draw_bands(
     threads: Threads,
+    samples: NonZeroU32,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
-    memories: &mut Vec<M>,
+    memories: &mut Vec<ThreadMemory>,
     stats: &mut StatsCounter,
-    draw: impl Fn(&mut M, &mut Target<'_>) + Sync,
+    draw: impl Fn(&mut RasterMemory, &mut Target<'_>) + Sync,
 ) {
     let count = threads.count();
     if memories.len() < count {
-        memories.resize_with(count, M::default);
+        memories.resize_with(count, ThreadMemory::default);
     }
-    surfaces.begin(frame.width(), frame.height());
-    let rows = threads.rows_of_band(frame.size().height);
-    let bands = frame.bands(rows).zip(surfaces.bands(rows));
+    surfaces.begin(frame.size(), samples.get());
+    let mut rows = threads.rows_of_band(frame.size().height);
+    if samples.get() > 1 {
+        rows = rows.min(MAX_SAMPLED_ROWS);
+    }
+    let bands = frame.bands(rows).zip(surfaces.bands(rows.saturating_mul(samples)));
     let of_band = stats.of_band();
     let stats = Mutex::new(stats);
-    share_out(bands, &mut memories[..count], |(band, surfaces), memory| {
-        let mut target = Target::new(band, surfaces, of_band.clone());
-        draw(memory, &mut target);
-        stats.lock().unwrap_or_else(PoisonError::into_inner).add(&target.into_stats());
+    share_out(bands, &mut memories[..count], |(mut band, surfaces), memory| {
+        let draw = |band: Band<'_>| {
+            let mut target = Target::new(band, surfaces, of_band.clone());
+            draw(&mut memory.raster, &mut target);
+            target.into_stats()
+        };
+        let counts = match samples.get() {
+            1 => draw(band),
+            samples => memory.samples.draw(samples, &mut band, draw),
+        };
+        stats.lock().unwrap_or_else(PoisonError::into_inner).add(&counts);
     });
 }
 
@@ -164,7 +183,7 @@ mod tests {
     fn only_large_frames_are_split() {
         let threads = |width, height, most| {
             let size = FrameSize::new(width, height).unwrap();
-            Threads::new(size, NonZero::new(most))
+            Threads::new(size, NonZeroU32::MIN, NonZero::new(most))
         };
         for (width, height) in [(1, 1), (640, 480), (1280, 720), (4_000_000, 1)] {
             assert_eq!(threads(width, height, 8), Threads::One(WhyOne::Small));

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::edges::FaceEdges;
 use crate::cast::{Hit, MirrorTransform, Ray, Side, cell_before};
 use crate::world::{Cell, FaceLight, Glass, Grid, Outline, Paint, TextureId, TileId};
 
@@ -23,8 +22,6 @@ pub(crate) struct Face {
     pub(crate) top: f64,
     /// The image in which it is seen.
     pub(crate) image: MirrorTransform,
-    /// Its edges, if it is blended over the surfaces behind them.
-    pub(crate) edges: Option<FaceEdges>,
 }
 
 /// A column of a face.

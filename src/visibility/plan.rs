@@ -5,7 +5,9 @@
 //! part of the frame, with the loop and the reason.
 
 use std::fmt;
+use std::num::NonZeroU32;
 
+use super::FrameSize;
 use crate::color::Rgb;
 use crate::world::{Ceiling, Covering, Paint, Pattern, Sky, World};
 
@@ -22,7 +24,7 @@ pub struct FramePlan {
     pub walls: WallLoop,
     /// The loop for things and figures.
     pub things: ThingLoop,
-    /// The filter of textures and edges.
+    /// The filter of textures.
     pub filter: Filter,
     /// `true` if anything may be in front of the opaque faces: things, figures, masks, glass or mirrors.
     pub(crate) has_layers: bool,
@@ -192,7 +194,7 @@ impl fmt::Display for Filter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Mip => "mip: far texels are averaged",
-            Self::Area => "area: texels are averaged over each pixel, and walls have smooth ends",
+            Self::Area => "area: the mean of nine samples of each pixel",
             Self::Nearest => "nearest: every texel is one of the texture's own",
         })
     }
@@ -206,12 +208,9 @@ pub enum Filter {
     Mip,
     /// Samples the texture itself at the pixel's centre. Far surfaces shimmer.
     Nearest,
-    /// Averages the texture over the pixel's width and height on the surface. Walls are blended over the
-    /// surfaces behind them by the share of the pixel that they cover.
-    ///
-    /// Walls and steps are blended along their tops and bottoms, and walls also in the columns that they share.
-    /// The other edges are as hard as under [`Filter::Mip`]: the borders of tiles and of pieces of a pattern,
-    /// things, masks, glass, doors, and the sides of pillars, diagonals and steps.
+    /// Shows the mean light of nine samples in each pixel, three across and three down, each drawn as by
+    /// [`Filter::Mip`]. Every edge is smooth. The sample in the middle shows the point that the pixel shows under
+    /// the other filters.
     Area,
 }
 
@@ -228,14 +227,20 @@ impl Filter {
         }
     }
 
+    /// The number of samples along both sides of each pixel, for a frame of `size`.
+    pub(crate) fn samples(self, size: FrameSize) -> NonZeroU32 {
+        const SAMPLES: NonZeroU32 = NonZeroU32::new(3).unwrap();
+        /// Larger frames would have more samples than a `u32` can count.
+        const MAX_SIDE: u32 = u32::MAX / SAMPLES.get();
+        let are_countable = size.width.get().max(size.height.get()) <= MAX_SIDE;
+        if self == Self::Area && are_countable { SAMPLES } else { NonZeroU32::MIN }
+    }
+
     /// The level of detail for a pixel that covers an area of this many texels.
     ///
     /// A texel of each level covers four texels of the level before. The area also decides for a long and
     /// narrow pixel. Rejected: its longer side. Walls seen at an angle would blur along their sharp direction.
     /// Rejected: its shorter side. Such walls would shimmer.
-    ///
-    /// [`Filter::Area`] uses this level for surfaces without [area averages](crate::world::texture::AreaLod):
-    /// masks, things and the sky.
     pub(crate) fn lod(self, area: f64) -> usize {
         match self {
             // The nearest power of four. The exponent of a double is exact on every machine.

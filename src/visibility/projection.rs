@@ -1,8 +1,7 @@
 //! The projection: the ray of each column, and the rows of each height at each distance.
 //!
 //! Proportions are true for any window and any font. The focal length is `(w/2) / tan(fov/2)` pixels across,
-//! and this value divided by the pixel aspect down. Rows and columns are sampled at the centres of pixels. The
-//! area filter also needs rays between the centres, and the positions of the ends of faces.
+//! and this value divided by the pixel aspect down. Rows and columns are sampled at the centres of pixels.
 
 use std::num::NonZeroU32;
 use std::ops::{Range, RangeInclusive};
@@ -50,11 +49,24 @@ pub struct ProjectedPoint {
 impl Projection {
     /// The projection of `camera` onto pictures of this size.
     pub fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
-        let width = size.width.get();
-        let height = f64::from(size.height.get());
+        Self::of_samples(camera, size, pixel_aspect, 1)
+    }
+
+    /// The projection onto the samples of such pictures, with this number of samples along both sides of each
+    /// pixel. To it, every sample is a pixel.
+    pub(crate) fn of_samples(
+        camera: &Camera,
+        size: FrameSize,
+        pixel_aspect: PixelAspect,
+        samples: u32,
+    ) -> Self {
+        let width = size.width.get() * samples;
+        let height = f64::from(size.height.get() * samples);
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
         let focal_length = across / pixel_aspect.height_over_width();
-        let horizon = height / 2.0 + rows_of_pitch(camera, focal_length);
+        let samples = f64::from(samples);
+        // A change of pitch moves the picture by whole pixels.
+        let horizon = height / 2.0 + samples * rows_of_pitch(camera, focal_length / samples);
         Self {
             eye: camera.eye().clamp(-FARTHEST, FARTHEST),
             origin: camera.position(),
@@ -125,23 +137,6 @@ impl Projection {
         let width = f64::from(self.width);
         // A quotient of two integers: a column and its mirror image have exactly opposite positions.
         (f64::from(column) * 2.0 + 1.0 - width) / width
-    }
-
-    /// The direction of the ray at `place`, in columns from the left edge. The middle of the first column is at
-    /// 0.5.
-    pub(crate) fn direction_at(&self, place: f64) -> DVec2 {
-        let width = f64::from(self.width);
-        self.direction + self.plane * ((place * 2.0 - width) / width)
-    }
-
-    /// The number of rows from the top of the picture to the horizon.
-    pub(crate) fn horizon(&self) -> f64 {
-        self.horizon
-    }
-
-    /// The number of rows from the horizon to a point 1 above the eye at distance 1.
-    pub(crate) fn focal_length(&self) -> f64 {
-        self.focal_length
     }
 
     /// The direction of the ray of `column`.
@@ -219,12 +214,6 @@ impl Projection {
         let down = t / self.focal_length;
         let across = t / (self.focal_length_across * slope.abs());
         down * across
-    }
-
-    /// The width and the height of the part of a wall's side, in cells, that a pixel covers at that point.
-    #[inline]
-    pub(crate) fn pixel_extent_on_wall(&self, t: f64, slope: f64) -> DVec2 {
-        DVec2::new(t / (self.focal_length_across * slope.abs()), t / self.focal_length)
     }
 
     /// The mapping of `row` to a floor or a ceiling at `height`.

@@ -50,14 +50,6 @@ impl SpanMapping {
         }
     }
 
-    /// The squared extents of a pixel along both axes of the map, in square cells: the extents of the box whose
-    /// points have the same mean square distance from the middle along each axis.
-    pub(crate) fn squares_of_extent(&self) -> DVec2 {
-        let across = 2.0 * self.half_step;
-        let along = across.perp() * (self.pixel_area / across.length_squared());
-        across * across + along * along
-    }
-
     /// The point at the centre of the pixel in column `x`.
     pub(crate) fn point(&self, x: usize) -> DVec2 {
         self.middle + self.half_step * self.half_steps_to(x) as f64

@@ -18,11 +18,10 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, RaySegment};
-use super::edges::WallBorder;
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
 use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
 use super::projection::Rise;
-use super::{FrameContext, Projection, WalkStats};
+use super::{FrameContext, WalkStats};
 use crate::cast::{
     Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
     is_from_left,
@@ -44,22 +43,20 @@ pub(crate) struct WalkMemory {
     clips: Vec<Clip>,
     entries: Vec<SectorEntry>,
     fan: FanMemory,
-    pub(crate) borders: Vec<Border>,
-    /// The positions at which neighbouring borders share a column, for the area filter.
-    pub(crate) joints: Vec<Option<WallBorder>>,
+    borders: Vec<Border>,
     /// The passage of each ray of a visit through the cell of an object.
     passages: Vec<Passage>,
     /// Values of the current visit, by column.
-    pub(crate) columns: ColumnMemory,
+    columns: ColumnMemory,
     /// The next visits: in the lower gap, in the upper gap, and in a mirror.
     next: [PendingVisit; 3],
 }
 
 /// A sector, and the columns whose rays enter it.
 #[derive(Clone, Debug)]
-pub(crate) struct Visit {
-    pub(crate) sector: SectorId,
-    pub(crate) image: MirrorTransform,
+struct Visit {
+    sector: SectorId,
+    image: MirrorTransform,
     bounces: u32,
     /// `true` if the rays begin at the camera, in this sector.
     is_at_camera: bool,
@@ -78,22 +75,17 @@ struct Clip {
 
 /// The values of each column in the current visit.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ColumnMemory {
+struct ColumnMemory {
     /// The rows that no nearer surface covers, and the distance from which the rows are open.
-    pub(crate) starts: Vec<u32>,
-    pub(crate) ends: Vec<u32>,
+    starts: Vec<u32>,
+    ends: Vec<u32>,
     from: Vec<f64>,
-    /// The clip ranges at the beginning of the visit, for the area filter.
-    pub(crate) entered: Vec<Rows>,
     /// The distance at which the ray leaves the sector or meets an object in it.
-    pub(crate) t: Vec<f64>,
-    pub(crate) u: Vec<f64>,
+    t: Vec<f64>,
+    u: Vec<f64>,
     /// The row of a bottom and the row of a top at this distance.
-    pub(crate) bottoms: Vec<u32>,
-    pub(crate) tops: Vec<u32>,
-    /// The limits of a face that is blended over the planes: the rows that it covers in part are inside.
-    pub(crate) outer_bottoms: Vec<u32>,
-    pub(crate) outer_tops: Vec<u32>,
+    bottoms: Vec<u32>,
+    tops: Vec<u32>,
 }
 
 /// An incomplete visit, which the next face may extend.
@@ -105,12 +97,12 @@ struct PendingVisit {
 }
 
 /// Neighbouring borders that look alike.
-pub(crate) struct BorderGroup {
+struct BorderGroup {
     /// The indices of the borders.
-    pub(crate) borders: Range<usize>,
-    pub(crate) columns: Range<u32>,
+    borders: Range<usize>,
+    columns: Range<u32>,
     /// The face of the first border.
-    pub(crate) face: CellFace,
+    face: CellFace,
 }
 
 /// The kind of a next visit.
@@ -124,7 +116,7 @@ enum VisitKind {
 impl ColumnMemory {
     /// The columns of a face in `range`, with the open rows between `tops` and `bottoms`.
     #[inline]
-    pub(crate) fn of_face(&self, range: &Range<u32>) -> impl Iterator<Item = FaceColumn> {
+    fn of_face(&self, range: &Range<u32>) -> impl Iterator<Item = FaceColumn> {
         let indices = range.start as usize..range.end as usize;
         let Self { starts, ends, t, u, bottoms, tops, .. } = self;
         let starts = starts[indices.clone()].iter().zip(&tops[indices.clone()]);
@@ -154,12 +146,10 @@ impl WalkMemory {
         self.fan.clear();
         self.fan.reserve(width);
         let columns = &mut self.columns;
-        columns.entered.resize(width, Rows::NONE);
-        let ColumnMemory { starts, ends, bottoms, tops, outer_bottoms, outer_tops, .. } = columns;
-        for rows in [starts, ends, bottoms, tops, outer_bottoms, outer_tops] {
+        let ColumnMemory { starts, ends, from, t, u, bottoms, tops } = columns;
+        for rows in [starts, ends, bottoms, tops] {
             rows.resize(width, 0);
         }
-        let ColumnMemory { from, t, u, .. } = columns;
         for distances in [from, t, u] {
             distances.resize(width, 0.0);
         }
@@ -209,13 +199,13 @@ pub(crate) fn walk(
     stats
 }
 
-pub(crate) struct SectorWalk<'a> {
-    pub(crate) scene: FrameContext<'a>,
-    pub(crate) fan: Fan<'a>,
+struct SectorWalk<'a> {
+    scene: FrameContext<'a>,
+    fan: Fan<'a>,
     /// `true` if billboards may show: things, figures, or the player in a mirror.
     has_things: bool,
-    pub(crate) memory: &'a mut WalkMemory,
-    pub(crate) list: &'a mut DrawList,
+    memory: &'a mut WalkMemory,
+    list: &'a mut DrawList,
     stats: WalkStats,
 }
 
@@ -297,14 +287,7 @@ impl SectorWalk<'_> {
             self.meet_standing(visit, sector, first_place);
         }
         self.find_distances(visit.is_at_camera);
-        if self.blends() {
-            let ColumnMemory { starts, ends, entered, .. } = &mut self.memory.columns;
-            for x in visit.columns.start as usize..visit.columns.end as usize {
-                entered[x] = Rows { start: starts[x], end: ends[x] };
-            }
-            self.find_joints(visit, sector);
-        }
-        self.close(visit, sector, visit.columns.clone(), true);
+        self.close(visit, sector, visit.columns.clone());
         self.pass_borders(visit, sector);
     }
 
@@ -341,9 +324,8 @@ impl SectorWalk<'_> {
     }
 
     /// Shows the floor and the ceiling of the sector in `range` up to the distances `t`, and removes their rows
-    /// from the clip ranges. `is_leaving` is true if the rays leave the sector there, and false if they meet an
-    /// object in it.
-    fn close(&mut self, visit: &Visit, sector: &Sector, range: Range<u32>, is_leaving: bool) {
+    /// from the clip ranges. The rays leave the sector there, or meet an object in it.
+    fn close(&mut self, visit: &Visit, sector: &Sector, range: Range<u32>) {
         let projection = self.scene.projection;
         let (eye, ground) = (projection.eye(), projection.first_row_of_ground());
         if self.has_things {
@@ -361,10 +343,6 @@ impl SectorWalk<'_> {
         } else if shows_ceiling {
             self.find_rows(sector.top, &range, true);
         }
-        let blends = is_leaving && self.blends();
-        if blends {
-            self.extend_planes(sector);
-        }
         let is_everything = visit.is_at_camera
             && range.len() == projection.columns()
             && sector.holds != GapObject::Standing;
@@ -373,12 +351,6 @@ impl SectorWalk<'_> {
         }
         if shows_ceiling && !(is_everything && self.show_behind(visit, PlaneSide::Ceiling)) {
             self.add_plane(visit, sector, &range, PlaneSide::Ceiling);
-        }
-        if blends {
-            let ColumnMemory { bottoms, tops, outer_bottoms, outer_tops, .. } =
-                &mut self.memory.columns;
-            mem::swap(bottoms, outer_bottoms);
-            mem::swap(tops, outer_tops);
         }
         if visit.bounces == 0 {
             self.extend_distances(&range);
@@ -492,9 +464,6 @@ impl SectorWalk<'_> {
     /// Shows the surfaces at the faces through which the rays leave the sector, and stores the visits behind
     /// them.
     fn pass_borders(&mut self, visit: &Visit, sector: &Sector) {
-        if self.blends() {
-            self.show_shared_columns(visit, sector);
-        }
         let mut first = 0;
         while first < self.memory.borders.len() {
             let borders = &self.memory.borders;
@@ -594,11 +563,6 @@ impl SectorWalk<'_> {
             let everything = if bottom <= sector.bottom { u32::MAX } else { 0 };
             self.memory.columns.bottoms[indices].fill(everything);
         }
-        let into = self.memory.borders[group.borders.start].into;
-        let tile = into.map(|(_, id)| &self.scene.world.tiles()[usize::from(id.0)]);
-        if self.blends() && !tile.is_some_and(Tile::reflects) {
-            self.find_outer_limits(sector, group, top, bottom);
-        }
     }
 
     /// Shows the solid part of `tile` up to `top` behind `group`, as a face or as a mirror.
@@ -622,7 +586,7 @@ impl SectorWalk<'_> {
     }
 
     /// The paint of the sides of `tile`.
-    pub(crate) fn paint_of_rock(&self, visit: &Visit, group: &BorderGroup, tile: &Tile) -> Paint {
+    fn paint_of_rock(&self, visit: &Visit, group: &BorderGroup, tile: &Tile) -> Paint {
         match tile.kind {
             TileKind::Wall(_) if self.scene.plan.walls.jambs => {
                 self.jamb(visit, group).unwrap_or(tile.riser)
@@ -731,11 +695,6 @@ impl SectorWalk<'_> {
         for border in &self.memory.borders[group.borders.clone()] {
             find_texture_coordinates(visit.image, &self.fan, border, &mut self.memory.columns);
         }
-        let is_blended = self.blends() && matches!(material, Material::Opaque(_));
-        if is_blended && !self.is_cube(group) {
-            self.show_blended_face(visit, group, material, (bottom, top));
-            return;
-        }
         let first = self.list.face_columns.len();
         self.list.face_columns.extend(self.memory.columns.of_face(range));
         self.list.push_face(Face {
@@ -747,19 +706,12 @@ impl SectorWalk<'_> {
             bottom,
             top,
             image: visit.image,
-            edges: None,
         });
-    }
-
-    /// Returns true if there is glass or a mask behind `group`.
-    fn is_cube(&self, group: &BorderGroup) -> bool {
-        let into = self.memory.borders[group.borders.start].into;
-        into.is_some_and(|(_, id)| matches!(self.fan.sectors.held_by(id), GapObject::Cube(_)))
     }
 
     /// The light on the faces of `group`: the light of their tile if it is solid and has its own, else the
     /// light in the cell in front of the first face.
-    pub(crate) fn light_on_face(&self, visit: &Visit, group: &BorderGroup) -> FaceLight {
+    fn light_on_face(&self, visit: &Visit, group: &BorderGroup) -> FaceLight {
         let world = self.scene.world;
         if !self.scene.plan.walls.faded {
             return FaceLight::FULL;
@@ -898,7 +850,7 @@ impl SectorWalk<'_> {
             let hit = passages[(column - first) as usize].hit;
             columns.t[column as usize] = hit.map_or(0.0, |hit| hit.t);
         }
-        self.close(visit, sector, range.clone(), false);
+        self.close(visit, sector, range.clone());
         let WalkMemory { columns, passages, .. } = &mut *self.memory;
         let hits = range.clone().filter_map(|column| passages[(column - first) as usize].hit);
         let Some(hit) = hits.clone().next() else { return };
@@ -929,7 +881,6 @@ impl SectorWalk<'_> {
             bottom,
             top,
             image: visit.image,
-            edges: None,
         };
         let shown = range.zip(hits).map(|(column, Hit { t, u, .. })| {
             let x = column as usize;
@@ -1013,23 +964,6 @@ fn find_texture_coordinates(
         let ray = Ray::of_camera(origin, fan.directions.of(column));
         *u = coordinate(along_line(&ray, *t, face.side, corner));
     }
-}
-
-/// The distance and the texture coordinate at which a ray along `direction` meets `border` in this image.
-pub(crate) fn texture_coordinate_at(
-    image: MirrorTransform,
-    projection: &Projection,
-    border: &Border,
-    direction: DVec2,
-) -> (f64, f64) {
-    let Border { face, .. } = border;
-    let side = face.side as usize;
-    let ray = Ray::of_camera(projection.origin(), direction);
-    let t = ((face.line() as f64 - projection.origin()[side]) / direction[side]).abs();
-    let along = along_line(&ray, t, face.side, face.corner());
-    let is_mirrored = image.is_mirrored_along(face.side);
-    let is_from_left = is_from_left(image.direction_to_map(direction), face.side);
-    (t, texture_coordinate(along, is_mirrored, is_from_left))
 }
 
 /// The texture coordinate of a point `along` cells from the north or west end of a face, seen along the

@@ -10,7 +10,6 @@
 //! without any. Rejected: making all of them with the world. That took nine tenths of the
 //! instructions of a first frame.
 
-mod area_levels;
 pub mod builtin;
 mod mip_level;
 
@@ -18,8 +17,6 @@ use std::fmt;
 use std::num::NonZeroU32;
 use std::sync::{Arc, OnceLock};
 
-use area_levels::AreaLevels;
-pub(crate) use area_levels::{AreaLod, Repeat};
 pub use mip_level::MipLevel;
 pub(crate) use mip_level::MipLevelByShifts;
 
@@ -36,8 +33,6 @@ pub struct Texture {
     source: PictureSource,
     /// The mip levels after the picture itself, down to one texel.
     smaller: OnceLock<Vec<MipLevel>>,
-    /// Its means over boxes, which most textures never need.
-    means: OnceLock<Box<AreaLevels>>,
 }
 
 impl Texture {
@@ -78,8 +73,7 @@ impl Texture {
 
     fn new(width: NonZeroU32, height: NonZeroU32, has_alpha: bool, source: PictureSource) -> Self {
         let area = f64::from(width.get()) * f64::from(height.get());
-        let (smaller, means) = (OnceLock::new(), OnceLock::new());
-        Self { width, height, area, has_alpha, source, smaller, means }
+        Self { width, height, area, has_alpha, source, smaller: OnceLock::new() }
     }
 
     /// The width in texels.
@@ -135,16 +129,6 @@ impl Texture {
         }
         let smaller = self.smaller.get_or_init(|| mip_level::smaller(picture));
         smaller.get(lod - 1).or(smaller.last()).unwrap_or(picture)
-    }
-
-    /// The means of the texture over boxes of the extent `lod`.
-    #[inline]
-    pub(crate) fn area_level(&self, lod: AreaLod, repeat: Repeat) -> &MipLevel {
-        let picture = &self.source.picture().level;
-        if lod == AreaLod::TEXTURE {
-            return picture;
-        }
-        self.means.get_or_init(|| Box::new(AreaLevels::new(picture))).level(picture, lod, repeat)
     }
 
     /// The height of the mip level `lod` in texels, computed without making the level.

@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_nearly_halve_the_error_and_crawl_of_mip_levels() {
+    fn nine_samples_have_less_than_half_of_the_error() {
         let level = builtin::LEVELS.iter().find(|level| level.name == "museum");
         let world = level.unwrap().world().unwrap();
         let shown = [Filter::Area, Filter::Mip].map(|filter| (DISPLAYS[0], filter));
@@ -428,7 +428,7 @@ mod tests {
                 compare(&world, &way(camera)[..2], size, &shown, &mut all);
             }
             let [area, mip] = all.map(|differences| differences.values());
-            for (index, most) in [(0, 0.55), (5, 0.65)] {
+            for (index, most) in [(0, 0.45), (5, 0.6)] {
                 let [area, mip]: [f64; 2] = [&area, &mip].map(|it| it[index].number().unwrap());
                 assert!(0.0 < area && area < most * mip, "{index} in {size}: {area} {mip}");
             }
