@@ -21,7 +21,7 @@ use crate::visibility::{
     SideLit, Surface,
 };
 use crate::world::texture::MipLevel;
-use crate::world::{Glass, Paint, Texture, TextureId};
+use crate::world::{FaceLight, Glass, Paint, Texture, TextureId};
 
 /// Draws the faces of `list` that hide what is behind them.
 pub(crate) fn draw(
@@ -35,8 +35,8 @@ pub(crate) fn draw(
         let Material::Opaque(paint) = face.material else { continue };
         let shown = ShownFace::new(scene, list, face);
         shown.record(paint, target);
-        let lighting = if scene.plan.walls.faded { None } else { shown.side() };
-        if let Some(side) = lighting {
+        let is_fully_lit = face.light == FaceLight::FULL && scene.world.fog().is_none();
+        if let Some(side) = shown.side().filter(|_| is_fully_lit) {
             let batch = &mut ColumnBatch::new(memory, target, are_direct);
             shown.draw::<_>(paint, batch, |_| SideLit(side));
             batch.draw();

@@ -26,9 +26,7 @@ use crate::visibility::{
     Backdrop, DrawList, Faded, FrameContext, Lighting, Pass, PlaneKind, Rows, SpanMapping,
     VisiblePlane,
 };
-use crate::world::{
-    Covering, Light, Paint, Pattern, PlaneSide, PlaneSurface, Tile, TileId, TileKind,
-};
+use crate::world::{Covering, Light, Paint, Pattern, PlaneSide, PlaneSurface, TileId};
 
 /// Memory for drawing planes, one for each thread.
 #[derive(Clone, Debug, Default)]
@@ -312,11 +310,8 @@ pub(crate) struct DrawnPlane {
 }
 
 impl DrawnPlane {
-    fn new(side: PlaneSide, surface: Option<PlaneSurface>) -> Self {
-        let pass = pass_of(side);
-        let (covering, light) =
-            surface.map_or((None, Light::FULL), |surface| (surface.covering, surface.light));
-        Self { pass, covering, light }
+    fn new(side: PlaneSide, PlaneSurface { covering, light }: PlaneSurface) -> Self {
+        Self { pass: pass_of(side), covering, light }
     }
 }
 
@@ -336,25 +331,16 @@ struct PlaneDrawing<'a> {
 impl<'a> PlaneDrawing<'a> {
     fn new(scene: FrameContext<'a>, list: &'a DrawList, plane: &'a VisiblePlane) -> Self {
         let side = plane.kind.side();
-        let surface = match plane.kind {
-            PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
-                list.sectors.even_surface(sector, side)
-            }
-            PlaneKind::Top(id) => {
-                let surface = surface_of_top(&scene.world.tiles()[usize::from(id.0)]);
-                Some(surface).filter(|_| !scene.world.has_lamplight())
-            }
-        };
-        let even = surface.map(|surface| DrawnPlane::new(side, Some(surface)));
+        let even = plane.look.map(|look| DrawnPlane::new(side, look));
         Self { scene, list, plane, is_joined: false, side, even }
     }
 
     /// Whether `plane` has the same height, side and image, and looks the same in each cell.
     fn is_alike(&self, plane: &'a VisiblePlane) -> bool {
-        let VisiblePlane { height, kind, image, .. } = *plane;
-        (height, kind.side(), image) == (self.plane.height, self.side, self.plane.image)
-            && (kind == self.plane.kind
-                || self.even.is_some() && self.even == Self::new(self.scene, self.list, plane).even)
+        let VisiblePlane { height, kind, look, image, .. } = *plane;
+        (height, kind.side(), look, image)
+            == (self.plane.height, self.side, self.plane.look, self.plane.image)
+            && (look.is_some() || kind == self.plane.kind)
     }
 
     /// The first column, and the rows from there on.
@@ -545,23 +531,13 @@ impl<'a> PlaneDrawing<'a> {
             PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
                 self.list.sectors.surface(world, sector, self.side, tile)
             }
-            PlaneKind::Top(id) => surface_of_top(&world.tiles()[usize::from(id.0)]),
+            PlaneKind::Top(id) => PlaneSurface::of_top(&world.tiles()[usize::from(id.0)]),
         }
     }
 }
 
 /// Neighbouring columns in one light.
 type LitColumns = (Range<usize>, Light);
-
-/// The surface of the top of a pillar.
-fn surface_of_top(tile: &Tile) -> PlaneSurface {
-    let paint = match tile.kind {
-        TileKind::Shape(shape) => shape.paint,
-        _ => tile.riser,
-    };
-    let light = tile.light.unwrap_or(Light::FULL);
-    PlaneSurface { covering: Some(Covering::from(paint)), light }
-}
 
 fn pass_of(side: PlaneSide) -> Pass {
     match side {

@@ -11,7 +11,7 @@ use super::face::{Face, FaceColumn, Material, Rows};
 use super::fan::Directions;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::world::{Light, PlaneSide, SectorId, Sectors, Sprite, TileId};
+use crate::world::{Light, PlaneSide, PlaneSurface, SectorId, Sectors, Sprite, TileId};
 
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +63,8 @@ pub(crate) struct VisiblePlane {
     pub(crate) first: usize,
     pub(crate) kind: PlaneKind,
     pub(crate) height: f64,
+    /// The look, if it is the same in all cells of the plane.
+    pub(crate) look: Option<PlaneSurface>,
     /// The image in which it is seen.
     pub(crate) image: MirrorTransform,
 }
@@ -172,6 +174,7 @@ impl DrawList {
     pub(crate) fn add_plane(
         &mut self,
         (kind, height): (PlaneKind, f64),
+        look: Option<PlaneSurface>,
         image: MirrorTransform,
         columns: &Range<u32>,
         rows: impl Iterator<Item = Rows>,
@@ -182,7 +185,8 @@ impl DrawList {
             self.plane_rows.truncate(first);
             return;
         }
-        self.planes.push(VisiblePlane { columns: columns.clone(), first, kind, height, image });
+        let columns = columns.clone();
+        self.planes.push(VisiblePlane { columns, first, kind, height, look, image });
     }
 
     /// The first column of `plane`, and its rows from that column on.
@@ -207,12 +211,9 @@ impl DrawList {
 
     /// Returns true if the sky may be in view.
     pub(crate) fn shows_sky(&self) -> bool {
-        let is_of_sky = |plane: &VisiblePlane| match plane.kind {
-            PlaneKind::Ceiling(sector) => {
-                let surface = self.sectors.even_surface(sector, PlaneSide::Ceiling);
-                surface.is_none_or(|surface| surface.covering.is_none())
-            }
-            _ => false,
+        let is_of_sky = |plane: &VisiblePlane| {
+            plane.kind.side() == PlaneSide::Ceiling
+                && plane.look.is_none_or(|look| look.covering.is_none())
         };
         self.backdrops.contains(&Some(Backdrop::Sky)) || self.planes.iter().any(is_of_sky)
     }

@@ -28,8 +28,8 @@ use crate::cast::{
 };
 use crate::world::sprite::builtin;
 use crate::world::{
-    Camera, Cell, FaceLight, GapObject, Glass, Paint, Pattern, PlaneSide, Sector, SectorId, Sky,
-    Tile, TileId, TileKind, TileSectors,
+    Camera, Cell, FaceLight, GapObject, Glass, Paint, Pattern, PlaneSide, PlaneSurface, Sector,
+    SectorId, Sky, Tile, TileId, TileKind, TileSectors,
 };
 
 /// The greatest number of reflections of a ray. The mirror after the last one shows only its tint.
@@ -104,6 +104,9 @@ struct BorderGroup {
     /// The face of the first border.
     face: CellFace,
 }
+
+/// The light on a face, and its paint if it is the jamb of a door.
+type BorderLook = (FaceLight, Option<Paint>);
 
 /// The kind of a next visit.
 #[derive(Clone, Copy)]
@@ -346,11 +349,13 @@ impl SectorWalk<'_> {
         let is_everything = visit.is_at_camera
             && range.len() == projection.columns()
             && sector.holds != GapObject::Standing;
-        if shows_floor && !(is_everything && self.show_behind(visit, PlaneSide::Floor)) {
-            self.add_plane(visit, sector, &range, PlaneSide::Floor);
-        }
-        if shows_ceiling && !(is_everything && self.show_behind(visit, PlaneSide::Ceiling)) {
-            self.add_plane(visit, sector, &range, PlaneSide::Ceiling);
+        let [floor, ceiling] = self.looks_of_planes(visit, sector, &range);
+        let sides =
+            [(PlaneSide::Floor, floor, shows_floor), (PlaneSide::Ceiling, ceiling, shows_ceiling)];
+        for (side, look, is_shown) in sides {
+            if is_shown && !(is_everything && self.show_behind(sector, side, look)) {
+                self.add_plane(visit, sector, &range, (side, look));
+            }
         }
         if visit.bounces == 0 {
             self.extend_distances(&range);
@@ -385,7 +390,13 @@ impl SectorWalk<'_> {
     }
 
     /// Adds the floor or the ceiling of the sector in `range`. Its rows are in `bottoms` or `tops`.
-    fn add_plane(&mut self, visit: &Visit, sector: &Sector, range: &Range<u32>, side: PlaneSide) {
+    fn add_plane(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        range: &Range<u32>,
+        (side, look): (PlaneSide, Option<PlaneSurface>),
+    ) {
         let indices = range.start as usize..range.end as usize;
         let ColumnMemory { starts, ends, bottoms, tops, .. } = &self.memory.columns;
         let clips = starts[indices.clone()].iter().zip(&ends[indices.clone()]);
@@ -395,22 +406,117 @@ impl SectorWalk<'_> {
                 let rows =
                     rows.map(|((&start, &end), &bottom)| Rows { start: bottom.max(start), end });
                 let plane = (PlaneKind::Floor(visit.sector), sector.bottom);
-                self.list.add_plane(plane, visit.image, range, rows);
+                self.list.add_plane(plane, look, visit.image, range, rows);
             }
             PlaneSide::Ceiling => {
                 let rows = clips.zip(&tops[indices]);
                 let rows = rows.map(|((&start, &end), &top)| Rows { start, end: top.min(end) });
                 let plane = (PlaneKind::Ceiling(visit.sector), sector.top);
-                self.list.add_plane(plane, visit.image, range, rows);
+                self.list.add_plane(plane, look, visit.image, range, rows);
             }
         }
     }
 
+    /// The looks of the floor and the ceiling along the rays of `range` in the sector, if they are the same in all
+    /// cells that the rays may cross. They may differ in cells out of view.
+    fn looks_of_planes(
+        &self,
+        visit: &Visit,
+        sector: &Sector,
+        range: &Range<u32>,
+    ) -> [Option<PlaneSurface>; 2] {
+        /// The most cells to compare. In more, the looks count as uneven.
+        const MAX_CELLS: i64 = 1024;
+        let sides = [PlaneSide::Floor, PlaneSide::Ceiling];
+        let sectors = self.fan.sectors;
+        let even = sides.map(|side| sectors.even_surface(visit.sector, side));
+        if even.iter().all(Option::is_some) {
+            return even;
+        }
+        let world = self.scene.world;
+        let grid = world.grid();
+        let Some([[west, east], [north, south]]) = self.cells_along(visit, sector, range) else {
+            return even;
+        };
+        let [east, south] = [east.min(grid.width().into()), south.min(grid.height().into())];
+        let [west, north] = [west.max(0), north.max(0)];
+        if (east - west).saturating_mul(south - north) > MAX_CELLS {
+            return even;
+        }
+        let is_lamplit = world.has_lamplight();
+        let (mut latest, mut looks) = (None, None);
+        let mut are_even = [true; 2];
+        let places = (north..south).flat_map(|row| (west..east).map(move |column| (column, row)));
+        for (cell, tile) in places.filter_map(|(column, row)| grid.cell(column, row)) {
+            let is_known = latest.replace(tile) == Some(tile) && !is_lamplit;
+            if is_known || !sectors.of(tile).have(visit.sector) {
+                continue;
+            }
+            let lamplight = world.lamplight_in(cell);
+            let own = sides.map(|side| {
+                let own = sectors.surface(world, visit.sector, side, tile);
+                PlaneSurface { light: own.light.plus(lamplight), ..own }
+            });
+            let known = looks.get_or_insert(own);
+            are_even = [0, 1].map(|side| are_even[side] && known[side] == own[side]);
+            if are_even == [false; 2] {
+                break;
+            }
+        }
+        let look = |side: usize| looks.filter(|_| are_even[side]).map(|looks| looks[side]);
+        [0, 1].map(|side| even[side].or_else(|| look(side)))
+    }
+
+    /// The columns and the rows of the cells that the rays of `range` may cross from the distances `from` to the
+    /// distances `t`: on each axis, the first one and the one after the last. `None` if a distance is extreme.
+    fn cells_along(
+        &self,
+        visit: &Visit,
+        sector: &Sector,
+        range: &Range<u32>,
+    ) -> Option<[[i64; 2]; 2]> {
+        /// A coordinate beyond all images of maps.
+        const FAR: f64 = 1e9;
+        /// Points this near to a cell may be looked up in it.
+        const EPSILON: f64 = 1e-6;
+        let origin = self.scene.projection.origin();
+        let WalkMemory { borders, columns: ColumnMemory { from, t, .. }, .. } = &*self.memory;
+        let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut add = |column: u32| {
+            let direction = self.fan.directions.of(column);
+            for t in [from[column as usize], t[column as usize]] {
+                let point = origin + direction * t;
+                (least, most) = (least.min(point), most.max(point));
+            }
+        };
+        if sector.holds == GapObject::Standing {
+            // The rays begin or end at an object, which may be round.
+            range.clone().for_each(add);
+        } else {
+            // The other rays end on straight lines between these.
+            for Border { columns, .. } in borders {
+                add(columns.start);
+                add(columns.end - 1);
+            }
+        }
+        let are_near = least.cmpgt(DVec2::splat(-FAR)).all() && most.cmplt(DVec2::splat(FAR)).all();
+        if !are_near {
+            return None;
+        }
+        let ends = [(least - EPSILON).floor(), (most + EPSILON).floor()];
+        let [first, last] = ends.map(|it| visit.image.cell_to_map([it.x as i64, it.y as i64]));
+        Some([0, 1].map(|axis| [first[axis].min(last[axis]), first[axis].max(last[axis]) + 1]))
+    }
+
     /// Makes the floor or the ceiling of the camera's sector a backdrop, if it has one colour or is a sky
     /// without texels. Returns whether it does.
-    fn show_behind(&mut self, visit: &Visit, side: PlaneSide) -> bool {
-        let Some(surface) = self.fan.sectors.even_surface(visit.sector, side) else { return false };
-        let sector = self.fan.sectors.get(visit.sector);
+    fn show_behind(
+        &mut self,
+        sector: &Sector,
+        side: PlaneSide,
+        look: Option<PlaneSurface>,
+    ) -> bool {
+        let Some(surface) = look else { return false };
         let backdrop = match surface.covering.map(|covering| covering.pattern) {
             Some(Pattern::Plain(Paint::Color(color))) => {
                 let height = if side == PlaneSide::Floor { sector.bottom } else { sector.top };
@@ -467,7 +573,9 @@ impl SectorWalk<'_> {
         let mut first = 0;
         while first < self.memory.borders.len() {
             let borders = &self.memory.borders;
-            let is_other = |&index: &usize| !self.looks_like(&borders[first], &borders[index]);
+            let look = self.look_of_border(visit, &borders[first]);
+            let is_other =
+                |&index: &usize| !self.continues(visit, (&borders[first], &look), &borders[index]);
             let end = (first + 1..borders.len()).find(is_other).unwrap_or(borders.len());
             let group = &BorderGroup {
                 borders: first..end,
@@ -485,15 +593,28 @@ impl SectorWalk<'_> {
         }
     }
 
-    /// Returns true if two neighbouring faces are one face of one tile in one light.
-    fn looks_like(&self, one: &Border, other: &Border) -> bool {
-        let walls = self.scene.plan.walls;
+    /// Returns true if `other` continues the face at `one` to the right: in one line, with the same tile, jamb and
+    /// light.
+    fn continues(
+        &self,
+        visit: &Visit,
+        (one, (light, jamb)): (&Border, &BorderLook),
+        other: &Border,
+    ) -> bool {
         let tile = |border: &Border| border.into.map(|(_, tile)| tile);
         let stands = |id: TileId| self.fan.sectors.held_by(id) == GapObject::Standing;
-        !(walls.faded || walls.jambs)
-            && one.face.is_in_line_with(&other.face)
+        one.face.is_in_line_with(&other.face)
             && tile(one) == tile(other)
             && !tile(one).is_some_and(stands)
+            && light.is_even()
+            && self.look_of_border(visit, other) == (*light, *jamb)
+    }
+
+    /// The light on the face at `border`, and its paint if it is the jamb of a door.
+    fn look_of_border(&self, visit: &Visit, border: &Border) -> BorderLook {
+        let has_jambs = self.scene.plan.walls.jambs;
+        let jamb = if has_jambs { self.jamb(visit, &border.face) } else { None };
+        (self.light_on_face(visit, border), jamb)
     }
 
     /// Shows the surfaces beyond the edge of the map: the side of the ground if the sector's floor is lower,
@@ -518,8 +639,10 @@ impl SectorWalk<'_> {
         let below = clips().map(|(&start, &end)| Rows { start: start.max(horizon), end });
         let sky = (PlaneKind::Ceiling(SectorId::BEYOND), f64::INFINITY);
         let ground = (PlaneKind::Floor(SectorId::BEYOND), ground);
-        self.list.add_plane(sky, visit.image, range, above);
-        self.list.add_plane(ground, visit.image, range, below);
+        let look = |side| self.fan.sectors.even_surface(SectorId::BEYOND, side);
+        let [look_of_sky, look] = [PlaneSide::Ceiling, PlaneSide::Floor].map(look);
+        self.list.add_plane(sky, look_of_sky, visit.image, range, above);
+        self.list.add_plane(ground, look, visit.image, range, below);
     }
 
     /// Shows the solid parts of the cells of the tile `id` behind `group`, and prepares the visits to their
@@ -589,24 +712,24 @@ impl SectorWalk<'_> {
     fn paint_of_rock(&self, visit: &Visit, group: &BorderGroup, tile: &Tile) -> Paint {
         match tile.kind {
             TileKind::Wall(_) if self.scene.plan.walls.jambs => {
-                self.jamb(visit, group).unwrap_or(tile.riser)
+                self.jamb(visit, &group.face).unwrap_or(tile.riser)
             }
             _ => tile.riser,
         }
     }
 
     /// The paint of a wall that faces a door: the door's jamb.
-    fn jamb(&self, visit: &Visit, group: &BorderGroup) -> Option<Paint> {
-        let (_, before) = self.cell_before(visit, group)?;
+    fn jamb(&self, visit: &Visit, face: &CellFace) -> Option<Paint> {
+        let (_, before) = self.cell_before(visit, face)?;
         match self.scene.world.tiles()[usize::from(before.0)].kind {
             TileKind::Door(door) | TileKind::Doorway(door) => Some(door.jamb),
             _ => None,
         }
     }
 
-    /// The cell from which the rays come to `group`, and its tile.
-    fn cell_before(&self, visit: &Visit, group: &BorderGroup) -> Option<(Cell, TileId)> {
-        let [column, row] = visit.image.cell_to_map(group.face.place_before());
+    /// The cell from which the rays come to `face`, and its tile.
+    fn cell_before(&self, visit: &Visit, face: &CellFace) -> Option<(Cell, TileId)> {
+        let [column, row] = visit.image.cell_to_map(face.place_before());
         self.scene.world.grid().cell(column, row)
     }
 
@@ -702,29 +825,30 @@ impl SectorWalk<'_> {
             first,
             facing: Facing::Side(face.side),
             material,
-            light: self.light_on_face(visit, group),
+            light: self.light_on_face(visit, &self.memory.borders[group.borders.start]),
             bottom,
             top,
             image: visit.image,
         });
     }
 
-    /// The light on the faces of `group`: the light of their tile if it is solid and has its own, else the
-    /// light in the cell in front of the first face.
-    fn light_on_face(&self, visit: &Visit, group: &BorderGroup) -> FaceLight {
+    /// The light on the face at `border`: the light of its tile if it is solid and has its own, else the light
+    /// in the cell in front of the face.
+    fn light_on_face(&self, visit: &Visit, border: &Border) -> FaceLight {
         let world = self.scene.world;
         if !self.scene.plan.walls.faded {
             return FaceLight::FULL;
         }
-        let into = self.memory.borders[group.borders.start].into;
-        let tile = into.map(|(_, id)| &world.tiles()[usize::from(id.0)]);
+        let tile = border.into.map(|(_, id)| &world.tiles()[usize::from(id.0)]);
         let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
         if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
             return FaceLight::even(own);
         }
-        let Some((before, _)) = self.cell_before(visit, group) else { return FaceLight::FULL };
+        let Some((before, _)) = self.cell_before(visit, &border.face) else {
+            return FaceLight::FULL;
+        };
         let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
-        match into {
+        match border.into {
             // The step below a door has the same light everywhere, like the door's leaf.
             Some((cell, _)) if !is_door => world.face_light(cell, before),
             _ => FaceLight::even(world.light_in(before)),
@@ -902,7 +1026,7 @@ impl SectorWalk<'_> {
         range: Range<u32>,
         (id, top): (TileId, f64),
     ) {
-        let projection = self.scene.projection;
+        let (world, projection) = (self.scene.world, self.scene.projection);
         let first = visit.columns.start;
         let WalkMemory { columns, passages, .. } = &mut *self.memory;
         for column in range.clone() {
@@ -924,7 +1048,9 @@ impl SectorWalk<'_> {
             ends[x] = projection.row_of_height(top, t[x]).clamp(starts[x], end);
             Rows { start: ends[x], end }
         });
-        self.list.add_plane((PlaneKind::Top(id), top), visit.image, &range, rows);
+        let look = PlaneSurface::of_top(&world.tiles()[usize::from(id.0)]);
+        let look = Some(look).filter(|_| !world.has_lamplight());
+        self.list.add_plane((PlaneKind::Top(id), top), look, visit.image, &range, rows);
     }
 }
 

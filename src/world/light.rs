@@ -146,11 +146,16 @@ impl FaceLight {
         Self { middle: light, beside: [light; 2] }
     }
 
+    /// Returns true if the light is the same everywhere.
+    pub(crate) fn is_even(self) -> bool {
+        self.beside == [self.middle; 2]
+    }
+
     /// The light at `u`, from 0 at the left end to 1 at the right one.
     #[inline]
     pub(crate) fn at(self, u: f64) -> Light {
         let Self { middle, beside: [left, right] } = self;
-        if left == middle && right == middle {
+        if self.is_even() {
             return middle;
         }
         let (next, share) = if u < 0.5 { (left, 0.5 - u) } else { (right, u - 0.5) };
@@ -166,6 +171,7 @@ impl World {
         let Some(tile) = self.tile_in(before).filter(|_| self.light_varies) else {
             return FaceLight::even(middle);
         };
+        let is_lamplit = self.has_lamplight();
         // The right side for an observer who looks from `before` to `cell`, because y grows to the
         // south.
         let ahead = step(before, cell);
@@ -173,7 +179,9 @@ impl World {
         let beside = [(-right.0, -right.1), right].map(|(columns, rows)| {
             let next =
                 before.moved(columns, rows).and_then(|cell| Some((cell, self.tile_in(cell)?)));
-            next.filter(|(_, next)| is_lit_from(tile, next))
+            // Most cells beside have the same tile, and with it the same light.
+            next.filter(|(_, next)| is_lamplit || !std::ptr::eq(*next, tile))
+                .filter(|(_, next)| is_lit_from(tile, next))
                 .map_or(middle, |(cell, _)| self.light_in(cell))
         });
         FaceLight { middle, beside }

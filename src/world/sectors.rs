@@ -278,6 +278,16 @@ impl GapObject {
 }
 
 impl PlaneSurface {
+    /// The top of a shape in a cell of `tile`, without lamplight.
+    pub(crate) fn of_top(tile: &Tile) -> Self {
+        let paint = match tile.kind {
+            TileKind::Shape(shape) => shape.paint,
+            _ => tile.riser,
+        };
+        let light = tile.light.unwrap_or(Light::FULL);
+        Self { covering: Some(Covering::from(paint)), light }
+    }
+
     /// The floor and the ceiling of a gap of `tile`, which may be above its roof.
     fn of_gap(tile: &Tile, gap: Gap, is_roof: bool) -> [Self; 2] {
         let light = tile.light.unwrap_or(Light::FULL);

@@ -126,6 +126,32 @@ fn uneven_cells_cost_only_what_is_in_view() {
     assert!(raised.walk.rays < level.walk.rays + 20, "{:?}", [raised.walk, level.walk]);
 }
 
+/// Spans would be cut and faces split if the look of a tile in another room counted.
+#[test]
+fn a_tile_in_another_room_changes_no_count() {
+    let counts = |tile: &str| {
+        let text = format!(
+            "floor = 'flagstone'\nceiling = 'wood'\n\
+             grid = '''\n####################\n#@.................#\n#......#...........#\n\
+             #..................#\n##################.#\n##########.,.#######\n\
+             ####################\n'''\n\
+             tiles.'#'.wall = 'brick'\ntiles.','.{tile}\nthings.'@'.start = 10\n"
+        );
+        explained(&map::parse_str(&text).unwrap()).stats
+    };
+    let level = counts("light = 1.0");
+    for tile in [
+        "light = 0.5",
+        "floor = 'moss'",
+        "ceiling = 'sky'",
+        "door = 'oak'",
+        "pillar = 'marble'",
+        "floor_height = 0.25",
+    ] {
+        assert_eq!(counts(tile), level, "{tile}");
+    }
+}
+
 #[test]
 fn a_scene_without_things_considers_none() {
     for name in ["flat", "floor", "masks"] {
