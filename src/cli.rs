@@ -17,7 +17,6 @@ pub mod machine;
 pub mod options;
 pub mod output_file;
 pub mod parse;
-mod pixels;
 mod play;
 mod recording;
 pub mod replay;

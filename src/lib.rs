@@ -103,6 +103,21 @@
 //! [`HeldKeys`](tui::HeldKeys) turns the keys of any terminal into intents, also where the terminal reports no
 //! releases. The example `walk` in the repository is a whole program.
 //!
+//! # A test
+//!
+//! [`testing`] compares what any ratatui program draws with a file beside the test, glyphs and colours alike:
+//!
+//! ```no_run
+//! # #[cfg(feature = "tui")] {
+//! # use cellcaster::{map::builtin, tui::FirstPerson, world::FieldOfView};
+//! use cellcaster::testing::{CellGrid, assert_grid};
+//!
+//! # let world = builtin::LEVELS[0].world().unwrap();
+//! # let camera = world.start_camera(FieldOfView::default());
+//! assert_grid!(CellGrid::of(FirstPerson::new(&world, &camera), 80, 24), "first_level");
+//! # }
+//! ```
+//!
 //! # Over a link
 //!
 //! The feature `terminal` adds what the program itself uses in place of ratatui's backend. A
@@ -122,7 +137,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | none | the engine, up to the frame, without any terminal crate |
-//! | `tui` | the widgets, and held keys |
+//! | `tui` | the widgets, held keys, and [snapshot tests](testing) |
 //! | `terminal` | the terminal, and the game in it ([`app`]) |
 //! | `cli` (default) | the command line |
 //!
@@ -170,6 +185,8 @@ mod sort;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod terminal;
+#[cfg(feature = "tui")]
+pub mod testing;
 #[cfg(feature = "tui")]
 pub mod tui;
 mod visibility;

@@ -33,6 +33,7 @@ mod first_person;
 mod glyphs;
 pub(crate) mod held;
 mod minimap;
+pub(crate) mod pixels;
 
 pub use self::correction::Correction;
 pub use self::first_person::{FirstPerson, View};

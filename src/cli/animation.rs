@@ -29,10 +29,10 @@ use super::Error;
 use super::options::{frames, window};
 use super::output_file::OutputFile;
 use super::parse::Takes;
-use super::pixels::{self, CellSize};
 use crate::app::MAX_PLAYBACK_STEPS;
 use crate::game::STEPS_PER_SECOND;
 use crate::tui::CellAspect;
+use crate::tui::pixels::{self, CellSize, into_io};
 
 /// A part of a replay, and the window in which it is drawn.
 #[derive(Args, Clone, Debug)]
@@ -333,14 +333,6 @@ impl fmt::Display for TooManyFrames {
 impl From<TooManyFrames> for Error {
     fn from(error: TooManyFrames) -> Self {
         Self::mistake(error.to_string())
-    }
-}
-
-/// The error of the output behind `error`, if there is one.
-pub(crate) fn into_io(error: EncodingError) -> io::Error {
-    match error {
-        EncodingError::IoError(error) => error,
-        other => io::Error::other(other),
     }
 }
 

@@ -29,6 +29,7 @@ use crate::generate::{Generator, Site};
 use crate::map::Level;
 use crate::render::{DynCaster, Renderable};
 use crate::space::{self, Elevation, Scene};
+use crate::testing::MAX_CELLS;
 use crate::tui::{FirstPerson, View};
 use crate::world::{Camera, Cell, FieldOfView, Heading, Pitch, TileKind, World};
 
@@ -58,7 +59,8 @@ pub(crate) struct Snapshot {
     pitch: Option<Pitch>,
     #[command(flatten)]
     pub(crate) look: PictureOptions,
-    /// The output format: characters (text), characters with colours (ansi), a list of cells (json) or a picture (png)
+    /// The output format: characters (text), characters with colours (ansi), a list of cells (json), a text for tests and
+    /// reviews (grid; see "compare"), or a picture (png)
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Print how the frame is drawn and what it costs, instead of the frame
@@ -116,6 +118,12 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
             "standard output is a terminal, which cannot show a PNG: redirect it to a file, as in \
              \"cellcaster snapshot --format png > picture.png\"",
         ));
+    }
+    let cells = usize::from(options.size().width) * usize::from(options.size().height);
+    if options.format == Format::Grid && !options.explain && cells > MAX_CELLS {
+        return Err(Error::mistake(format!(
+            "a grid has at most {MAX_CELLS} cells, but --size asks for {cells}: choose a smaller size"
+        )));
     }
     replace_art(options.look.art.as_deref())?;
     if options.watch {

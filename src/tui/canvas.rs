@@ -218,7 +218,6 @@ impl Mosaic {
         }
     }
 
-    #[cfg(feature = "terminal")]
     /// Returns true if the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
     /// and octants are several rows of such parts.
     pub const fn has(self, x: u32, y: u32) -> bool {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The parts of a package that are only for tests.
-const FOR_TESTS: [&str; 5] = ["tests", "simulation", "simulated", "testing", "fuzzing"];
+const FOR_TESTS: [&str; 4] = ["tests", "simulation", "simulated", "fuzzing"];
 
 /// The modules in the order of the table under `heading`.
 fn table(heading: &str) -> Vec<String> {

@@ -1,17 +1,17 @@
-//! The formats of a snapshot: text, ANSI, JSON and PNG. Each receives the cells row by row.
+//! The formats of a snapshot: text, ANSI, JSON, a grid and PNG. Each receives the cells row by row.
 
 use std::io::{self, BufWriter, Write};
 
 use clap::ValueEnum;
-use png::{BitDepth, ColorType, Encoder, StreamWriter};
-use ratatui::buffer::Cell;
-use ratatui::layout::Size;
+use png::StreamWriter;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Rect, Size};
 use serde::Serialize;
 
-use crate::cli::animation::into_io;
-use crate::cli::pixels::CellSize;
 use crate::color::Rgb;
 use crate::terminal::{Bytes, Style};
+use crate::testing::CellGrid;
+use crate::tui::pixels::{CellSize, into_io, png_encoder};
 use crate::tui::{CellAspect, rgb_of};
 
 /// The format of a snapshot.
@@ -21,6 +21,7 @@ pub(crate) enum Format {
     Text,
     Ansi,
     Json,
+    Grid,
     Png,
 }
 
@@ -44,6 +45,11 @@ impl Format {
             Self::Text => Box::new(Text { output: BufWriter::new(output) }),
             Self::Ansi => Box::new(Ansi { output: BufWriter::new(output), line: Bytes::default() }),
             Self::Json => Box::new(Json::new(BufWriter::new(output), size)?),
+            Self::Grid => {
+                let area = Rect::new(0, 0, size.width, size.height);
+                let cells = Buffer { area, content: Vec::new() };
+                Box::new(Grid { output: BufWriter::new(output), cells })
+            }
             // PNG has its own buffer, and would not report an error from a second buffer behind it.
             Self::Png => Box::new(Png::new(output, size, aspect)?),
         })
@@ -151,12 +157,7 @@ struct Png<W: Write + 'static> {
 impl<W: Write + 'static> Png<W> {
     fn new(output: W, size: Size, aspect: CellAspect) -> io::Result<Self> {
         let cell = CellSize::of(size, aspect);
-        let width = u32::from(size.width) * cell.width;
-        let height = u32::from(size.height) * cell.height;
-        let mut encoder = Encoder::new(output, width, height);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        let writer = encoder.write_header().map_err(into_io)?;
+        let writer = png_encoder(output, size, cell).write_header().map_err(into_io)?;
         let stream = writer.into_stream_writer().map_err(into_io)?;
         Ok(Self { stream, cell, pixels: Vec::new() })
     }
@@ -171,5 +172,23 @@ impl<W: Write + 'static> Writer for Png<W> {
 
     fn finish(self: Box<Self>) -> io::Result<()> {
         self.stream.finish().map_err(into_io)
+    }
+}
+
+/// Collects cells, and writes the text of their grid at the end.
+struct Grid<W> {
+    output: W,
+    cells: Buffer,
+}
+
+impl<W: Write> Writer for Grid<W> {
+    fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
+        self.cells.content.extend_from_slice(cells);
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        write!(self.output, "{}", CellGrid::from(self.cells))?;
+        self.output.flush()
     }
 }

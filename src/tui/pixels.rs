@@ -1,13 +1,16 @@
-//! Cells as pixels with their glyphs, as a terminal shows them.
+//! Cells as pixels with their glyphs, as a terminal shows them, and PNGs of them.
+
+use std::io::{self, Write};
 
 use font8x8::{BASIC_FONTS, BLOCK_FONTS, BOX_FONTS, LATIN_FONTS, UnicodeFonts};
+use png::{BitDepth, ColorType, Encoder, EncodingError};
 use ratatui::buffer::Cell;
 use ratatui::layout::Size;
-use ratatui::style::Modifier;
+use ratatui::style::{Color, Modifier};
 
-use crate::color::Rgb;
-use crate::tui::canvas::Mosaic;
-use crate::tui::{CellAspect, rgb_of};
+use super::canvas::Mosaic;
+use super::{CellAspect, rgb_of};
+use crate::color::{Rgb, palette};
 
 /// The side of a glyph in pixels, before the glyph is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;
@@ -58,11 +61,53 @@ impl CellSize {
 
 /// The colours of a cell: of its background, and of its glyph.
 pub(crate) fn colors(cell: &Cell) -> [Rgb; 2] {
-    let mut colors = [rgb_of(cell.bg).unwrap_or(BACKGROUND), rgb_of(cell.fg).unwrap_or(FOREGROUND)];
+    let mut colors = [shown(cell.bg).unwrap_or(BACKGROUND), shown(cell.fg).unwrap_or(FOREGROUND)];
     if cell.modifier.contains(Modifier::REVERSED) {
         colors.reverse();
     }
     colors
+}
+
+/// The colour that most terminals show. `None` for the terminal's default colours.
+pub(crate) fn shown(color: Color) -> Option<Rgb> {
+    const NAMED: [Color; 16] = [
+        Color::Black,
+        Color::Red,
+        Color::Green,
+        Color::Yellow,
+        Color::Blue,
+        Color::Magenta,
+        Color::Cyan,
+        Color::Gray,
+        Color::DarkGray,
+        Color::LightRed,
+        Color::LightGreen,
+        Color::LightYellow,
+        Color::LightBlue,
+        Color::LightMagenta,
+        Color::LightCyan,
+        Color::White,
+    ];
+    let named = || NAMED.iter().position(|&named| named == color);
+    rgb_of(color).or_else(|| Some(palette::of_256(named()? as u8)))
+}
+
+/// An encoder of a PNG of `size` cells.
+pub(crate) fn png_encoder<'a, W: Write>(output: W, size: Size, cell: CellSize) -> Encoder<'a, W> {
+    let width = u32::from(size.width) * cell.width;
+    let height = u32::from(size.height) * cell.height;
+    let mut encoder = Encoder::new(output, width, height);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder
+}
+
+/// The error of the output behind `error`, if there is one.
+pub(crate) fn into_io(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
 }
 
 /// The picture of a character.
