@@ -7,6 +7,7 @@
 pub mod animation;
 mod cast;
 mod check;
+mod compare;
 pub mod config;
 pub mod error;
 mod external;
@@ -61,6 +62,7 @@ enum Command {
     Snapshot(snapshot::Snapshot),
     Cast(cast::Cast),
     Check(check::Check),
+    Compare(compare::Compare),
     Levels(levels::LevelsCommand),
     Config(config::Config),
     Replay(replay::ReplayCommand),
@@ -134,6 +136,7 @@ impl Arguments {
             Command::Snapshot(options) => snapshot::run(options, caster),
             Command::Cast(options) => cast::run(&options, caster),
             Command::Check(options) => check::run(&options),
+            Command::Compare(options) => compare::run(&options),
             Command::Levels(options) => levels::run(&options),
             Command::Config(options) => config::run(options),
             Command::Replay(options) => replay::run(options, caster),

@@ -118,7 +118,8 @@ program or on the PATH.
 
 const EXIT_STATUS: &str = "
 Exit status: 0 for success; 2 for a mistake in the arguments, a map or a script;
-1 for an error of the system, or if replay --verify does not reach an exit.";
+1 for an error of the system, if replay --verify does not reach an exit, or if
+compare finds a difference.";
 
 fn page(program: Command) -> io::Result<Vec<u8>> {
     // The text after the options would repeat other sections of the page.

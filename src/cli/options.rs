@@ -24,11 +24,12 @@ use crate::world::FieldOfView;
 pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// The names of the commands.
-pub(crate) const COMMANDS: [&str; 11] = [
+pub(crate) const COMMANDS: [&str; 12] = [
     "play",
     "snapshot",
     "cast",
     "check",
+    "compare",
     "levels",
     "config",
     "replay",

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod art;
+mod compare;
 mod descents;
 mod full_disk;
 mod hostile;
