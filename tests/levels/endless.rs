@@ -23,11 +23,9 @@ fn every_generator_looks_as_it_did() {
         ("office", "1", "20,20"),
     ] {
         let level = ["--generate", generator, "--seed", seed, "--start", start];
-        for format in ["text", "png"] {
-            let arguments = [&["snapshot"][..], &level, &["--format", format]].concat();
-            let name = format!("{generator}_{seed}_{format}.{format}");
-            insta::assert_binary_snapshot!(&name, output_of(&arguments));
-        }
+        let arguments = [&["snapshot"][..], &level, &["--format", "png"]].concat();
+        let name = format!("{generator}_{seed}_png.png");
+        insta::assert_binary_snapshot!(&name, output_of(&arguments));
     }
 }
 

@@ -4,39 +4,34 @@ use std::io::Read;
 use std::num::NonZeroU16;
 use std::process::Stdio;
 
-use crate::support::{cellcaster, complaint_about, output_of};
-use cellcaster::color::palette::ColorDepth;
+use crate::support::{cellcaster, complaint_about, grid_of, output_of};
 use cellcaster::map;
-use cellcaster::tui::{FirstPerson, View};
+use cellcaster::testing::{CellGrid, assert_grid};
+use cellcaster::tui::FirstPerson;
 use cellcaster::world::FieldOfView;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
 use ratatui::style::Color;
-use ratatui::widgets::StatefulWidget;
 use serde_json::Value;
 
 /// Levels that never change, unlike the levels of the campaign.
 const LEVELS: [&str; 5] = ["cellar", "museum", "citadel", "cistern", "observatory"];
 
-/// Compares with a golden file, whose bytes are the same on every machine.
-fn assert_golden(level: &str, size: &str, options: &[(&str, &str)], format: &str) {
+/// Compares the cells with a golden grid, and their picture with a golden PNG.
+fn assert_golden(level: &str, size: &str, options: &[(&str, &str)]) {
     let map = format!("tests/maps/{level}.toml");
-    let mut arguments = vec!["snapshot", &map, "--size", size, "--format", format];
+    let mut arguments = vec!["snapshot", &map, "--size", size];
     arguments.extend(options.iter().flat_map(|&(name, value)| [name, value]));
-    let picture = output_of(&arguments);
     let values = options.iter().map(|&(_, value)| value);
-    let name: Vec<&str> = [level, size].into_iter().chain(values).chain([format]).collect();
-    let name = format!("{}.{format}", name.join("_"));
-    insta::assert_binary_snapshot!(&name, picture);
+    let name = [level, size].into_iter().chain(values).collect::<Vec<_>>().join("_");
+    assert_grid!(grid_of(&arguments), &name);
+    let picture = output_of(&[&arguments[..], &["--format", "png"]].concat());
+    insta::assert_binary_snapshot!(&format!("{name}_png.png"), picture);
 }
 
 #[test]
 fn every_level_looks_as_it_did() {
     for level in LEVELS {
         for size in ["80x24", "120x40", "33x9"] {
-            for format in ["json", "text", "ansi", "png"] {
-                assert_golden(level, size, &[], format);
-            }
+            assert_golden(level, size, &[]);
         }
     }
 }
@@ -46,10 +41,7 @@ fn every_depth_and_glyph_mode_looks_as_it_did() {
     for level in LEVELS {
         for depth in ["true", "256", "16", "mono"] {
             for glyphs in ["half", "ascii"] {
-                for format in ["ansi", "png"] {
-                    let options = [("--colors", depth), ("--glyphs", glyphs)];
-                    assert_golden(level, "80x24", &options, format);
-                }
+                assert_golden(level, "80x24", &[("--colors", depth), ("--glyphs", glyphs)]);
             }
         }
     }
@@ -58,38 +50,19 @@ fn every_depth_and_glyph_mode_looks_as_it_did() {
 #[test]
 fn finer_glyphs_look_as_they_did() {
     for glyphs in ["quadrant", "sextant", "octant"] {
-        for format in ["ansi", "png"] {
-            assert_golden(LEVELS[0], "80x24", &[("--glyphs", glyphs)], format);
-        }
+        assert_golden(LEVELS[0], "80x24", &[("--glyphs", glyphs)]);
     }
 }
 
 #[test]
-fn json_contains_the_widgets_cells() {
+fn a_snapshot_has_the_widgets_cells() {
     const MUSEUM: &str = "tests/maps/museum.toml";
-    let json: Value =
-        serde_json::from_slice(&output_of(&["snapshot", MUSEUM, "--format", "json"])).unwrap();
-    assert_eq!((json["cols"].as_u64(), json["rows"].as_u64()), (Some(80), Some(24)));
-
     let world = map::load(MUSEUM.as_ref()).unwrap();
     let camera = world.start_camera(FieldOfView::default());
-    let area = Rect::new(0, 0, 80, 24);
-    let mut buffer = Buffer::empty(area);
-    FirstPerson::new(&world, &camera).color_depth(ColorDepth::True).render(
-        area,
-        &mut buffer,
-        &mut View::default(),
-    );
-    let hex = |color: Color| match color {
-        Color::Rgb(red, green, blue) => format!("#{red:02x}{green:02x}{blue:02x}"),
-        other => panic!("{other} is no colour of its own"),
-    };
-    for (x, y) in (0..80).flat_map(|x| (0..24).map(move |y| (x, y))) {
-        let cell = &buffer[(x, y)];
-        let shown = &json["cells"][usize::from(y)][usize::from(x)];
-        assert_eq!(shown["ch"], cell.symbol());
-        assert_eq!((&shown["fg"], &shown["bg"]), (&hex(cell.fg).into(), &hex(cell.bg).into()));
-    }
+    let widget = CellGrid::of(FirstPerson::new(&world, &camera), 80, 24);
+    assert_eq!(grid_of(&["snapshot", MUSEUM]), widget);
+    let json = output_of(&["snapshot", MUSEUM, "--format", "json"]);
+    assert_eq!(CellGrid::read_from(&json[..]), Ok(widget));
 }
 
 #[test]
@@ -104,19 +77,37 @@ fn mono_names_no_colours() {
     assert!(!ansi.contains(&0x1b));
 }
 
+fn in_vt100(color: Color) -> vt100::Color {
+    match color {
+        Color::Rgb(red, green, blue) => vt100::Color::Rgb(red, green, blue),
+        Color::Indexed(index) => vt100::Color::Idx(index),
+        _ => vt100::Color::Default,
+    }
+}
+
 #[test]
 fn ansi_shows_the_same_cells_in_a_terminal() {
     for depth in ["true", "256", "16", "mono"] {
-        let arguments = |format| ["snapshot", "citadel", "--colors", depth, "--format", format];
-        let text = String::from_utf8(output_of(&arguments("text"))).unwrap();
-        let ansi = output_of(&arguments("ansi"));
+        let arguments = ["snapshot", "citadel", "--colors", depth];
+        let cells = grid_of(&arguments);
+        let ansi = output_of(&[&arguments[..], &["--format", "ansi"]].concat());
         let mut terminal =
             vt100::Parser::new(NonZeroU16::new(24).unwrap(), NonZeroU16::new(80).unwrap(), 0);
         terminal.process(&String::from_utf8(ansi).unwrap().replace('\n', "\r\n").into_bytes()[..]);
-        let shown: Vec<String> = terminal.screen().rows(0, 80).collect();
         // The last line break has scrolled the first row away.
-        for (row, line) in text.lines().skip(1).enumerate() {
-            assert_eq!(shown[row].trim_end(), line.trim_end(), "{depth}, row {row}");
+        for (column, row) in (0..80).flat_map(|column| (1..24).map(move |row| (column, row))) {
+            let wanted = cells.cell(column, row).unwrap();
+            let shown = terminal.screen().cell(row - 1, column).unwrap();
+            let place = format!("{depth}, column {column}, row {row}");
+            assert_eq!(
+                shown.contents().chars().next().unwrap_or(' ').to_string(),
+                wanted.symbol(),
+                "{place}"
+            );
+            assert_eq!(in_vt100(wanted.bg), shown.bgcolor(), "{place}");
+            if wanted.symbol() != " " {
+                assert_eq!(in_vt100(wanted.fg), shown.fgcolor(), "{place}");
+            }
         }
     }
 }

@@ -4,6 +4,8 @@
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
+use cellcaster::testing::CellGrid;
+
 /// The program in an empty environment.
 pub(crate) fn cellcaster(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster"));
@@ -29,6 +31,12 @@ pub(crate) fn output_of(arguments: &[&str]) -> Vec<u8> {
     assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{arguments:?}");
     assert_eq!(output.status.code(), Some(0), "{arguments:?}");
     output.stdout
+}
+
+/// The cells that the program draws.
+pub(crate) fn grid_of(arguments: &[&str]) -> CellGrid {
+    let output = output_of(&[arguments, &["--format", "grid"]].concat());
+    CellGrid::read_from(&output[..]).unwrap()
 }
 
 /// The program's standard error. Asserts the exit status 2.

@@ -1,11 +1,8 @@
-//! Screens in full colour. The snapshots contain the bytes that draw them, so `cat` shows them in a
-//! terminal.
+//! Screens in full colour.
 
-use std::fmt::Write;
-
-use ratatui::buffer::{Buffer, Cell};
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier};
+use ratatui::style::Color;
 
 use super::missions::{dead, playing_own, won};
 use super::titles::titled;
@@ -13,6 +10,7 @@ use super::*;
 use crate::app::Offers;
 use crate::color::Rgb;
 use crate::game::FlashKind;
+use crate::testing::assert_grid;
 
 /// A warden strikes the player, a lantern bearer raises the alarm behind them, and treasure lies
 /// beyond.
@@ -60,59 +58,6 @@ pub(crate) fn struck() -> Rig {
     panic!("nobody strikes: {:?}", rig.game().alarm());
 }
 
-/// The bytes that draw `buffer`, line by line.
-fn bytes(buffer: &Buffer) -> String {
-    let mut text = String::new();
-    for line in buffer.content().chunks(buffer.area.width.into()) {
-        let mut before = None;
-        for cell in line {
-            let looks = looks(cell);
-            if before.as_ref() != Some(&looks) {
-                text.push_str(&looks);
-                before = Some(looks);
-            }
-            text.push_str(cell.symbol());
-        }
-        text.push_str("\x1b[m\n");
-    }
-    text
-}
-
-/// The escape sequence that sets the colours and attributes of `cell`.
-fn looks(cell: &Cell) -> String {
-    let mut text = "\x1b[0".to_owned();
-    let modifiers = [
-        (Modifier::BOLD, 1),
-        (Modifier::DIM, 2),
-        (Modifier::UNDERLINED, 4),
-        (Modifier::REVERSED, 7),
-    ];
-    for (modifier, number) in modifiers {
-        if cell.modifier.contains(modifier) {
-            write!(text, ";{number}").unwrap();
-        }
-    }
-    for (color, number) in [(cell.fg, 38), (cell.bg, 48)] {
-        match color {
-            Color::Reset => {}
-            Color::Rgb(red, green, blue) => {
-                write!(text, ";{number};2;{red};{green};{blue}").unwrap();
-            }
-            Color::Indexed(index) => write!(text, ";{number};5;{index}").unwrap(),
-            other => panic!("{other} is not a colour that the game uses"),
-        }
-    }
-    text.push('m');
-    text
-}
-
-fn drawn(rig: &mut Rig, depth: ColorDepth, (columns, rows): (u16, u16)) -> Vec<u8> {
-    rig.app.terminal.depth = depth;
-    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
-    rig.app.draw(&mut buffer);
-    bytes(&buffer).into_bytes()
-}
-
 #[test]
 fn screens_look_unchanged_in_all_colours() {
     let screens = vec![
@@ -122,8 +67,10 @@ fn screens_look_unchanged_in_all_colours() {
         ("summary", won()),
     ];
     for (name, mut rig) in screens {
-        let name = format!("{name}.ans");
-        insta::assert_binary_snapshot!(&name, drawn(&mut rig, ColorDepth::True, (80, 24)));
+        rig.app.terminal.depth = ColorDepth::True;
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 80, 24));
+        rig.app.draw(&mut buffer);
+        assert_grid!(buffer, name);
     }
 }
 
