@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::drawing::Drawing;
-use super::legend::{Meaning, Symbol};
+use super::legend::{Meaning, Symbol, is_thing};
 use super::plan::{Names, Plan};
 use super::reach::KeySearch;
 use super::values::Name;
@@ -147,15 +147,17 @@ fn wrong_supports(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     })
 }
 
-/// The faults of patrols with a missing waypoint, and of waypoints without a patrol or drawn twice.
+/// The faults of patrols with a missing waypoint, and of waypoints without a patrol or drawn twice. A
+/// thing that a patrol names is a waypoint, too.
 fn wrong_patrols(plan: Plan<'_>) -> Vec<Fault> {
     let is_waypoint = |it| plan.means(it, |meaning| matches!(meaning, Meaning::Waypoint));
+    let is_such_a_thing = |it| plan.means(it, is_thing);
     let mut faults = Vec::new();
     let mut walked = BTreeSet::new();
     for (_, symbol) in plan.symbols() {
         let Meaning::Guard(guard) = &symbol.meaning else { continue };
         let Some(patrol) = &guard.patrol else { continue };
-        let missing = patrol.text.chars().find(|&it| !is_waypoint(it));
+        let missing = patrol.text.chars().find(|&it| !is_such_a_thing(it));
         let undrawn = patrol.text.chars().find(|&it| plan.drawing.count(it) == 0);
         walked.extend(patrol.text.chars());
         let fault = |message| Fault::new(patrol.place.clone(), message);
@@ -173,7 +175,8 @@ fn wrong_patrols(plan: Plan<'_>) -> Vec<Fault> {
             faults.push(fault(message).help(format!("draw one {undrawn:?} in the grid")));
         }
     }
-    for character in plan.drawing.characters().filter(|&it| is_waypoint(it)) {
+    let is_walked_to = |it| walked.contains(&it) && is_such_a_thing(it);
+    for character in plan.drawing.characters().filter(|&it| is_waypoint(it) || is_walked_to(it)) {
         let places = plan.drawing.first_places(character);
         faults.extend(match &places[..] {
             [first, ..] if !walked.contains(&character) => {

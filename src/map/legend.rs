@@ -82,6 +82,15 @@ impl<'a> Symbol<'a> {
     }
 }
 
+/// Returns whether `meaning` is a thing, which stands on a floor.
+pub(crate) fn is_thing(meaning: &Meaning<'_>) -> bool {
+    use Meaning::{Guard, Item, Key, Lever, Note, Sprite, Start, Waypoint};
+    matches!(
+        meaning,
+        Start(_) | Key(_) | Lever(_) | Note(_) | Item(_) | Sprite(_) | Guard(_) | Waypoint
+    )
+}
+
 impl Default for Legend<'_> {
     /// The characters with the same meaning in every map.
     fn default() -> Self {

@@ -2,7 +2,7 @@
 
 use super::checks;
 use super::drawing::PerCharacter;
-use super::legend::{Meaning, Symbol};
+use super::legend::{Meaning, Symbol, is_thing};
 use super::plan::{Names, Plan};
 use super::textures::Textures;
 use crate::fault::Fault;
@@ -123,7 +123,7 @@ impl ThingList {
 }
 
 /// The name of the built-in sprite of a kind of thing.
-fn sprite_name(kind: ThingKind) -> &'static str {
+pub(crate) fn sprite_name(kind: ThingKind) -> &'static str {
     match kind {
         ThingKind::Exit => builtin::EXIT,
         ThingKind::Treasure(..25) => "coins",
@@ -156,8 +156,7 @@ fn too_many_lamps(symbol: &Symbol<'_>) -> Fault {
 /// The guards in the plan, row by row from the north, and within a row from the west.
 pub(crate) fn posts(plan: Plan<'_>) -> Vec<GuardPost> {
     let is_guard = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Guard(_));
-    let is_waypoint = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Waypoint);
-    let waypoints = plan.drawing.cells_of(|it| plan.means(it, is_waypoint));
+    let waypoints = plan.drawing.cells_of(|it| plan.means(it, is_thing));
     let waypoints: PerCharacter<Option<Cell>> =
         waypoints.map(|(cell, character)| (character, Some(cell))).collect();
     let guards = plan.drawing.cells_of(|it| plan.means(it, is_guard));
