@@ -44,6 +44,8 @@ pub struct Faults {
 pub struct Fault {
     /// The range of bytes in the text; `None` if the whole file is at fault.
     place: Option<Range<usize>>,
+    /// The place in words, in a file whose lines nobody reads.
+    origin: Option<String>,
     /// A sentence that describes the fault.
     message: String,
     /// A few words under the underlined place; may be empty.
@@ -66,7 +68,8 @@ impl Faults {
     /// mention the file.
     pub(crate) fn of_whole_file(name: &str, message: &str, help: &str) -> Self {
         let message = printable(message);
-        let fault = Fault { place: None, message, label: String::new(), help: help.to_owned() };
+        let (label, help) = (String::new(), help.to_owned());
+        let fault = Fault { place: None, origin: None, message, label, help };
         Self::new(name, "", vec![fault])
     }
 
@@ -83,6 +86,24 @@ impl Faults {
         })
     }
 
+    /// The same faults, in a file from which the text was made. For a byte of the text, `origin`
+    /// returns the place in the file, and whether the author wrote what is there.
+    #[cfg(feature = "cli")]
+    pub(crate) fn traced(mut self, origin: impl Fn(usize) -> (String, bool)) -> Self {
+        for fault in self.list.iter_mut().take(MAX_REPORTED) {
+            let Some(place) = fault.place.take() else { continue };
+            let (origin, is_written) = origin(place.start);
+            fault.origin = Some(origin);
+            if let Some(written) = self.text.get(place).filter(|_| is_written)
+                && !fault.label.is_empty()
+            {
+                let written = written.chars().take(MAX_NAME).collect::<String>();
+                fault.label = format!("{}: {}", printable(&written), fault.label);
+            }
+        }
+        self
+    }
+
     /// The number of faults, at least 1.
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
     pub fn len(&self) -> usize {
@@ -97,6 +118,9 @@ impl Faults {
             1 => ", and 1 more fault".to_owned(),
             more => format!(", and {more} more faults"),
         };
+        if let Some(origin) = &fault.origin {
+            return format!("{}: {origin}: {}{more}", self.name, fault.message);
+        }
         if fault.place.is_none() {
             return format!("{}{more}", fault.message);
         }
@@ -137,6 +161,13 @@ impl fmt::Display for Faults {
                     group.element(source.annotation(underline))
                 };
             }
+            if let Some(origin) = &fault.origin {
+                let place = format!("{name}: {}", printable(origin));
+                group = group.element(Origin::path(place));
+                if !fault.label.is_empty() {
+                    group = group.element(Level::NOTE.message(&fault.label));
+                }
+            }
             if !fault.help.is_empty() {
                 group = group.element(Level::HELP.message(&fault.help));
             }
@@ -162,7 +193,14 @@ impl Fault {
     /// A fault at `place`, a range of bytes in the text.
     pub fn new(place: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
-        Self { place: Some(place), message, label: String::new(), help: String::new() }
+        let (label, help) = (String::new(), String::new());
+        Self { place: Some(place), origin: None, message, label, help }
+    }
+
+    /// A fault at the place that `origin` describes.
+    #[cfg(feature = "cli")]
+    pub(crate) fn at(origin: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { place: None, origin: Some(origin.into()), ..Self::new(0..0, message) }
     }
 
     /// Sets the label under the underlined place.

@@ -40,6 +40,8 @@ mod scene;
 mod surfaces;
 mod textures;
 mod things;
+#[cfg(feature = "cli")]
+pub mod tiled;
 mod tiles;
 mod values;
 
@@ -156,8 +158,16 @@ pub fn load_level(path: &Path) -> Result<Level, Faults> {
 /// # Errors
 /// The same as for [`load_level`].
 pub fn load_level_with(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
+    parse_level(&text_of_file(path)?, &path.display().to_string(), files)
+}
+
+/// The text of the map file at `path`.
+///
+/// # Errors
+/// The reason why the file cannot be read.
+pub(crate) fn text_of_file(path: &Path) -> Result<String, Faults> {
     let name = path.display().to_string();
-    read_level(open(path, &name)?, &name, files)
+    read_text(open(path, &name)?, &name)
 }
 
 /// Reads a map of either kind from `input`, which may have up to [`MAX_BYTES`].

@@ -18,6 +18,7 @@ mod recording;
 mod room;
 mod rows;
 mod texts;
+mod tiled;
 mod typing;
 mod waiting;
 
@@ -56,6 +57,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "room", run: room::run },
     Target { name: "rows", run: rows::run },
     Target { name: "texts", run: texts::run },
+    Target { name: "tiled", run: tiled::run },
     Target { name: "typing", run: typing::run },
     Target { name: "waiting", run: waiting::run },
 ];

@@ -12,6 +12,7 @@ mod mechanisms;
 mod playing;
 mod several;
 mod steps;
+mod tiled;
 
 #[path = "../support/open.rs"]
 mod open;
