@@ -10,8 +10,10 @@ mod check;
 mod compare;
 pub mod config;
 pub mod error;
+mod export;
 mod external;
 mod help;
+mod import;
 pub mod level;
 mod levels;
 pub mod machine;
@@ -63,6 +65,8 @@ enum Command {
     Cast(cast::Cast),
     Check(check::Check),
     Compare(compare::Compare),
+    Import(import::Import),
+    Export(export::Export),
     Levels(levels::LevelsCommand),
     Config(config::Config),
     Replay(replay::ReplayCommand),
@@ -137,6 +141,8 @@ impl Arguments {
             Command::Cast(options) => cast::run(&options, caster),
             Command::Check(options) => check::run(&options),
             Command::Compare(options) => compare::run(&options),
+            Command::Import(options) => import::run(&options),
+            Command::Export(options) => export::run(&options),
             Command::Levels(options) => levels::run(&options),
             Command::Config(options) => config::run(options),
             Command::Replay(options) => replay::run(options, caster),

@@ -95,7 +95,7 @@ impl Levels {
         Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
-    /// One level that may change during the game. The game calls `changes` a few times a second. If
+    /// One level that may change during the game. The game calls `changes` twenty times a second. If
     /// the level has changed since the last call, `changes` returns the new level or its faults.
     pub fn changing(
         level: Level,
@@ -331,8 +331,9 @@ impl App {
     }
 }
 
-/// The time between two checks for changes.
-const INTERVAL: Duration = Duration::from_millis(200);
+/// The time between two checks for changes. With the time to read a map, an author sees a change
+/// within a tenth of a second.
+const INTERVAL: Duration = Duration::from_millis(50);
 
 /// The source of changes to a level, and the faults that the last change introduced.
 pub(crate) struct Reload {

@@ -100,8 +100,8 @@ first. --daily asks before the try that counts.
 ";
 
 const MAP: &str = "
-MAP is a map file, \"-\" for standard input, or a built-in level; --generate maze, cave or office makes \
-one in its place. An option may also stand before the command. The built-in levels are ";
+MAP is a map file, a map of Tiled (.tmx or .tmj), \"-\" for standard input, or a built-in level; \
+--generate maze, cave or office makes one in its place. An option may also stand before the command. The built-in levels are ";
 
 pub(crate) const WHERE_TO_READ_ON: &str = "\
 \"cellcaster --help\" lists all commands with their options, keys and examples; \"cellcaster COMMAND \

@@ -10,10 +10,10 @@ use super::options::{COMMANDS, LevelOptions, STANDARD_INPUT};
 use super::watch::MapWatcher;
 use crate::app::store::map_key;
 use crate::app::{Levels, OwnLevel, OwnMap};
-use crate::fault::nearest;
+use crate::fault::{Faults, nearest};
 use crate::game::{Game, Header, LevelName};
 use crate::generate::{Generator, Site, Window, descent};
-use crate::map::{self, Folder, Level, builtin};
+use crate::map::{self, Folder, Level, TextureFiles, builtin, tiled};
 use crate::sort;
 use crate::world::World;
 
@@ -51,8 +51,29 @@ pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
             "there is no map \"{}\"; did you mean {meant}?",
             argument.display()
         ))),
-        None => Ok(map::load_level(path)?),
+        None => Ok(load_file(path, &Folder::of(path))?),
     }
+}
+
+/// The text and the name of the map file or built-in level called `argument`.
+pub(crate) fn text(argument: &OsStr) -> Result<(String, String), Error> {
+    if let Some(index) = builtin_level(argument) {
+        let level = builtin::LEVELS[index];
+        return Ok((level.text.to_owned(), level.name.to_owned()));
+    }
+    let path = Path::new(argument);
+    if tiled::is_tiled(path) {
+        return Err(Error::mistake(format!("{} is a map of Tiled already", path.display())));
+    }
+    Ok((map::text_of_file(path)?, path.display().to_string()))
+}
+
+/// The level in the file at `path`, a map file or a map of Tiled, with textures from `files`.
+pub(crate) fn load_file(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
+    if tiled::is_tiled(path) {
+        return tiled::load(path, files).map(|import| import.level);
+    }
+    map::load_level_with(path, files)
 }
 
 /// The level in the map file of `place`, and its [`MapWatcher`]. Only files can be watched.
@@ -204,7 +225,7 @@ pub(crate) fn load_own(path: &Path) -> Result<OwnLevel, String> {
     if !path.is_file() {
         return Err(format!("{} is no longer a file", path.display()));
     }
-    let level = map::load_level(path).map_err(|faults| faults.summary())?;
+    let level = load_file(path, &Folder::of(path)).map_err(|faults| faults.summary())?;
     own_level(path, level).ok_or_else(|| format!("{} can't be read", path.display()))
 }
 

@@ -24,12 +24,14 @@ use crate::world::FieldOfView;
 pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// The names of the commands.
-pub(crate) const COMMANDS: [&str; 12] = [
+pub(crate) const COMMANDS: [&str; 14] = [
     "play",
     "snapshot",
     "cast",
     "check",
     "compare",
+    "import",
+    "export",
     "levels",
     "config",
     "replay",
@@ -42,7 +44,7 @@ pub(crate) const COMMANDS: [&str; 12] = [
 /// The level of a command: a map, or a generated level.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LevelOptions {
-    /// A map file, "-" for standard input, or a built-in level (see "cellcaster levels")
+    /// A map file, a map of Tiled, "-" for standard input, or a built-in level (see "cellcaster levels")
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) map: Option<OsString>,
     /// Generate a level in place of MAP

@@ -1,7 +1,7 @@
 //! `--watch`: polls a map file, and reloads it after a change.
 //!
 //! Two versions of a file differ if their modification times or their lengths differ. The map and
-//! every PNG that it names are compared, including missing ones. Rejected: a library for file
+//! every PNG and tileset that it names are compared, including missing ones. Rejected: a library for file
 //! system notifications. It adds a thread, and dozens of crates on each platform, to save a few
 //! calls per second, and it loses files that an editor replaces.
 
@@ -10,8 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::level::load_file;
 use crate::fault::Faults;
-use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
+use crate::map::{Folder, Level, TextureFileError, TextureFiles};
 
 /// A map file, and the versions of the map and its textures at the last load.
 pub(crate) struct MapWatcher {
@@ -57,7 +58,7 @@ fn load(map: &Path) -> (Result<Level, Faults>, Vec<(PathBuf, FileVersion)>) {
         // The version is taken before the file is read, so a change in between causes a reload.
         watched: RefCell::new(vec![(map.to_owned(), version_of(map))]),
     };
-    let level = map::load_level_with(map, &files);
+    let level = load_file(map, &files);
     (level, files.watched.into_inner())
 }
 
@@ -125,6 +126,26 @@ mod tests {
         fs::write(&texture, PNG).unwrap();
         assert!(watch.change().unwrap().unwrap() == first);
         assert!(watch.change().is_none());
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_map_of_tiled_is_reloaded_with_its_tileset() {
+        let folder = env::temp_dir().join(format!("cellcaster-tiled-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        for name in ["yard.tmx", "yard.tsx", "yard.png"] {
+            fs::copy(Path::new("tests/tiled").join(name), folder.join(name)).unwrap();
+        }
+        let (level, mut watch) = MapWatcher::load(&folder.join("yard.tmx"));
+        let first = level.unwrap();
+        assert!(watch.change().is_none());
+
+        let tileset = fs::read_to_string(folder.join("yard.tsx")).unwrap();
+        let image = "<tile id=\"0\" type=\"door\"/></tileset>";
+        fs::write(folder.join("yard.tsx"), tileset.replace("</tileset>", image)).unwrap();
+        assert!(watch.change().is_none() && watch.change().unwrap().is_err());
+        fs::write(folder.join("yard.tsx"), tileset).unwrap();
+        assert!(watch.change().unwrap().unwrap() == first);
         fs::remove_dir_all(&folder).unwrap();
     }
 }

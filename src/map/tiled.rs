@@ -7,7 +7,7 @@
 //! - [`document`] reads the text of `.tmx` and `.tmj`, and of tilesets, into one tree.
 //! - [`model`] finds layers, tiles and objects in the tree.
 //! - [`level`] translates them, with the characters of [`legend`], into [`text`].
-//! - [`export`] writes a map of Tiled from a map file. Reading it again gives the same world.
+//! - [`mod@export`] writes a map of Tiled from a map file. Reading it again gives the same world.
 //!
 //! Rejected: the crate `tiled`. It does not read `.tmj`, unpacks a file of 400 kB into 1.7 GB, and
 //! overflows the stack at 100,000 nested groups. Rejected too: layers compressed by zstd, for which

@@ -10,6 +10,7 @@ mod recordings;
 mod replay;
 mod scores;
 mod text_mode;
+mod tiled;
 
 #[path = "../support/asciicast.rs"]
 mod asciicast;
