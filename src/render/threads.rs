@@ -129,7 +129,7 @@ pub(crate) fn draw_bands(
         };
         let counts = match samples.get() {
             1 => draw(band),
-            samples => memory.samples.draw(samples, &mut band, draw),
+            _ => memory.samples.draw(&mut band, draw),
         };
         stats.lock().unwrap_or_else(PoisonError::into_inner).add(&counts);
     });
