@@ -529,7 +529,7 @@ impl<'a> PlaneDrawing<'a> {
         let world = self.scene.world;
         match self.plane.kind {
             PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
-                self.list.sectors.surface(world, sector, self.side, tile)
+                self.list.sectors.surfaces(world, sector, tile)[self.side as usize]
             }
             PlaneKind::Top(id) => PlaneSurface::of_top(&world.tiles()[usize::from(id.0)]),
         }

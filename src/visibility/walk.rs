@@ -443,20 +443,16 @@ impl SectorWalk<'_> {
         if (east - west).saturating_mul(south - north) > MAX_CELLS {
             return even;
         }
-        let is_lamplit = world.has_lamplight();
         let (mut latest, mut looks) = (None, None);
         let mut are_even = [true; 2];
         let places = (north..south).flat_map(|row| (west..east).map(move |column| (column, row)));
         for (cell, tile) in places.filter_map(|(column, row)| grid.cell(column, row)) {
-            let is_known = latest.replace(tile) == Some(tile) && !is_lamplit;
-            if is_known || !sectors.of(tile).have(visit.sector) {
+            let known = (tile, world.lamplight_in(cell));
+            if latest.replace(known) == Some(known) || !sectors.of(tile).have(visit.sector) {
                 continue;
             }
-            let lamplight = world.lamplight_in(cell);
-            let own = sides.map(|side| {
-                let own = sectors.surface(world, visit.sector, side, tile);
-                PlaneSurface { light: own.light.plus(lamplight), ..own }
-            });
+            let own = sectors.surfaces(world, visit.sector, tile);
+            let own = own.map(|it| PlaneSurface { light: it.light.plus(known.1), ..it });
             let known = looks.get_or_insert(own);
             are_even = [0, 1].map(|side| are_even[side] && known[side] == own[side]);
             if are_even == [false; 2] {

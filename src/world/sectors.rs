@@ -194,26 +194,25 @@ impl Sectors {
         (!sector.vary[side as usize]).then_some(sector.surfaces[side as usize])
     }
 
-    /// The floor or the ceiling of `sector` in a cell of `tile`.
-    pub(crate) fn surface(
+    /// The floor and the ceiling of `sector` in a cell of `tile`.
+    pub(crate) fn surfaces(
         &self,
         world: &World,
         sector: SectorId,
-        side: PlaneSide,
         id: TileId,
-    ) -> PlaneSurface {
+    ) -> [PlaneSurface; 2] {
         let TileSectors { lower, upper } = self.of(id);
         let tile = &world.tiles()[usize::from(id.0)];
-        let index = match sector {
-            _ if sector == lower => 0,
-            _ if upper == Some(sector) => 1,
+        let gap = match sector {
+            _ if sector == lower => tile.gaps().next(),
+            _ if upper == Some(sector) => tile.gaps().nth(1),
             // Rounding has put the point into a cell outside the sector.
-            _ => return self.get(sector).surfaces[side as usize],
+            _ => None,
         };
-        let gap = tile.gaps().nth(index);
-        gap.map_or(self.get(sector).surfaces[side as usize], |gap| {
-            PlaneSurface::of_gap(tile, gap, index > 0)[side as usize]
-        })
+        match gap {
+            Some(gap) => PlaneSurface::of_gap(tile, gap, sector != lower),
+            None => self.get(sector).surfaces,
+        }
     }
 }
 
