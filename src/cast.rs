@@ -34,6 +34,7 @@ mod dyn_caster;
 mod exact;
 mod major_axis;
 mod order;
+mod pillar;
 mod ray;
 mod through;
 mod walk;

@@ -9,18 +9,15 @@
 //!   misses an end of the leaf, the sign of a cross product decides. The ends belong to the leaf.
 //! - Shapes are solved in closed form from the ray's origin. For a line, the distance is the
 //!   quotient of two cross products, whose exact signs tell on which side of an end the ray passes.
-//!   For a pillar, it is the root of a quadratic equation in double-double arithmetic. The ends
-//!   belong to the line, and a ray that touches a pillar hits it. A ray along the line, or from
-//!   inside the pillar, hits nothing.
-
-use std::f64::consts::TAU;
+//!   The ends belong to the line, and a ray along the line hits nothing.
 
 use glam::DVec2;
 
+use super::pillar::Chord;
 use super::ray::{cell_before, meeting, texture_coordinate};
 use super::{Crossing, Hit, Ray, Side};
-use crate::numeric::{DoubleDouble, cross, sign_of_cross};
-use crate::world::{Cell, Grid, Line, Opening, Outline, PillarRadius, TileId, TileKind, World};
+use crate::numeric::{cross, sign_of_cross};
+use crate::world::{Cell, Grid, Line, Opening, Outline, TileId, TileKind, World};
 
 /// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`. Calls
 /// `passed` with the transparent faces that it enters. A tile that `ends` the ray is a hit.
@@ -230,119 +227,8 @@ fn speed_across(ray: &Ray, extent: DVec2) -> (f64, i32) {
     (across(direction), exponent)
 }
 
-/// The chord of a pillar on the line of a ray.
-struct Chord {
-    /// The `t` of the ray at its start; `None` if that is behind the ray's origin.
-    start: Option<f64>,
-    /// The `t` of the ray at its end.
-    end: f64,
-    /// Half its length, and the signed distance of the line from the axis, both multiplied by the length of the
-    /// ray's scaled direction.
-    half_length: f64,
-    miss: f64,
-}
-
-impl Chord {
-    /// The chord on the line of `ray`; `None` if the line misses the pillar.
-    fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
-        /// From further away, squares overflow.
-        const FARTHEST: f64 = 1e100;
-        let (center, radius) = (cell.center(), radius.cells());
-        let (direction, _) = ray.scaled_direction();
-        let way = center - ray.origin();
-        if way.abs().max_element() > FARTHEST {
-            return Self::from_afar(ray, center, radius);
-        }
-        if is_clearly_beside(way, direction, radius) {
-            return None;
-        }
-        Self::from_near(ray, center, radius)
-    }
-
-    fn from_near(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
-        let (direction, exponent) = ray.scaled_direction();
-        let x = DoubleDouble::sum(center.x, -ray.origin().x);
-        let y = DoubleDouble::sum(center.y, -ray.origin().y);
-        let (along_x, along_y) = (DoubleDouble::from(direction.x), DoubleDouble::from(direction.y));
-        let to_middle = (x * along_x + y * along_y).rounded();
-        let miss = x * along_y - y * along_x;
-        let length_squared = along_x.square() + along_y.square();
-        let radius_squared = DoubleDouble::product(radius, radius);
-        let half_length_squared = (radius_squared * length_squared - miss.square()).rounded();
-        if half_length_squared < 0.0 {
-            return None;
-        }
-        let half_length = half_length_squared.sqrt();
-        // The squared distance of the origin from the axis minus the squared radius.
-        let outside = (x.square() + y.square() - radius_squared).rounded();
-        let unscaled = |t: f64| libm::scalbn(t, -exponent);
-        let is_ahead = outside >= 0.0 && to_middle > 0.0;
-        // Each solution has two forms. These forms add terms of the same sign.
-        let end = if to_middle > 0.0 {
-            (to_middle + half_length) / length_squared.rounded()
-        } else {
-            -outside / (half_length - to_middle)
-        };
-        Some(Self {
-            start: is_ahead.then(|| unscaled(outside / (to_middle + half_length))),
-            end: unscaled(end),
-            half_length,
-            miss: miss.rounded(),
-        })
-    }
-
-    /// The chord on the line of a ray from so far away that its ends are at the same distance.
-    fn from_afar(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
-        /// The exponent of a unit of length in which no distance overflows.
-        const UNIT: i32 = 8;
-        let (direction, exponent) = ray.scaled_direction();
-        let miss = cross(ray.origin(), ray.direction(), center).over_scaled(1.0, exponent);
-        let length_squared = direction.length_squared();
-        let half_length_squared = radius * radius * length_squared - miss * miss;
-        if half_length_squared < 0.0 {
-            return None;
-        }
-        let way = (center - ray.origin()) * libm::scalbn(1.0, -UNIT);
-        let t = libm::scalbn(way.dot(direction) / length_squared, UNIT - exponent);
-        let half_length = half_length_squared.sqrt();
-        Some(Self { start: Some(t).filter(|&t| t > 0.0), end: t, half_length, miss })
-    }
-
-    /// The hit of `ray`, from outside, on the pillar with this `radius` in `cell`.
-    fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
-        let t = self.start?;
-        let (direction, _) = ray.scaled_direction();
-        let outward = direction.perp() * self.miss - direction * self.half_length;
-        Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
-    }
-
-    /// The `t` at which the ray leaves the pillar; `None` if that is behind the origin.
-    fn end(&self) -> Option<f64> {
-        Some(self.end).filter(|&t| t >= 0.0)
-    }
-}
-
-/// Returns whether a line along `direction` misses a circle at `way` by more than the rounding of
-/// doubles. This holds for most lines that miss, which then need no double-double arithmetic.
-fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
-    const ROUNDING: f64 = 1e-12;
-    let miss = (way.x * direction.y - way.y * direction.x).abs();
-    let reach = radius * direction.length();
-    miss > reach + (reach + way.x.abs() + way.y.abs()) * ROUNDING
-}
-
-/// The texture coordinate of a pillar's surface with the normal `outward`. The texture repeats
-/// around the pillar a whole number of times, so that each copy is as close as possible to one cell
-/// wide.
-fn around_pillar(outward: DVec2, radius: f64) -> f64 {
-    let times = (TAU * radius).round().max(1.0);
-    let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
-    // A value just below 0 would be rounded to 1, the left edge of the next copy.
-    Some(turn - turn.floor()).filter(|&u| u < 1.0).unwrap_or_default()
-}
-
 /// The kind of grid line closest in direction to a surface with this `normal`.
-fn facing(normal: DVec2) -> Side {
+pub(super) fn facing(normal: DVec2) -> Side {
     if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
 }
 

@@ -196,6 +196,20 @@ impl DoubleDouble {
         self * self
     }
 
+    /// The square root of a positive number.
+    pub(crate) fn sqrt(self) -> Self {
+        let root = self.high.sqrt();
+        let rest = self - Self::product(root, root);
+        Self::sum(root, rest.high / (2.0 * root))
+    }
+
+    /// The number divided by `divisor`, rounded.
+    pub(crate) fn over(self, divisor: Self) -> f64 {
+        let quotient = self.high / divisor.high;
+        let rest = self - divisor * Self::from(quotient);
+        quotient + rest.high / divisor.high
+    }
+
     /// The nearest double.
     pub(crate) fn rounded(self) -> f64 {
         self.high

@@ -68,9 +68,9 @@ proptest! {
         prop_assert_eq!(hit.is_some(), expected.is_some());
         if let (Some(hit), Some((t, along))) = (hit, expected) {
             if hit.t.is_finite() {
-                let error = (exact(hit.t) - &t).abs();
-                let allowed = t * exact(4.0 * f64::EPSILON) + exact(5e-324);
-                prop_assert!(error <= allowed, "{}", hit.t);
+                let within = [hit.t.next_down().next_down(), hit.t.next_up().next_up()];
+                let [least, most] = within.map(|it| it.clamp(-f64::MAX, f64::MAX));
+                prop_assert!((exact(least)..=exact(most)).contains(&t), "{}", hit.t);
             } else {
                 prop_assert!(t >= exact(f64::MAX));
             }
@@ -86,62 +86,4 @@ fn a_ray_with_the_smallest_component_hits_a_thin_wall() {
     let ray = Ray::new(DVec2::new(1.25, 1.0), DVec2::new(1.0, 5e-324)).unwrap();
     let hit = meet_shape(&ray, CELL, Outline::Line(Line::North)).unwrap();
     assert_eq!((hit.t, hit.u), (0.0, 0.75));
-}
-
-fn passage_of_pillar(origin: (f64, f64), direction: (f64, f64)) -> Passage {
-    let pillar = Outline::Pillar(PillarRadius::new(0.25).unwrap());
-    Passage::new(&Ray::new(origin.into(), direction.into()).unwrap(), CELL, pillar)
-}
-
-#[test]
-fn a_pillar_is_hit_from_any_distance() {
-    for exponent in [16, 50, 99, 101, 150, 200, 300, 308] {
-        let far = 10_f64.powi(exponent);
-        for unit in [1.0, 1e-300, 1e300] {
-            let Passage { hit: Some(hit), end: Some(end) } =
-                passage_of_pillar((-far, 1.5), (unit, 0.0))
-            else {
-                panic!("it is hit from {far} cells, in units of {unit}")
-            };
-            let t = exact(far + 1.25) / exact(unit);
-            for found in [hit.t, end] {
-                if t < exact(f64::MAX) {
-                    let error = (exact(found) / &t - BigRational::one()).abs();
-                    assert!(error < exact(1e-15), "{far}, {unit}");
-                } else {
-                    assert_eq!(found, f64::INFINITY);
-                }
-            }
-            assert_eq!((hit.cell, hit.side), (CELL, Side::X));
-            assert_eq!(passage_of_pillar((-far, 1.5), (-unit, 0.0)), Passage::NONE);
-            let beside = 1.75_f64.next_up();
-            assert_eq!(passage_of_pillar((-far, beside), (unit, 0.0)), Passage::NONE);
-            assert!(passage_of_pillar((-far, 1.75), (unit, 0.0)).hit.is_some(), "it is touched");
-        }
-    }
-}
-
-proptest! {
-    #[test]
-    fn far_pillars_are_hit_as_rational_arithmetic_says(
-        exponent in 90..308,
-        angle in 0.0..7.0_f64,
-        aside in -0.6..0.6,
-    ) {
-        let far = 10_f64.powi(exponent);
-        let toward = DVec2::new(libm::cos(angle), libm::sin(angle));
-        let [x, y] = (CELL.center() - toward * far).to_array();
-        // The direction to a point beside the axis, from the rounded origin.
-        let lever = BigRational::from_float(far).unwrap();
-        let to_axis = [exact(1.5) - exact(x), exact(1.5) - exact(y)].map(|it| (it / &lever).to_f64().unwrap());
-        let direction = (to_axis[0] - toward.y * aside / far, to_axis[1] + toward.x * aside / far);
-        let [dx, dy] = [direction.0, direction.1].map(exact);
-        let miss = cross_of([&(exact(1.5) - exact(x)), &(exact(1.5) - exact(y))], [&dx, &dy]);
-        let length_squared = &dx * &dx + &dy * &dy;
-        let share = &miss * &miss / length_squared / exact(0.0625);
-        let is_doubtful = (&share - BigRational::one()).abs() < exact(1e-9);
-        prop_assume!(!is_doubtful);
-        let hit = passage_of_pillar((x, y), direction).hit;
-        prop_assert_eq!(hit.is_some(), share < BigRational::one());
-    }
 }
