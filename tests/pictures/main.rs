@@ -1,5 +1,4 @@
-//! Pictures: golden frames, every pixel compared with an independent tracer, and the costs of
-//! frames.
+//! Pictures: golden frames, and the costs of frames.
 
 mod areas;
 mod costs;
@@ -8,7 +7,6 @@ mod extremes;
 mod figures;
 mod gallery;
 mod guards;
-mod heights;
 mod looking;
 mod mirrors;
 mod opening;
@@ -23,7 +21,5 @@ mod threads;
 
 #[path = "../support/geometry.rs"]
 mod geometry;
-#[path = "../support/solids.rs"]
-mod solids;
 #[path = "../support/mod.rs"]
 mod support;

@@ -3,7 +3,7 @@
 //! A picture has one sample in each pixel. The reference is the picture of a perfect camera: the
 //! mean light over the pixel. It is computed from the renderer's own picture, eight times as wide
 //! and high and without filtering. The 64 samples of each pixel are averaged in linear light and
-//! not rounded. The renderer's samples are verified elsewhere, against an independent tracer.
+//! not rounded. The renderer's samples are verified elsewhere, by `crates/certify`.
 //! Rejected: an oracle in rational arithmetic. 64 samples of it take seconds for each picture.
 //!
 //! Each half of a cell is compared, as the glyphs of the window light it. The coverage of a glyph

@@ -3,16 +3,14 @@
 
 use std::fmt::Write as _;
 
-use crate::solids::Solids;
 use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch, SpriteId};
-use glam::{DVec2, DVec3};
+use cellcaster_certify::{DOUBTFUL, Solids, direction};
+use glam::DVec2;
 use proptest::prelude::*;
 
-/// Pixels whose centres are closer than this to an edge, in pixels, are not compared.
-const DOUBTFUL: f64 = 1e-5;
 const SKY: Rgb = Rgb::new(1, 2, 3);
 const COLUMNS: usize = 6;
 const ROWS: usize = 5;
@@ -246,15 +244,6 @@ fn map_of(scene: &Scene, look: Look) -> String {
         + &format!("height = {:?}, anchor = \"{}\" }}\n", scene.thing.0, scene.thing.1)
 }
 
-/// The line through a point of a picture.
-fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
-    let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
-    let focal_length = width / 2.0 / camera.field_of_view.half_width();
-    let horizon = height / 2.0 + (camera.pitch.slope() * focal_length).round();
-    let across = camera.direction() + camera.plane() * (2.0 * x / width - 1.0);
-    across.extend((horizon - y) / focal_length)
-}
-
 /// A figure of a random world. It may be off the map, or partly in the floor.
 #[derive(Clone, Debug)]
 struct Standing {
@@ -442,15 +431,16 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
         let meet_beside = |right: f64, down: f64| {
             let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
-            solids.meet(direction(&camera, &frame, x, y), SKY)
+            solids.meet(direction(&camera, &frame, x, y))
         };
         let met = meet_beside(0.0, 0.0);
         let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
-        if !met.is_tied && beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
-            prop_assert_eq!(frame.pixel(x, y), met.color, "at ({}, {}): {:?}", x, y, met);
+        if !met.is_tied() && beside.into_iter().all(|(right, down)| meet_beside(right, down) == met)
+        {
+            prop_assert_eq!(frame.pixel(x, y), met.color(), "at ({}, {}): {:?}", x, y, met);
             prop_assert_eq!(
                 with_surfaces.pixel(x, y),
-                met.color,
+                met.color(),
                 "with surfaces at ({}, {})",
                 x,
                 y

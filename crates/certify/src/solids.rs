@@ -1,5 +1,5 @@
-//! A world as a set of solids: blocks, pillars, thin walls, cubes of glass and pictures. A line
-//! hits the nearest of them.
+//! A world as a set of solids: blocks, pillars, thin walls, leaves of doors, cubes of glass and
+//! pictures. A line hits the nearest of them.
 //!
 //! It uses no sectors, rows or cells: it tests every solid and takes the nearest hit. The colour of
 //! a hit depends only on its position. A mirror reflects the line, and the viewer with it.
@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 
 use cellcaster::color::Rgb;
 use cellcaster::world::{
-    Anchor, Camera, Ceiling, Cell, Figure, Gap, Glass, Light, Outline, Paint, Sprite, Texture,
-    Tile, TileId, TileKind, World,
+    Anchor, Camera, Ceiling, Cell, Covering, Figure, Gap, Glass, Light, Outline, Paint, Pattern,
+    Sky, Sprite, Texture, Tile, TileId, TileKind, World,
 };
 use glam::{DVec2, DVec3};
 
@@ -21,7 +21,7 @@ const NEAREST: f64 = 0.2;
 const MAX_BOUNCES: usize = 8;
 
 /// The solids of a world for one camera.
-pub(crate) struct Solids<'a> {
+pub struct Solids<'a> {
     world: &'a World,
     camera: &'a Camera,
     all: Vec<Solid<'a>>,
@@ -43,17 +43,21 @@ enum Solid<'a> {
         heights: Gap,
         paint: Paint,
     },
-    /// A thin wall, with its start and its extent.
+    /// A thin wall or the leaf of a door, with its start and its extent.
     Panel {
         start: DVec2,
         way: DVec2,
         heights: Gap,
         paint: Paint,
+        cell: Cell,
+        /// The part of a leaf that is in the jamb; `None` for a thin wall.
+        opening: Option<f64>,
     },
-    /// A picture that faces the camera.
+    /// A picture that faces the camera, and whether light and fog dim it.
     Picture {
         sprite: &'a Sprite,
         shown: Figure,
+        is_dimmed: bool,
     },
 }
 
@@ -62,12 +66,15 @@ struct Block {
     low: DVec3,
     high: DVec3,
     side: Paint,
-    top: Paint,
-    bottom: Paint,
+    /// `true` for a wall, which shows the jambs of doors.
+    has_jambs: bool,
+    top: Covering,
+    bottom: Covering,
     /// The light of its sides, if it does not depend on the cells in front of them.
     side_light: Option<Light>,
-    /// `true` for ground outside the map. Each cell in front of it lights its own part.
-    is_off_map: bool,
+    /// `true` for ground outside the map and below doors. Each cell in front of it lights its own
+    /// part.
+    is_lit_by_cells: bool,
     /// The light of its top and its bottom.
     flat_light: Light,
     /// The tint of its sides, if they are mirrors.
@@ -105,13 +112,23 @@ impl Sight {
 
 /// The hits of a line, up to the first opaque one.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Met {
+pub struct Met {
     /// The indices of the solids, from near to far, and their faces.
     faces: Vec<(usize, Face)>,
+    color: Rgb,
+    is_tied: bool,
+}
+
+impl Met {
     /// The visible colour.
-    pub(crate) color: Rgb,
-    /// `true` if two pictures are equally far away, except for rounding.
-    pub(crate) is_tied: bool,
+    pub fn color(&self) -> Rgb {
+        self.color
+    }
+
+    /// Returns whether two pictures are equally far away, except for rounding.
+    pub fn is_tied(&self) -> bool {
+        self.is_tied
+    }
 }
 
 /// The face by which a line enters.
@@ -130,7 +147,7 @@ type Entry = (f64, Face);
 
 impl<'a> Solids<'a> {
     /// The solids of `world` that `camera` may see.
-    pub(crate) fn of(world: &'a World, camera: &'a Camera) -> Self {
+    pub fn of(world: &'a World, camera: &'a Camera) -> Self {
         let (width, height) = (world.grid().width(), world.grid().height());
         let cells = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
         let mut all: Vec<Solid> = cells.flat_map(|cell| solids_in(world, cell)).collect();
@@ -147,21 +164,21 @@ impl<'a> Solids<'a> {
                 position: thing.cell.center(),
                 base,
                 heading: sprite.heading,
-                frame: 0,
+                frame: thing.frame.unwrap_or_default(),
                 opacity: u8::MAX,
             };
-            Solid::Picture { sprite, shown }
+            Solid::Picture { sprite, shown, is_dimmed: true }
         }));
         let visible = world.figures().iter().filter(|figure| figure.opacity > 0);
         all.extend(visible.map(|&shown| {
             let sprite = world.sprite(shown.sprite);
-            Solid::Picture { sprite, shown }
+            Solid::Picture { sprite, shown, is_dimmed: !sprite.glows }
         }));
         Self { world, camera, all }
     }
 
-    /// The hits of a line from the camera along `direction`, in front of the `sky`.
-    pub(crate) fn meet(&self, direction: DVec3, sky: Rgb) -> Met {
+    /// The hits of a line from the camera along `direction`, in front of the sky.
+    pub fn meet(&self, direction: DVec3) -> Met {
         let mut sight = Sight {
             origin: self.camera.position().extend(self.camera.eye()),
             direction,
@@ -170,13 +187,14 @@ impl<'a> Solids<'a> {
             right: self.camera.direction().perp(),
             is_mirrored: false,
         };
-        let mut met = Met { faces: Vec::new(), color: sky, is_tied: false };
+        let mut met = Met { faces: Vec::new(), color: Rgb::BLACK, is_tied: false };
         let mut layers = Vec::new();
         for bounces in 0..=MAX_BOUNCES {
             let image = self.meet_in(&sight, bounces < MAX_BOUNCES, &mut met, &mut layers);
             let Some(image) = image else { break };
             sight = image;
         }
+        let sky = self.sky(sight.direction);
         met.color =
             layers.into_iter().rev().fold(sky, |behind, (color, alpha)| color.over(behind, alpha));
         met
@@ -226,7 +244,7 @@ impl<'a> Solids<'a> {
     }
 
     /// Returns whether a position is inside a pillar, where nothing is visible.
-    pub(crate) fn is_in_pillar(&self, place: DVec3) -> bool {
+    pub fn is_in_pillar(&self, place: DVec3) -> bool {
         self.all.iter().any(|solid| match *solid {
             Solid::Pillar { center, radius, heights, .. } => {
                 place.truncate().distance(center) <= radius && heights.holds(place.z)
@@ -258,7 +276,7 @@ impl<'a> Solids<'a> {
             Solid::Panel { start, way, heights, .. } => {
                 panel_entry(origin - start.extend(0.0), direction, way, heights)
             }
-            Solid::Picture { sprite, ref shown } => {
+            Solid::Picture { sprite, ref shown, .. } => {
                 // The component of the direction along the viewer's direction is 1.
                 let t = (shown.position - origin.truncate()).dot(sight.forward);
                 let place = sight.at(t);
@@ -279,7 +297,7 @@ impl<'a> Solids<'a> {
         let light_in = |center: DVec2| self.light_in((center.x.floor(), center.y.floor()));
         // Textures start at whole heights.
         let upright = |paint, u: f64| self.texel(paint, u, -place.z);
-        let flat = |paint| self.texel(paint, place.x, place.y);
+        let flat = |covering: Covering| self.texel_of_plane(covering, place.truncate());
         let ((texel, own_alpha), light, normal) = match *solid {
             Solid::Block(ref block) | Solid::Cube { ref block, .. } => match face {
                 Face::Top => (flat(block.top), block.flat_light, DVec2::X),
@@ -288,38 +306,48 @@ impl<'a> Solids<'a> {
                     let u = if direction.x > 0.0 { place.y } else { -place.y };
                     let before = place.x - direction.x.signum() / 2.0;
                     let light = self.side_light(block, place.y, |row| (before.floor(), row));
-                    (upright(block.side, u), light, DVec2::X)
+                    let paint = self.paint_of_side(block, DVec2::new(before, place.y));
+                    (upright(paint, u), light, DVec2::X)
                 }
                 Face::Y | Face::Slanted => {
                     let u = if direction.y < 0.0 { place.x } else { -place.x };
                     let before = place.y - direction.y.signum() / 2.0;
                     let light = self.side_light(block, place.x, |column| (column, before.floor()));
-                    (upright(block.side, u), light, DVec2::Y)
+                    let paint = self.paint_of_side(block, DVec2::new(place.x, before));
+                    (upright(paint, u), light, DVec2::Y)
                 }
             },
             Solid::Pillar { paint, center, .. } if face == Face::Top => {
-                (flat(paint), light_in(center), DVec2::X)
+                (flat(paint.into()), light_in(center), DVec2::X)
             }
             Solid::Pillar { center, radius, paint, .. } => {
                 let outward = place.truncate() - center;
                 let times = (TAU * radius).round().max(1.0);
                 let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
-                (upright(paint, turn), light_in(center), outward / radius)
+                let cell = Cell { column: center.x as u32, row: center.y as u32 };
+                (upright(paint, turn), self.light_of_standing(cell, center), outward / radius)
             }
-            Solid::Panel { start, way, paint, .. } => {
-                let along = (place.truncate() - start).dot(way) / way.length_squared();
+            Solid::Panel { start, way, paint, cell, opening, .. } => {
+                let along = (place.truncate() - start).dot(way) / way.length();
+                let along = along + opening.unwrap_or_default();
+                let along = if opening.is_some() { along } else { along / way.length() };
                 let is_from_the_left = direction.truncate().perp_dot(way) > 0.0;
                 let u = if is_from_the_left { along } else { -along };
-                let light = light_in(start + way / 2.0);
-                (upright(paint, u), light, way.perp().normalize())
+                let normal = way.perp().normalize();
+                // The cell in front of it lights a leaf, and its own cell a thin wall.
+                let away = normal * -direction.truncate().dot(normal).signum();
+                let before = if opening.is_some() { cell.center() + away } else { cell.center() };
+                (upright(paint, u), self.light_of_standing(cell, before), normal)
             }
-            Solid::Picture { sprite, ref shown } => {
+            Solid::Picture { sprite, ref shown, .. } => {
                 let (x, y) = texel_of(sprite, shown, place, sight).unwrap_or_default();
                 let DVec2 { x: column, y: row } = shown.position.floor();
-                let ground = self.world.ground();
-                let light = self.tile_in((column, row)).unwrap_or(ground).light;
-                let (color, _) = picture_of(sprite, shown, sight).texel(x, y);
-                ((color, shown.opacity), light.unwrap_or(Light::FULL), DVec2::X)
+                let ground = self.world.ground().light.unwrap_or(Light::FULL);
+                let is_on_map = self.tile_in((column, row)).is_some();
+                let light = if is_on_map { self.light_in((column, row)) } else { ground };
+                let (color, texel_alpha) = picture_of(sprite, shown, sight).texel(x, y);
+                let alpha = (u32::from(texel_alpha) * u32::from(shown.opacity) + 127) / 255;
+                ((color, alpha as u8), light, DVec2::X)
             }
         };
         let alpha = match *solid {
@@ -327,6 +355,9 @@ impl<'a> Solids<'a> {
             Solid::Cube { opacity: None, .. } | Solid::Picture { .. } => own_alpha,
             _ => u8::MAX,
         };
+        if matches!(solid, Solid::Picture { is_dimmed: false, .. }) {
+            return (texel, alpha);
+        }
         (self.lit(texel, light, normal, t), alpha)
     }
 
@@ -353,14 +384,69 @@ impl<'a> Solids<'a> {
         Some(self.world.tile(id))
     }
 
+    /// The light in the cell with this corner, of lamps, too.
     fn light_in(&self, corner: (f64, f64)) -> Light {
-        self.tile_in(corner).and_then(|tile| tile.light).unwrap_or(Light::FULL)
+        cell_at(corner).map_or(Light::FULL, |cell| self.world.light_in(cell))
+    }
+
+    /// The light of an object in `cell`: of its tile, or in the cell that contains `before`.
+    fn light_of_standing(&self, cell: Cell, before: DVec2) -> Light {
+        let DVec2 { x: column, y: row } = before.floor();
+        let own = self.tile_in((cell.column.into(), cell.row.into())).and_then(|tile| tile.light);
+        own.unwrap_or_else(|| self.light_in((column, row)))
+    }
+
+    /// The paint of a side of `block` as seen from the cell that contains `before`.
+    fn paint_of_side(&self, block: &Block, before: DVec2) -> Paint {
+        let before = before.floor();
+        match self.tile_in((before.x, before.y)).map(|tile| tile.kind) {
+            Some(TileKind::Door(door) | TileKind::Doorway(door)) if block.has_jambs => door.jamb,
+            _ => block.side,
+        }
+    }
+
+    /// The colour of the sky along `direction`.
+    fn sky(&self, direction: DVec3) -> Rgb {
+        match self.world.sky() {
+            Sky::Gradient(sky) => {
+                // The zenith's colour starts at a slope of a half.
+                let up = (direction.z / 0.5).clamp(0.0, 1.0);
+                let share = (up * (2.0 - up) * 256.0) as u32;
+                let [red, green, blue] = [0, 1, 2].map(|index| {
+                    let [of_horizon, of_zenith] =
+                        [sky.horizon, sky.zenith].map(|color| u32::from(color.channels()[index]));
+                    ((of_horizon * (256 - share) + of_zenith * share) / 256) as u8
+                });
+                Rgb::new(red, green, blue)
+            }
+            Sky::Panorama(id) => {
+                let texture = self.world.texture(id);
+                let (width, height) = (f64::from(texture.width()), f64::from(texture.height()));
+                let turn = libm::atan2(direction.y, direction.x) / TAU;
+                let up = direction.z / direction.truncate().length() * width / TAU;
+                let x = (turn - turn.floor()) * width;
+                let y = (height - up).clamp(0.0, height - 1.0);
+                texture.texel((x as u32).min(texture.width() - 1), y as u32).0
+            }
+        }
+    }
+
+    /// The colour and the opacity of a floor or a ceiling at a position.
+    fn texel_of_plane(&self, Covering { pattern, scale }: Covering, place: DVec2) -> (Rgb, u8) {
+        let place = place / scale.cells();
+        let is_odd = |place: f64| place.floor() % 2.0 != 0.0;
+        let paint = match pattern {
+            Pattern::Plain(paint) => paint,
+            Pattern::Checker(paints) => paints[usize::from(is_odd(place.x) != is_odd(place.y))],
+            Pattern::Stripes(paints) => paints[usize::from(is_odd(place.y))],
+        };
+        self.texel(paint, place.x, place.y)
     }
 
     fn side_light(&self, block: &Block, along: f64, before: impl Fn(f64) -> (f64, f64)) -> Light {
         match block.side_light {
             Some(own) => own,
-            None if block.is_off_map => self.light_in(before(along.floor())),
+            None if block.is_lit_by_cells => self.light_in(before(along.floor())),
             None => self.light_along(along, before),
         }
     }
@@ -436,19 +522,22 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
     let low = DVec3::new(f64::from(cell.column), f64::from(cell.row), -FAR);
     let high = DVec3::new(low.x + 1.0, low.y + 1.0, gaps[0].bottom);
     let top = match tile.kind {
-        TileKind::Wall(_) | TileKind::Mirror(_) => tile.riser,
-        _ => tile.floor.pattern.first_paint(),
+        TileKind::Wall(_) | TileKind::Mirror(_) => tile.riser.into(),
+        _ => tile.floor,
     };
-    let side_light = tile.light.filter(|_| !matches!(tile.kind, TileKind::Open));
-    let flat_light = tile.light.unwrap_or(Light::FULL);
+    let is_door = matches!(tile.kind, TileKind::Door(_));
+    let is_open = matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+    let side_light = tile.light.filter(|_| !is_open);
+    let flat_light = world.light_in(cell);
     let below = Block {
         low,
         high,
         side: tile.riser,
+        has_jambs: matches!(tile.kind, TileKind::Wall(_)),
         top,
         bottom: top,
         side_light,
-        is_off_map: false,
+        is_lit_by_cells: is_door,
         flat_light,
         mirror: match tile.kind {
             TileKind::Mirror(tint) => Some(tint),
@@ -459,13 +548,14 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
         low: low.with_z(gaps[0].top),
         high: high.with_z(gap.bottom),
         side: tile.lintel,
-        top: tile.lintel,
+        has_jambs: false,
+        top: tile.lintel.into(),
         bottom: match tile.ceiling {
-            Ceiling::Covered(covering) => covering.pattern.first_paint(),
+            Ceiling::Covered(covering) => covering,
             Ceiling::Sky => unreachable!("there is rock above"),
         },
         side_light,
-        is_off_map: false,
+        is_lit_by_cells: false,
         flat_light,
         mirror: None,
     });
@@ -479,10 +569,11 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
             low: low.with_z(tile.heights.floor()),
             high: high.with_z(tile.heights.ceiling()),
             side,
-            top: side,
-            bottom: side,
+            has_jambs: false,
+            top: side.into(),
+            bottom: side.into(),
             side_light,
-            is_off_map: false,
+            is_lit_by_cells: false,
             flat_light,
             mirror: None,
         },
@@ -501,17 +592,45 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
                 Solid::Pillar { center: cell.center(), radius: radius.cells(), heights, paint }
             }
             Outline::Line(line) => {
-                Solid::Panel { start: line.start(cell), way: line.stretch(), heights, paint }
+                let (start, way) = (line.start(cell), line.stretch());
+                Solid::Panel { start, way, heights, paint, cell, opening: None }
             }
         }
     });
-    [below].into_iter().chain(above).map(Solid::Block).chain(shape).chain(cube).collect()
+    let leaf = match tile.kind {
+        TileKind::Door(door) => Some(leaf_of(world, cell, &tile, door.leaf)),
+        _ => None,
+    };
+    let standing = shape.into_iter().chain(cube).chain(leaf);
+    [below].into_iter().chain(above).map(Solid::Block).chain(standing).collect()
+}
+
+/// The leaf of the door in `cell`, which slides into the jamb in the west or in the north.
+fn leaf_of<'a>(world: &World, cell: Cell, tile: &Tile, paint: Paint) -> Solid<'a> {
+    let opening = world.opening(cell).part();
+    let is_jamb_in_the_west =
+        world.grid().is_solid(i64::from(cell.column) - 1, i64::from(cell.row));
+    let way = if is_jamb_in_the_west { DVec2::X } else { DVec2::Y };
+    Solid::Panel {
+        start: cell.center() - way / 2.0,
+        way: way * (1.0 - opening),
+        heights: Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() },
+        paint,
+        cell,
+        opening: Some(opening),
+    }
+}
+
+fn cell_at((column, row): (f64, f64)) -> Option<Cell> {
+    let is_on_axis = |place: &f64| (0.0..f64::from(u32::MAX)).contains(place);
+    (is_on_axis(&column) && is_on_axis(&row))
+        .then_some(Cell { column: column as u32, row: row as u32 })
 }
 
 /// The ground beyond the edges of the map.
 fn ground_around(world: &World) -> impl Iterator<Item = Block> {
     let (width, height) = (f64::from(world.grid().width()), f64::from(world.grid().height()));
-    let paint = world.floor().pattern.first_paint();
+    let ground = world.ground();
     let around = [
         (-FAR, -FAR, 0.0, FAR),
         (width, -FAR, FAR, FAR),
@@ -521,12 +640,13 @@ fn ground_around(world: &World) -> impl Iterator<Item = Block> {
     around.into_iter().map(move |(west, north, east, south)| Block {
         low: DVec3::new(west, north, -FAR),
         high: DVec3::new(east, south, 0.0),
-        side: paint,
-        top: paint,
-        bottom: paint,
+        side: ground.riser,
+        has_jambs: false,
+        top: world.floor(),
+        bottom: world.floor(),
         side_light: None,
-        is_off_map: true,
-        flat_light: world.ground().light.unwrap_or(Light::FULL),
+        is_lit_by_cells: true,
+        flat_light: ground.light.unwrap_or(Light::FULL),
         mirror: None,
     })
 }
