@@ -145,7 +145,12 @@ impl Timing {
     fn of(mut times: Vec<f64>) -> Option<Self> {
         times.sort_unstable_by(f64::total_cmp);
         let last = times.len().checked_sub(1)?;
-        let at = |share: f64| times[(share * last as f64).round() as usize];
+        // Between two times, their weighted mean.
+        let at = |share: f64| {
+            let place = share * last as f64;
+            let (below, above) = (times[place.floor() as usize], times[place.ceil() as usize]);
+            below + (above - below) * place.fract()
+        };
         Some(Self { median: at(0.5), lower_quartile: at(0.25), upper_quartile: at(0.75) })
     }
 }
@@ -177,9 +182,8 @@ pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
 }
 
 /// The median of `values`; 0 if there are none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
+pub(crate) fn median(values: Vec<f64>) -> f64 {
+    Timing::of(values).unwrap_or_default().median
 }
 
 #[cfg(test)]
@@ -203,6 +207,8 @@ mod tests {
         let Timing { median, lower_quartile, upper_quartile } =
             Timing::of(vec![5.0, 1.0, 4.0, 2.0, 3.0]).unwrap();
         assert_eq!((lower_quartile, median, upper_quartile), (2.0, 3.0, 4.0));
+        let even = Timing::of(vec![4.0, 1.0, 2.0, 3.0]).unwrap();
+        assert_eq!((even.lower_quartile, even.median, even.upper_quartile), (1.75, 2.5, 3.25));
     }
 
     #[test]

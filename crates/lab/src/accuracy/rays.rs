@@ -172,10 +172,13 @@ fn distance_error(truth: Option<&Truth>, hit: Option<Hit>) -> f64 {
                 // Beyond the largest double, infinity is correct.
                 return if hit.t.is_infinite() { 0.0 } else { 1.0 };
             }
-            let error = truth.t.error(hit.t.min(f64::MAX));
             // At a distance of zero the quotient would be infinite. The largest double stands for
             // it.
-            if error == 0.0 { 0.0 } else { (error / distance).min(f64::MAX) }
+            match truth.t.is_zero() {
+                true if hit.t == 0.0 => 0.0,
+                true => f64::MAX,
+                false => truth.t.relative_error(hit.t.min(f64::MAX)).min(f64::MAX),
+            }
         }
         _ => 1.0,
     }

@@ -70,9 +70,25 @@ impl Rational {
         libm::scalbn(quotient, (excess + self.exponent).clamp(-5000, 5000) as i32)
     }
 
+    /// Returns whether the number is 0.
+    pub fn is_zero(&self) -> bool {
+        self.numerator.sign() == Sign::NoSign
+    }
+
     /// The absolute error of a finite `value`.
     pub fn error(&self, value: f64) -> f64 {
         self.difference(value).to_f64().abs()
+    }
+
+    /// The error of a finite `value` relative to this number, which is not 0.
+    pub fn relative_error(&self, value: f64) -> f64 {
+        let Self { numerator, denominator, exponent } = self.difference(value);
+        let share = Self::new(
+            numerator * &self.denominator,
+            denominator * &self.numerator,
+            exponent - self.exponent,
+        );
+        share.to_f64().abs()
     }
 
     /// The absolute error of `value`, in units of its last place. Infinity counts as the number
@@ -303,11 +319,14 @@ mod tests {
         let third = Rational::new(BigInt::from(1), BigInt::from(-3), 0);
         assert!(third.error_in_ulps(-1.0 / 3.0) < 0.5);
         assert!((third.error_in_ulps((-1.0_f64 / 3.0).next_up()) - 1.0).abs() < 0.5);
-        assert_eq!(third.error(0.0), 1.0 / 3.0);
+        assert_eq!((third.error(0.0), third.relative_error(0.0)), (1.0 / 3.0, 1.0));
         let beyond = Rational::new(BigInt::from(1), BigInt::from(1), 1024);
         assert_eq!(beyond.to_f64(), f64::INFINITY);
         assert_eq!(beyond.error_in_ulps(f64::INFINITY), 0.0);
         let least = Rational::new(BigInt::from(1), BigInt::from(1), -1074);
         assert_eq!((least.to_f64(), least.error_in_ulps(0.0)), (5e-324, 1.0));
+        // Relative errors do not underflow, of numbers below the least double, either.
+        let tiny = Rational::new(BigInt::from(1), BigInt::from(3), -1074);
+        assert_eq!((tiny.relative_error(5e-324), tiny.relative_error(0.0)), (2.0, 1.0));
     }
 }

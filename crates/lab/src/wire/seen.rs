@@ -163,10 +163,10 @@ mod tests {
             [GlyphSet::Half, GlyphSet::Quadrant, GlyphSet::Sextant, GlyphSet::Octant];
         // A tenth above the errors of 2026-11.
         for (name, most) in [
-            ("cellar", [6.0, 4.9, 4.0, 3.3]),
-            ("museum", [11.4, 10.5, 7.0, 6.0]),
-            ("citadel", [6.1, 5.2, 3.8, 3.5]),
-            ("treasury", [13.8, 13.4, 6.8, 6.2]),
+            ("cellar", [6.4, 6.0, 4.6, 3.7]),
+            ("museum", [7.4, 6.6, 4.9, 4.4]),
+            ("citadel", [5.0, 4.8, 3.8, 3.4]),
+            ("treasury", [6.2, 5.7, 4.2, 3.7]),
         ] {
             let errors = SETS.map(|glyphs| error(name, glyphs));
             assert!(errors.is_sorted_by(|coarser, finer| coarser > finer), "{name} {errors:.2?}");
@@ -174,9 +174,9 @@ mod tests {
                 errors.iter().zip(most).all(|(&error, most)| error <= most),
                 "{name} {errors:.2?}"
             );
-            // Sextants leave at most 0.71 of the error of half blocks, and octants 0.64.
+            // Sextants leave at most 0.76 of the error of half blocks, and octants 0.68.
             assert!(
-                errors[2] <= 0.71 * errors[0] && errors[3] <= 0.64 * errors[0],
+                errors[2] <= 0.76 * errors[0] && errors[3] <= 0.68 * errors[0],
                 "{name} {errors:.2?}"
             );
         }
