@@ -37,7 +37,9 @@ pub mod parts {
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
     pub use crate::app::played::Watch;
-    pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
+    pub use crate::app::setting::{
+        Choice, Field, FieldAt, Setting, Value, reject_range, toml_string,
+    };
     pub use crate::app::settings::{Choices, settings_menu};
     pub use crate::app::status::{
         HealthSigns, Meter, Part, Stats, StatusLine, hint, of_steps, tenths, whole_seconds,
@@ -76,7 +78,7 @@ use crate::world::{Difficulty, Figure};
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct Shown {
+struct PictureState {
     viewpoint: Viewpoint,
     revision: u64,
     /// The figures in view.
@@ -140,7 +142,7 @@ struct App {
     clock: Clock,
     views: Views,
     /// The state that the screen shows; `None` if it must be redrawn.
-    shown: Option<Shown>,
+    shown: Option<PictureState>,
     /// `true` after a key interrupted the last picture. The effect of the key is shown first.
     is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.

@@ -70,7 +70,7 @@ enum Command {
     Levels(levels::LevelsCommand),
     Config(config::Config),
     Replay(replay::ReplayCommand),
-    Share(share::Share),
+    Share(share::ShareCommand),
     Completions(help::Completions),
     Man(help::Manual),
 }

@@ -65,13 +65,13 @@ pub use multiplayer::view::{OtherPlayer, PlayerView};
 pub use player::FRICTION;
 pub use report::Outcome;
 pub use rules::{
-    Input, MAX_LAG, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
-    Strikes,
+    Input, MAX_LAG, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND,
+    ShownPlayers, StrikeEffect,
 };
 pub use script::{Header, LevelName, Script, ScriptWriter, Section, Stretch};
 pub use sight::SightCone;
 pub use sound::{Heard, Sound, SoundKind, Source};
-pub use stored::{RULES_VERSION, Unrestorable};
+pub use stored::{RULES_VERSION, RestoreError};
 pub use tally::{Rank, Share, Tally};
 
 /// A world, a player in it, and the time since the start.

@@ -27,7 +27,7 @@ pub use crate::visibility::{
 };
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};
-pub use threads::{Threads, WhyOne};
+pub use threads::{OneThreadReason, Threads};
 
 pub use crate::cast::DynCaster;
 use crate::raster::{self, SkyMemory, SkyView, SurfaceBuffer};

@@ -37,7 +37,7 @@ use crate::color::Rgb;
 pub(crate) use beam_table::{BeamTable, Beams, FRACTION_BITS, STRIP};
 pub use camera::{Camera, FieldOfView, Heading, Pitch};
 pub(crate) use distance_field::DistanceField;
-use door::Ajar;
+use door::PartlyOpenDoors;
 pub use door::{Door, KeyId, Opening};
 pub(crate) use flood::Flood;
 pub use grid::{Cell, Grid, TileId};
@@ -99,7 +99,7 @@ pub struct World {
     light_varies: bool,
     keys: Vec<String>,
     mission: Mission,
-    ajar: Ajar,
+    ajar: PartlyOpenDoors,
 }
 
 /// The place where the player starts.
@@ -362,7 +362,7 @@ impl World {
             light_varies: false,
             keys: parts.keys,
             mission: parts.mission,
-            ajar: Ajar::default(),
+            ajar: PartlyOpenDoors::default(),
         };
         world.light_up();
         #[cfg(any(test, debug_assertions))]
@@ -382,7 +382,7 @@ impl World {
         self.things = Things::new(things);
         self.figures.clear();
         self.light_up();
-        self.ajar = Ajar::default();
+        self.ajar = PartlyOpenDoors::default();
     }
 
     /// The changes that a game has made.

@@ -5,10 +5,10 @@
 
 use allocation_counter::measure;
 use cellcaster_server::admin::{AdminReply, AdminRequest};
-use cellcaster_server::fuzzing::Desk;
+use cellcaster_server::fuzzing::FuzzedHost;
 
 thread_local! {
-    static DESK: Desk = Desk::default();
+    static DESK: FuzzedHost = FuzzedHost::default();
 }
 
 /// Answers the bytes.

@@ -2,7 +2,7 @@
 //! reproduces the room bit for bit. A session ends only after it has restored its terminal.
 
 use cellcaster::terminal::{SessionOptions, WindowSize};
-use cellcaster_server::fuzzing::Hall;
+use cellcaster_server::fuzzing::FuzzedRoom;
 
 use crate::alacritty::Alacritty;
 use crate::bytes::Bytes;
@@ -50,49 +50,49 @@ struct Terminal {
 pub fn run(data: &[u8]) {
     let mut choices = Bytes::new(data);
     let choices = &mut choices;
-    let mut hall = Hall::new(choices.double_word().into());
+    let mut room = FuzzedRoom::new(choices.double_word().into());
     let mut terminals: Vec<Terminal> = Vec::new();
     for _ in 0..MAX_OPERATIONS {
-        if choices.is_empty() || hall.steps() > MAX_STEPS {
+        if choices.is_empty() || room.steps() > MAX_STEPS {
             break;
         }
         let what = choices.below(16);
         if terminals.is_empty() || what == 0 && terminals.len() < MAX_VISITORS {
-            terminals.push(arrive(&mut hall, choices));
+            terminals.push(arrive(&mut room, choices));
         }
         let visitor = choices.below(terminals.len());
         let terminal = &mut terminals[visitor];
-        show(&mut hall, visitor, terminal);
-        if hall.is_over(visitor) {
+        show(&mut room, visitor, terminal);
+        if room.is_over(visitor) {
             // Nothing more arrives from this visitor.
             continue;
         }
         match what {
-            0..8 => hall.receive(visitor, choices.pick(&KEYS).as_bytes()),
+            0..8 => room.receive(visitor, choices.pick(&KEYS).as_bytes()),
             8 => {
                 let count = choices.below(24);
-                hall.receive(visitor, choices.take(count));
+                room.receive(visitor, choices.take(count));
             }
             9 => {
                 let size = size(choices);
                 terminal.screen.resize(size.columns.max(1), size.rows.max(1));
-                hall.resize(visitor, size);
+                room.resize(visitor, size);
             }
-            10 => hall.notify(visitor, choices.byte().into()),
-            11 => hall.pass(choices.byte().into()),
+            10 => room.notify(visitor, choices.byte().into()),
+            11 => room.pass(choices.byte().into()),
             _ => {
                 let answers = std::mem::take(&mut terminal.answers);
-                hall.receive(visitor, &answers);
-                hall.pass(1);
+                room.receive(visitor, &answers);
+                room.pass(1);
             }
         }
-        show(&mut hall, visitor, &mut terminals[visitor]);
+        show(&mut room, visitor, &mut terminals[visitor]);
     }
-    hall.pass(1);
-    check_recording(&hall);
+    room.pass(1);
+    check_recording(&room);
 }
 
-fn arrive(hall: &mut Hall, choices: &mut Bytes) -> Terminal {
+fn arrive(room: &mut FuzzedRoom, choices: &mut Bytes) -> Terminal {
     let kind = choices.byte();
     let options = SessionOptions::from_environment(|name| match name {
         "TERM" => {
@@ -103,7 +103,7 @@ fn arrive(hall: &mut Hall, choices: &mut Bytes) -> Terminal {
         _ => None,
     });
     let size = size(choices);
-    hall.arrive(
+    room.arrive(
         ["Ada", "Bo", "字", "a name of a guest"][usize::from(kind >> 4 & 3)],
         options,
         size,
@@ -119,11 +119,11 @@ fn size(choices: &mut Bytes) -> WindowSize {
 }
 
 /// Shows the output of a session, and checks its end.
-fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
-    let output = hall.output(visitor);
+fn show(room: &mut FuzzedRoom, visitor: usize, terminal: &mut Terminal) {
+    let output = room.output(visitor);
     terminal.answers.extend(terminal.screen.process(&output));
     terminal.answers.truncate(4096);
-    if hall.is_over(visitor) && terminal.is_honest {
+    if room.is_over(visitor) && terminal.is_honest {
         let new = Alacritty::new(1, 1);
         assert_eq!(terminal.screen.modes(), new.modes(), "modes are left");
         terminal.is_honest = false;
@@ -131,12 +131,12 @@ fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
 }
 
 /// Checks that the log of the round reproduces the room.
-fn check_recording(hall: &Hall) {
-    if hall.steps() >= MAX_STEPS {
+fn check_recording(room: &FuzzedRoom) {
+    if room.steps() >= MAX_STEPS {
         return;
     }
-    let (text, checksum) = hall.recording();
+    let (text, checksum) = room.recording();
     // An entry for a member who does not exist makes the replay run up to the present step.
-    let text = format!("{text}{} leave 0\n", hall.steps());
-    assert_eq!(Hall::replayed(&text), Ok(Some(checksum)), "the log gives another room:\n{text}");
+    let text = format!("{text}{} leave 0\n", room.steps());
+    assert_eq!(FuzzedRoom::replayed(&text), Ok(Some(checksum)), "the log gives another room:\n{text}");
 }

@@ -7,7 +7,7 @@
 
 use allocation_counter::measure;
 use cellcaster::terminal::{SessionOptions, WindowSize};
-use cellcaster_server::fuzzing::Hall;
+use cellcaster_server::fuzzing::FuzzedRoom;
 
 use crate::bytes::Bytes;
 
@@ -26,14 +26,14 @@ pub fn run(data: &[u8]) {
     let term = ["xterm-256color", "linux", "xterm-kitty", "dumb"][usize::from(kind & 3)];
     let options =
         SessionOptions::from_environment(|name| (name == "TERM").then(|| term.to_owned()));
-    let mut hall = Hall::small((kind >> 2).into());
+    let mut room = FuzzedRoom::small((kind >> 2).into());
     let columns = 20 + u16::from(width) % 80;
-    hall.arrive("Ada", options, WindowSize::new((columns, 24), (0, 0)));
+    room.arrive("Ada", options, WindowSize::new((columns, 24), (0, 0)));
     for part in choices.take(data.len()).split(|&byte| byte == CUT).take(MAX_PARTS) {
-        let used = measure(|| hall.press(0, part));
+        let used = measure(|| room.press(0, part));
         let most = BYTES_OF_A_PART + BYTES_OF_A_BYTE * part.len() as u64;
         assert!(used.bytes_total <= most, "{} bytes for {}", used.bytes_total, part.len());
-        hall.pass(3);
-        _ = hall.output(0);
+        room.pass(3);
+        _ = room.output(0);
     }
 }

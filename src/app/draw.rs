@@ -22,7 +22,7 @@ use crate::app::recording::Ghost;
 use crate::app::screen::AppScreen;
 use crate::app::status::whole_seconds;
 use crate::app::status::{HealthSigns, Part, hint};
-use crate::app::{App, Shown, page, title};
+use crate::app::{App, PictureState, page, title};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
 use crate::tui::canvas::Canvas;
@@ -261,7 +261,7 @@ impl App {
         let figures = self.figures_in_view().copied().collect();
         let suspicions = self.suspicions().collect();
         let moment = self.moment_shown();
-        self.shown = Some(Shown { viewpoint, revision, figures, suspicions, moment });
+        self.shown = Some(PictureState { viewpoint, revision, figures, suspicions, moment });
         self.playback.iter_mut().for_each(Playback::drawn);
         let soonest = self.game.elapsed() + STEP;
         self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));

@@ -22,12 +22,12 @@ pub(crate) struct History {
     begun: u64,
     /// The number of steps now.
     steps: u64,
-    states: Vec<State>,
+    states: Vec<StoredState>,
     every: u64,
 }
 
 #[derive(Debug)]
-struct State {
+struct StoredState {
     steps: u64,
     bytes: Vec<u8>,
 }
@@ -56,7 +56,7 @@ impl History {
             return;
         }
         let Some(bytes) = game.stored() else { return };
-        self.states.push(State { steps, bytes });
+        self.states.push(StoredState { steps, bytes });
         if self.states.iter().map(|state| state.bytes.len()).sum::<usize>() > MAX_BYTES {
             self.every *= 2;
             let mut is_kept = false;

@@ -171,7 +171,7 @@ fn is_at_door(world: &World, position: DVec2) -> bool {
 }
 
 /// The smallest picture with room for the map beside the menu, in columns and rows.
-const LEAST: (u16, u16) = (64, 14);
+const MIN_SIZE: (u16, u16) = (64, 14);
 /// The columns for the menu.
 const MENU_COLUMNS: u16 = 36;
 /// The largest zoom of the map.
@@ -199,7 +199,7 @@ impl App {
 
     /// Returns true if a picture of this size shows the last seconds from above.
     pub(crate) fn looks_back_in(&self, picture: Rect) -> bool {
-        let has_room = picture.width >= LEAST.0 && picture.height >= LEAST.1;
+        let has_room = picture.width >= MIN_SIZE.0 && picture.height >= MIN_SIZE.1;
         has_room && self.shown_look_back().is_some()
     }
 

@@ -485,7 +485,7 @@ pub(crate) enum Suspicion {
 /// The number of rows at the top without marks: for the compass, and for sounds from ahead.
 const ROWS_ABOVE_MARKS: f64 = 2.0;
 /// Less awareness than this shows no mark.
-const LEAST_AWARENESS: u16 = 30;
+const MIN_AWARENESS: u16 = 30;
 
 impl Suspicion {
     /// The suspicion of `guard`; `None` if the guard is calm.
@@ -496,7 +496,7 @@ impl Suspicion {
             Mood::Chasing | Mood::Attacking => Some(Self::Alarmed),
             Mood::Searching => Some(Self::Searching),
             Mood::Wondering => Some(Self::Wary(thirds)),
-            Mood::OnDuty | Mood::Returning if awareness >= LEAST_AWARENESS => {
+            Mood::OnDuty | Mood::Returning if awareness >= MIN_AWARENESS => {
                 Some(Self::Wary(thirds))
             }
             Mood::OnDuty | Mood::Returning | Mood::Asleep | Mood::Down => None,

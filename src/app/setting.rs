@@ -68,15 +68,15 @@ pub trait Field<C>: Sync {
 
 /// The field of `C` that a function borrows. A value is read from a copy of `C`, so one function
 /// per row is enough.
-pub struct At<C, T>(pub fn(&mut C) -> &mut T);
+pub struct FieldAt<C, T>(pub fn(&mut C) -> &mut T);
 
-impl<C: Clone, T: Value> At<C, T> {
+impl<C: Clone, T: Value> FieldAt<C, T> {
     fn get(&self, of: &C) -> T {
         *self.0(&mut of.clone())
     }
 }
 
-impl<C: Clone, T: Value> Field<C> for At<C, T> {
+impl<C: Clone, T: Value> Field<C> for FieldAt<C, T> {
     fn read(&self, entry: &Entry<'_, '_>, into: &mut C) {
         if let Some(value) = T::read(entry) {
             *self.0(into) = value;
@@ -314,15 +314,15 @@ impl Value for FieldOfView {
 pub struct ViewAngle(u8);
 
 impl ViewAngle {
-    const LEAST: u8 = 30;
-    const MOST: u8 = 120;
+    const MIN: u8 = 30;
+    const MAX: u8 = 120;
     /// The difference between two values that the settings page offers.
     const STEP: u8 = 6;
 
     /// The angle that is nearest to `view`.
     pub(crate) fn nearest(view: FieldOfView) -> Self {
         let degrees = view.degrees().round();
-        Self(degrees.clamp(Self::LEAST.into(), Self::MOST.into()) as u8)
+        Self(degrees.clamp(Self::MIN.into(), Self::MAX.into()) as u8)
     }
 
     /// The angle as a field of view.
@@ -335,7 +335,7 @@ impl TryFrom<u8> for ViewAngle {
     type Error = &'static str;
 
     fn try_from(degrees: u8) -> Result<Self, Self::Error> {
-        let is_offered = (Self::LEAST..=Self::MOST).contains(&degrees);
+        let is_offered = (Self::MIN..=Self::MAX).contains(&degrees);
         is_offered.then_some(Self(degrees)).ok_or("a field of view has 30 to 120 degrees")
     }
 }
@@ -360,7 +360,7 @@ impl Value for Option<ViewAngle> {
 
     fn after(self, forward: bool) -> Self {
         let ViewAngle(degrees) = self.unwrap_or(ViewAngle::nearest(FieldOfView::default()));
-        let (least, most, step) = (ViewAngle::LEAST, ViewAngle::MOST, ViewAngle::STEP);
+        let (least, most, step) = (ViewAngle::MIN, ViewAngle::MAX, ViewAngle::STEP);
         let after = match forward {
             true if degrees >= most => least,
             true => (degrees + step).min(most),
@@ -584,38 +584,44 @@ pub(crate) const PREFERENCES: [Setting<Preferences>; 12] = [
 impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// Whether a dot marks the middle of the picture.
     pub const CROSSHAIR: Self =
-        Self::new("crosshair", "Crosshair", &At(|it: &mut C| &mut it.as_mut().crosshair));
+        Self::new("crosshair", "Crosshair", &FieldAt(|it: &mut C| &mut it.as_mut().crosshair));
     /// Whether the compass is shown.
     pub const COMPASS: Self =
-        Self::new("compass", "Compass", &At(|it: &mut C| &mut it.as_mut().compass));
+        Self::new("compass", "Compass", &FieldAt(|it: &mut C| &mut it.as_mut().compass));
     /// Whether the terminal's bell rings when the player is noticed or hurt.
-    pub const BELL: Self =
-        Self::new("bell", "Bell when noticed or hurt", &At(|it: &mut C| &mut it.as_mut().bell));
+    pub const BELL: Self = Self::new(
+        "bell",
+        "Bell when noticed or hurt",
+        &FieldAt(|it: &mut C| &mut it.as_mut().bell),
+    );
     /// Whether the ghost of the best run is shown.
     pub const GHOST: Self =
-        Self::new("ghost", "Ghost of the best run", &At(|it: &mut C| &mut it.as_mut().ghost));
+        Self::new("ghost", "Ghost of the best run", &FieldAt(|it: &mut C| &mut it.as_mut().ghost));
     /// Whether marks show what guards suspect.
     pub const MARKS: Self =
-        Self::new("marks", "Marks above guards", &At(|it: &mut C| &mut it.as_mut().marks));
+        Self::new("marks", "Marks above guards", &FieldAt(|it: &mut C| &mut it.as_mut().marks));
     /// The difficulty of new games.
     pub const DIFFICULTY: Self =
-        Self::new("difficulty", "Difficulty", &At(|it: &mut C| &mut it.as_mut().difficulty));
+        Self::new("difficulty", "Difficulty", &FieldAt(|it: &mut C| &mut it.as_mut().difficulty));
     /// The glyph set.
     pub const GLYPHS: Self =
-        Self::new("glyphs", "Characters", &At(|it: &mut C| &mut it.as_mut().glyphs));
+        Self::new("glyphs", "Characters", &FieldAt(|it: &mut C| &mut it.as_mut().glyphs));
     /// The colour depth.
     pub const COLORS: Self =
-        Self::new("colors", "Colours", &At(|it: &mut C| &mut it.as_mut().colors));
+        Self::new("colors", "Colours", &FieldAt(|it: &mut C| &mut it.as_mut().colors));
     /// The colour correction for the player's eyes.
     pub const CORRECTION: Self =
-        Self::new("correction", "Picture", &At(|it: &mut C| &mut it.as_mut().correction));
+        Self::new("correction", "Picture", &FieldAt(|it: &mut C| &mut it.as_mut().correction));
     /// The maximum frame rate.
-    pub const FRAME_RATE: Self =
-        Self::new("fps", "Frames a second", &At(|it: &mut C| &mut it.as_mut().frames_per_second));
+    pub const FRAME_RATE: Self = Self::new(
+        "fps",
+        "Frames a second",
+        &FieldAt(|it: &mut C| &mut it.as_mut().frames_per_second),
+    );
     /// Whether the player runs unless a key asks for walking.
     pub const RUNS: Self =
-        Self::new("runs", "Run by default", &At(|it: &mut C| &mut it.as_mut().runs));
+        Self::new("runs", "Run by default", &FieldAt(|it: &mut C| &mut it.as_mut().runs));
     /// The field of view.
     pub const FIELD_OF_VIEW: Self =
-        Self::new("fov", "Field of view", &At(|it: &mut C| &mut it.as_mut().field_of_view));
+        Self::new("fov", "Field of view", &FieldAt(|it: &mut C| &mut it.as_mut().field_of_view));
 }

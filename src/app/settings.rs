@@ -37,7 +37,7 @@ use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen;
 use crate::app::setting::{
-    At, Choice, FRAME_RATE, Field, MapDisplay, Preferences, Setting, ViewAngle, toml_string,
+    Choice, FRAME_RATE, Field, FieldAt, MapDisplay, Preferences, Setting, ViewAngle, toml_string,
 };
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
@@ -184,46 +184,46 @@ const SETTINGS: [Setting<Configuration>; 9] = [
     Setting {
         key: "preset",
         about: "the keyboard layout of the default keys: \"qwerty\", \"azerty\" or \"hjkl\"",
-        value: &At(|it: &mut Configuration| &mut it.preset),
+        value: &FieldAt(|it: &mut Configuration| &mut it.preset),
     },
     Setting {
         key: "colors",
         about: "the number of colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what\n\
                   the terminal has",
-        value: &At(|it: &mut Configuration| &mut it.colors),
+        value: &FieldAt(|it: &mut Configuration| &mut it.colors),
     },
     Setting {
         key: "glyphs",
         about: "the characters that show pixels: \"half\" (two per cell), \"quadrant\" (four),\n\
                   \"sextant\" (six), \"octant\" (eight), \"ascii\", \"ramp\" (by brightness),\n\
                   or \"auto\" for the best that the terminal can show",
-        value: &At(|it: &mut Configuration| &mut it.glyphs),
+        value: &FieldAt(|it: &mut Configuration| &mut it.glyphs),
     },
     Setting {
         key: "fov",
         about: "the field of view in degrees, above 0 and below 180",
-        value: &At(|it: &mut Configuration| &mut it.field_of_view),
+        value: &FieldAt(|it: &mut Configuration| &mut it.field_of_view),
     },
     Setting {
         key: "fps",
         about: "the maximum number of frames per second, from 1 to 240",
-        value: &At(|it: &mut Configuration| &mut it.frames_per_second),
+        value: &FieldAt(|it: &mut Configuration| &mut it.frames_per_second),
     },
     Setting {
         key: "mouse",
         about: "true if the mouse turns the player at the start of the game, false if not",
-        value: &At(|it: &mut Configuration| &mut it.mouse),
+        value: &FieldAt(|it: &mut Configuration| &mut it.mouse),
     },
     Setting {
         key: "minimap",
         about: "the map in the corner: \"seen\" (the cells that you have seen), \"all\" or \"off\"",
-        value: &At(|it: &mut Configuration| &mut it.minimap),
+        value: &FieldAt(|it: &mut Configuration| &mut it.minimap),
     },
     Setting {
         key: "fidelity",
         about: "the fidelity of colours while something moves: \"exact\", \"high\", \"low\", a\n\
                   tolerance from 0 to 255, or \"auto\" for the best that the link allows",
-        value: &At(|it: &mut Configuration| &mut it.fidelity),
+        value: &FieldAt(|it: &mut Configuration| &mut it.fidelity),
     },
     Setting {
         key: "art",
@@ -424,9 +424,9 @@ impl AsMut<Preferences> for Choices {
 impl<C: AsMut<Choices> + Clone> Setting<C> {
     /// Whether the mouse turns the player.
     pub const MOUSE: Self =
-        Self::new("mouse", "Mouse turns", &At(|it: &mut C| &mut it.as_mut().mouse));
+        Self::new("mouse", "Mouse turns", &FieldAt(|it: &mut C| &mut it.as_mut().mouse));
     /// The content of the map.
-    pub const MAP: Self = Self::new("minimap", "Map", &At(|it: &mut C| &mut it.as_mut().map));
+    pub const MAP: Self = Self::new("minimap", "Map", &FieldAt(|it: &mut C| &mut it.as_mut().map));
 }
 
 /// The rows, in the order of the page.

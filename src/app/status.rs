@@ -424,7 +424,7 @@ pub struct Meter {
 /// The time between two measurements.
 const INTERVAL: Duration = Duration::from_millis(500);
 /// The shortest time without frames that counts as a pause.
-const PAUSE: Duration = Duration::from_millis(500);
+const MIN_PAUSE: Duration = Duration::from_millis(500);
 
 impl Meter {
     /// Counts a frame that `protocol` has drawn. Returns new statistics when they are due.
@@ -438,7 +438,7 @@ impl Meter {
     /// Counts a frame; `bytes` is the total number of bytes up to now. Returns new rates when they
     /// are due.
     fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
-        let pauses = now.saturating_sub(self.last) > PAUSE;
+        let pauses = now.saturating_sub(self.last) > MIN_PAUSE;
         let elapsed = now.saturating_sub(self.begun);
         self.frames += 1;
         self.last = now;

@@ -16,7 +16,7 @@ pub(crate) mod sentences;
 use std::io::{self, BufRead, Read, Write};
 
 use glam::DVec2;
-use sentences::{Event, Moment, Surroundings, sentence};
+use sentences::{Observation, StepEvent, Surroundings, sentence};
 
 use crate::app::screen::AppScreen;
 use crate::app::settings::Settings;
@@ -73,7 +73,7 @@ fn next_line(input: &mut impl BufRead) -> io::Result<Option<String>> {
 
 /// A command.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Command {
+enum TextCommand {
     /// Walks in a direction by a number of cells.
     Walk(Intent),
     /// Turns by a number of degrees, clockwise if it is positive.
@@ -99,49 +99,61 @@ enum Command {
 }
 
 /// The commands with their words, the first of which the help shows, and what they do.
-const COMMANDS: [(&[&str], Command, &str); 25] = [
+const COMMANDS: [(&[&str], TextCommand, &str); 25] = [
     (
         &["forward", "f"],
-        Command::Walk(Intent::Forward),
+        TextCommand::Walk(Intent::Forward),
         "walk, by 1 cell or as many as you say: forward 3",
     ),
-    (&["back", "b"], Command::Walk(Intent::Back), "walk backwards"),
-    (&["sideleft", "sl"], Command::Walk(Intent::StrafeLeft), "step to the left without turning"),
-    (&["sideright", "sr"], Command::Walk(Intent::StrafeRight), "step to the right without turning"),
+    (&["back", "b"], TextCommand::Walk(Intent::Back), "walk backwards"),
+    (
+        &["sideleft", "sl"],
+        TextCommand::Walk(Intent::StrafeLeft),
+        "step to the left without turning",
+    ),
+    (
+        &["sideright", "sr"],
+        TextCommand::Walk(Intent::StrafeRight),
+        "step to the right without turning",
+    ),
     (
         &["left", "l"],
-        Command::Turn(-90.0),
+        TextCommand::Turn(-90.0),
         "turn left, by 90 degrees or as many as you say: left 45",
     ),
-    (&["right", "r"], Command::Turn(90.0), "turn right"),
-    (&["around", "u"], Command::Turn(180.0), "turn around"),
-    (&["east"], Command::Face(0.0), "turn to the east"),
-    (&["south"], Command::Face(90.0), "turn to the south"),
-    (&["west"], Command::Face(180.0), "turn to the west"),
-    (&["north"], Command::Face(270.0), "turn to the north"),
+    (&["right", "r"], TextCommand::Turn(90.0), "turn right"),
+    (&["around", "u"], TextCommand::Turn(180.0), "turn around"),
+    (&["east"], TextCommand::Face(0.0), "turn to the east"),
+    (&["south"], TextCommand::Face(90.0), "turn to the south"),
+    (&["west"], TextCommand::Face(180.0), "turn to the west"),
+    (&["north"], TextCommand::Face(270.0), "turn to the north"),
     (
         &["open", "o", "use"],
-        Command::Act(Intent::Open),
+        TextCommand::Act(Intent::Open),
         "open the door ahead, turn a lever, search a wall",
     ),
-    (&["jump", "j"], Command::Act(Intent::Jump), "jump"),
-    (&["run"], Command::Run, "run or walk from now on"),
-    (&["duck", "d"], Command::Duck, "duck or stand up"),
-    (&["strike", "k"], Command::Act(Intent::Strike), "strike a guard within reach"),
-    (&["throw", "t"], Command::Act(Intent::Throw), "throw a pebble ahead"),
-    (&["shoot"], Command::Act(Intent::Shoot), "shoot a dart ahead"),
-    (&["smoke"], Command::Act(Intent::Smoke), "throw a flask of smoke"),
-    (&["lamp"], Command::Act(Intent::Lamp), "light the lamp, or put it out"),
-    (&["wait", "w"], Command::Wait, "let 1 second pass, or as many as you say: wait 5"),
-    (&["takeback"], Command::TakeBack, "take back the last 10 seconds, as the difficulty allows"),
-    (&["look", ""], Command::Look, "say what is near; so does an empty line"),
-    (&["status", "s"], Command::Status, "say your health, what you carry and the time"),
-    (&["menu", "m"], Command::Menu, "open the menu: settings, restart, leave"),
+    (&["jump", "j"], TextCommand::Act(Intent::Jump), "jump"),
+    (&["run"], TextCommand::Run, "run or walk from now on"),
+    (&["duck", "d"], TextCommand::Duck, "duck or stand up"),
+    (&["strike", "k"], TextCommand::Act(Intent::Strike), "strike a guard within reach"),
+    (&["throw", "t"], TextCommand::Act(Intent::Throw), "throw a pebble ahead"),
+    (&["shoot"], TextCommand::Act(Intent::Shoot), "shoot a dart ahead"),
+    (&["smoke"], TextCommand::Act(Intent::Smoke), "throw a flask of smoke"),
+    (&["lamp"], TextCommand::Act(Intent::Lamp), "light the lamp, or put it out"),
+    (&["wait", "w"], TextCommand::Wait, "let 1 second pass, or as many as you say: wait 5"),
+    (
+        &["takeback"],
+        TextCommand::TakeBack,
+        "take back the last 10 seconds, as the difficulty allows",
+    ),
+    (&["look", ""], TextCommand::Look, "say what is near; so does an empty line"),
+    (&["status", "s"], TextCommand::Status, "say your health, what you carry and the time"),
+    (&["menu", "m"], TextCommand::Menu, "open the menu: settings, restart, leave"),
 ];
 /// The commands that work everywhere.
-const ANYWHERE: [(&[&str], Command, &str); 2] = [
-    (&["help", "h", "?"], Command::Help, "say the commands"),
-    (&["quit", "q"], Command::Leave, "leave"),
+const ANYWHERE: [(&[&str], TextCommand, &str); 2] = [
+    (&["help", "h", "?"], TextCommand::Help, "say the commands"),
+    (&["quit", "q"], TextCommand::Leave, "leave"),
 ];
 
 /// The largest numbers of cells, degrees and seconds in a command.
@@ -187,11 +199,11 @@ impl<W: Write> TextMode<W> {
         let commands = if plays { &COMMANDS[..] } else { &[] };
         let known = ANYWHERE.iter().chain(commands).find(|(words, ..)| words.contains(&&*word));
         match known {
-            Some((_, Command::Leave, _)) => {
+            Some((_, TextCommand::Leave, _)) => {
                 self.app.leave();
                 Ok(())
             }
-            Some((_, Command::Help, _)) => self.print_help(),
+            Some((_, TextCommand::Help, _)) => self.print_help(),
             Some(&(_, command, _)) => self.carry_out(command, number),
             None if plays => {
                 let word: String =
@@ -256,11 +268,11 @@ impl<W: Write> TextMode<W> {
         Ok(())
     }
 
-    fn carry_out(&mut self, command: Command, number: Option<&str>) -> io::Result<()> {
+    fn carry_out(&mut self, command: TextCommand, number: Option<&str>) -> io::Result<()> {
         let (usual, most) = match command {
-            Command::Walk(_) => (1.0, MAX_CELLS),
-            Command::Turn(degrees) => (degrees.abs(), MAX_DEGREES),
-            Command::Wait => (1.0, MAX_SECONDS),
+            TextCommand::Walk(_) => (1.0, MAX_CELLS),
+            TextCommand::Turn(degrees) => (degrees.abs(), MAX_DEGREES),
+            TextCommand::Wait => (1.0, MAX_SECONDS),
             _ => (1.0, 1.0),
         };
         let amount = number.map_or(Some(usual), |number| number.parse().ok());
@@ -268,19 +280,19 @@ impl<W: Write> TextMode<W> {
             return writeln!(self.output, "The number may be from 0 to {most}.");
         };
         match command {
-            Command::Walk(way) => self.walk(way, amount),
-            Command::Turn(degrees) => self.turn(amount.copysign(degrees)),
-            Command::Face(heading) => {
+            TextCommand::Walk(way) => self.walk(way, amount),
+            TextCommand::Turn(degrees) => self.turn(amount.copysign(degrees)),
+            TextCommand::Face(heading) => {
                 let from = self.heading();
                 self.turn((heading - from + 180.0).rem_euclid(360.0) - 180.0)
             }
-            Command::Act(intent) => self.pass(&[intent], 1, ACTION_STEPS),
-            Command::Wait => self.pass(&[], (amount / STEP) as u32, 0),
-            Command::Run => {
+            TextCommand::Act(intent) => self.pass(&[intent], 1, ACTION_STEPS),
+            TextCommand::Wait => self.pass(&[], (amount / STEP) as u32, 0),
+            TextCommand::Run => {
                 self.runs = !self.runs;
                 writeln!(self.output, "{}", if self.runs { "You run." } else { "You walk." })
             }
-            Command::Duck => {
+            TextCommand::Duck => {
                 self.ducks = !self.ducks;
                 writeln!(
                     self.output,
@@ -289,23 +301,23 @@ impl<W: Write> TextMode<W> {
                 )?;
                 self.pass(&[], ACTION_STEPS, 0)
             }
-            Command::TakeBack => {
+            TextCommand::TakeBack => {
                 self.app.take_back();
                 self.introduce()
             }
-            Command::Look => self.look(),
-            Command::Status => {
+            TextCommand::Look => self.look(),
+            TextCommand::Status => {
                 let Some(game) = self.app.game.grid() else { return Ok(()) };
                 for sentence in sentences::status(game) {
                     writeln!(self.output, "{sentence}")?;
                 }
                 Ok(())
             }
-            Command::Menu => {
+            TextCommand::Menu => {
                 self.app.open(AppScreen::Paused);
                 self.print_menu()
             }
-            Command::Help | Command::Leave => Ok(()),
+            TextCommand::Help | TextCommand::Leave => Ok(()),
         }
     }
 
@@ -396,14 +408,14 @@ impl<W: Write> TextMode<W> {
 
     /// Plays a step, and prints what happens in it. Returns whether it should end a command.
     fn step(&mut self, intents: Intents) -> io::Result<bool> {
-        let before = self.app.game.grid().map(Moment::of);
+        let before = self.app.game.grid().map(Observation::of);
         self.app.game.step(intents);
         self.app.stepped(intents, 1);
-        let after = self.app.game.grid().map(Moment::of);
+        let after = self.app.game.grid().map(Observation::of);
         let (Some(before), Some(after)) = (before, after) else { return Ok(false) };
         let events = after.events_since(&before);
         let threatens = events.iter().any(|event| event.threatens);
-        for Event { sentence, .. } in events {
+        for StepEvent { sentence, .. } in events {
             if !self.said.contains(&sentence) {
                 writeln!(self.output, "{sentence}")?;
                 self.said.push(sentence);

@@ -152,14 +152,14 @@ impl Leaf {
 
 /// The intersection of a ray with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Passage {
+pub(crate) struct Intersection {
     /// The hit on the outside; `None` if the ray misses the shape or starts inside.
     pub(crate) hit: Option<Hit>,
     /// The `t` at which the ray leaves the shape, if it was inside. A line has no inside.
     pub(crate) end: Option<f64>,
 }
 
-impl Passage {
+impl Intersection {
     pub(crate) const NONE: Self = Self { hit: None, end: None };
 
     /// The intersection of `ray`, which passes through `cell`, with an object there that does not
@@ -191,7 +191,7 @@ impl Passage {
 /// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
 /// it misses.
 fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
-    Passage::new(ray, cell, outline).hit
+    Intersection::new(ray, cell, outline).hit
 }
 
 fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {

@@ -28,7 +28,7 @@ use self::palette::IndexedPalette;
 use super::Error;
 use super::options::{frames, window};
 use super::output_file::OutputFile;
-use super::parse::Takes;
+use super::parse::ValidValues;
 use crate::app::MAX_PLAYBACK_STEPS;
 use crate::game::STEPS_PER_SECOND;
 use crate::tui::CellAspect;
@@ -70,14 +70,14 @@ impl Excerpt {
 }
 
 /// Parses a time in seconds, as seconds or as minutes and seconds.
-fn time(text: &str) -> Result<f64, Takes> {
+fn time(text: &str) -> Result<f64, ValidValues> {
     let (minutes, seconds) = text.split_once(':').unwrap_or(("0", text));
     let most = (MAX_PLAYBACK_STEPS / u64::from(STEPS_PER_SECOND)) as f64;
     let minutes: Option<u32> = minutes.parse().ok();
     let seconds: Option<f64> = seconds.parse().ok();
     let time = minutes.zip(seconds).map(|(minutes, seconds)| f64::from(minutes) * 60.0 + seconds);
     let time = time.filter(|time| (0.0..=most).contains(time));
-    time.ok_or(Takes(
+    time.ok_or(ValidValues(
         "seconds, such as 12.5, or minutes and seconds, such as 1:05.5, up to 24 hours",
     ))
 }

@@ -9,7 +9,7 @@ use clap::{Args, ValueHint};
 use super::Error;
 use super::options::{STANDARD_INPUT, within};
 use super::output_file::{OutputFile, print};
-use super::parse::Takes;
+use super::parse::ValidValues;
 use crate::testing::CellGrid;
 
 /// Report the cells in which two grids differ
@@ -37,7 +37,7 @@ pub(crate) struct Compare {
     png: Option<PathBuf>,
 }
 
-fn tolerance(text: &str) -> Result<f64, Takes> {
+fn tolerance(text: &str) -> Result<f64, ValidValues> {
     within(text, |it: &f64| (0.0..=1000.0).contains(it), "a number from 0 to 1000, such as 2.3")
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct Export {
     map: OsString,
     /// The format of the map
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ExportFormat,
     /// The map of Tiled [default: the name of MAP, in this folder]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -39,14 +39,14 @@ pub(crate) struct Export {
 
 /// The format of a map of Tiled.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
-enum Format {
+enum ExportFormat {
     #[default]
     Tmj,
 }
 
 /// Writes the files, and says which.
 pub(crate) fn run(options: &Export) -> Result<(), Error> {
-    let Format::Tmj = options.format;
+    let ExportFormat::Tmj = options.format;
     let path = Path::new(&options.map);
     let stem = path.file_stem().unwrap_or(OsStr::new("map"));
     let output = options.output.clone().unwrap_or_else(|| Path::new(stem).with_extension("tmj"));

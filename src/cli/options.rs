@@ -10,7 +10,7 @@ use clap::{Args, ValueHint};
 use ratatui::layout::Size;
 
 use super::Error;
-use super::parse::Takes;
+use super::parse::ValidValues;
 use crate::app::parts::Choice;
 use crate::color::palette::ColorDepth;
 use crate::generate::{Extent, Generator, Site};
@@ -113,7 +113,7 @@ pub(crate) fn named<T: Clone + Send + Sync + 'static>(
     named: fn(&str) -> Option<T>,
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(names)
-        .try_map(move |name| named(&name).ok_or(Takes("one of the values in the help")))
+        .try_map(move |name| named(&name).ok_or(ValidValues("one of the values in the help")))
 }
 
 /// A parser for a value of a setting with a few named values.
@@ -133,61 +133,63 @@ pub fn within<T: FromStr>(
     text: &str,
     fits: impl Fn(&T) -> bool,
     takes: &'static str,
-) -> Result<T, Takes> {
-    text.parse().ok().filter(fits).ok_or(Takes(takes))
+) -> Result<T, ValidValues> {
+    text.parse().ok().filter(fits).ok_or(ValidValues(takes))
 }
 
 /// Parses a frame rate.
-pub fn frames(text: &str) -> Result<NonZeroU32, Takes> {
+pub fn frames(text: &str) -> Result<NonZeroU32, ValidValues> {
     within(text, |frames: &NonZeroU32| frames.get() <= 240, "a whole number from 1 to 240")
 }
 
 /// Parses a seed.
-pub fn seed(text: &str) -> Result<u64, Takes> {
+pub fn seed(text: &str) -> Result<u64, ValidValues> {
     within(text, |_| true, "a whole number from 0 to 18446744073709551615")
 }
 
 /// Parses the size of a picture.
-pub(crate) fn size(text: &str) -> Result<Size, Takes> {
+pub(crate) fn size(text: &str) -> Result<Size, ValidValues> {
     let size = pair(text, 'x')
         .filter(|&(columns, rows)| (1..=4096).contains(&columns) && (1..=4096).contains(&rows));
     let size = size.map(|(columns, rows)| Size::new(columns, rows));
-    size.ok_or(Takes("COLSxROWS from 1x1 to 4096x4096, such as 80x24"))
+    size.ok_or(ValidValues("COLSxROWS from 1x1 to 4096x4096, such as 80x24"))
 }
 
 /// As [`size`], but for a window. A window is drawn for each frame of a game, and several buffers
 /// of its size are in memory, so the limit is the area of 800×250 cells.
-pub fn window(text: &str) -> Result<Size, Takes> {
+pub fn window(text: &str) -> Result<Size, ValidValues> {
     let is_window = |it: &Size| {
         it.width.max(it.height) <= 1000 && u32::from(it.width) * u32::from(it.height) <= 200_000
     };
     let size = size(text).ok().filter(is_window);
-    size.ok_or(Takes("COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40"))
+    size.ok_or(ValidValues(
+        "COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40",
+    ))
 }
 
 /// Parses a fidelity: exact, high, low, or a tolerance.
-pub fn fidelity(text: &str) -> Result<Fidelity, Takes> {
+pub fn fidelity(text: &str) -> Result<Fidelity, ValidValues> {
     within(text, |_| true, "exact, high, low or a number up to 255")
 }
 
-fn field_of_view(text: &str) -> Result<FieldOfView, Takes> {
+fn field_of_view(text: &str) -> Result<FieldOfView, ValidValues> {
     let view = text.parse().ok().and_then(FieldOfView::from_degrees);
-    view.ok_or(Takes("degrees above 0 and below 180"))
+    view.ok_or(ValidValues("degrees above 0 and below 180"))
 }
 
-fn cell_aspect(text: &str) -> Result<CellAspect, Takes> {
+fn cell_aspect(text: &str) -> Result<CellAspect, ValidValues> {
     let aspect = text.parse().ok().and_then(CellAspect::new);
-    aspect.ok_or(Takes("the height of a cell divided by its width, from 0.1 to 10"))
+    aspect.ok_or(ValidValues("the height of a cell divided by its width, from 0.1 to 10"))
 }
 
-fn extent(text: &str) -> Result<Extent, Takes> {
+fn extent(text: &str) -> Result<Extent, ValidValues> {
     let extent = pair(text, 'x').and_then(|(columns, rows)| Extent::new(columns, rows));
-    extent.ok_or(Takes("COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64"))
+    extent.ok_or(ValidValues("COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64"))
 }
 
-fn site(text: &str) -> Result<Site, Takes> {
+fn site(text: &str) -> Result<Site, ValidValues> {
     let site = pair(text, ',').map(|(column, row)| Site { column, row });
-    site.ok_or(Takes("COLUMN,ROW, the cell to start at, such as 1000000,-1000000"))
+    site.ok_or(ValidValues("COLUMN,ROW, the cell to start at, such as 1000000,-1000000"))
 }
 
 /// Parses two numbers with `between` between them.

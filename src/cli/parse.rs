@@ -23,15 +23,15 @@ use crate::fault::nearest;
 /// Value parsers return it as their error, so the sentence about an invalid value says what to
 /// write instead.
 #[derive(Clone, Copy, Debug)]
-pub struct Takes(pub &'static str);
+pub struct ValidValues(pub &'static str);
 
-impl fmt::Display for Takes {
+impl fmt::Display for ValidValues {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "it takes {}", self.0)
     }
 }
 
-impl std::error::Error for Takes {}
+impl std::error::Error for ValidValues {}
 
 /// Parses `words`, which begin with the name of this program. If the words ask for the help or the
 /// version, writes that and returns `None`.
@@ -127,8 +127,8 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
     };
     match error.kind() {
         ErrorKind::ValueValidation => match error.source() {
-            Some(reason) => match reason.downcast_ref::<Takes>() {
-                Some(Takes(values)) => format!("{name} takes {values}, not \"{value}\""),
+            Some(reason) => match reason.downcast_ref::<ValidValues>() {
+                Some(ValidValues(values)) => format!("{name} takes {values}, not \"{value}\""),
                 None => format!("{name} {value}: {reason}"),
             },
             None => first_line(error),

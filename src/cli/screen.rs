@@ -9,7 +9,7 @@ use clap::{Args, ValueHint};
 
 use super::config::CurrentConfiguration;
 use super::options::{PictureOptions, fidelity, frames, replace_art};
-use super::parse::Takes;
+use super::parse::ValidValues;
 use super::{Error, config};
 use crate::app::{Configuration, Origin, SettingOrigins, Settings};
 use crate::render::DynCaster;
@@ -39,12 +39,12 @@ pub(crate) struct ScreenOptions {
 /// A fidelity; `None` lets the link to the terminal decide.
 type AutoFidelity = Option<Fidelity>;
 
-fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, Takes> {
+fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, ValidValues> {
     match text {
         "auto" => Ok(None),
         _ => fidelity(text)
             .map(Some)
-            .map_err(|_| Takes("auto, exact, high, low or a number up to 255")),
+            .map_err(|_| ValidValues("auto, exact, high, low or a number up to 255")),
     }
 }
 

@@ -35,7 +35,7 @@ Examples:
   cellcaster share walk.script --from 1:05 --to 1:12 --output film.gif
   cellcaster share walk.script my.toml --format png > film.png
   cellcaster share walk.script --output walk.cast")]
-pub(crate) struct Share {
+pub(crate) struct ShareCommand {
     /// The script
     #[arg(value_hint = ValueHint::FilePath)]
     script: PathBuf,
@@ -44,7 +44,7 @@ pub(crate) struct Share {
     output: Option<PathBuf>,
     /// The output format [default: the ending of the output file]
     #[arg(long, value_enum)]
-    format: Option<Format>,
+    format: Option<ShareFormat>,
     #[command(flatten)]
     excerpt: Excerpt,
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub(crate) struct Share {
 
 /// A format of moving pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum ShareFormat {
     Gif,
     Png,
     Cast,
@@ -68,7 +68,7 @@ enum Format {
 const MAX_BYTES: usize = 64 << 20;
 
 /// Writes the moving picture, and says how large it is.
-pub(crate) fn run(options: &Share) -> Result<(), Error> {
+pub(crate) fn run(options: &ShareCommand) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         return Err(Error::mistake(
             "only cellcaster-server can draw the recording of a room: run cellcaster-server replay \
@@ -94,20 +94,20 @@ pub(crate) fn run(options: &Share) -> Result<(), Error> {
 }
 
 /// The format in the options, or else in the name of the output.
-fn format(options: &Share) -> Result<Format, Error> {
+fn format(options: &ShareCommand) -> Result<ShareFormat, Error> {
     let ending = options.output.as_deref().and_then(Path::extension);
     let ending = ending.and_then(|ending| ending.to_str());
-    let of_file = ending.and_then(|ending| Format::from_str(ending, true).ok());
+    let of_file = ending.and_then(|ending| ShareFormat::from_str(ending, true).ok());
     let format = options.format.or(of_file).ok_or_else(|| {
         Error::mistake("name the format: --format gif, png or cast, or an --output that ends so")
     })?;
     let rate = options.excerpt.frames_per_second.get();
-    if format == Format::Gif && rate > MAX_GIF_RATE {
+    if format == ShareFormat::Gif && rate > MAX_GIF_RATE {
         return Err(Error::mistake(format!(
             "a GIF has at most {MAX_GIF_RATE} frames a second: choose a smaller --fps, or png"
         )));
     }
-    if format != Format::Cast && options.output.is_none() && io::stdout().is_terminal() {
+    if format != ShareFormat::Cast && options.output.is_none() && io::stdout().is_terminal() {
         return Err(Error::mistake(
             "standard output is a terminal, which cannot show the picture: name a file with \
              --output",
@@ -117,8 +117,12 @@ fn format(options: &Share) -> Result<Format, Error> {
 }
 
 /// The bytes of the moving picture, and its number of frames.
-fn made(options: &Share, format: Format, script: &Script) -> Result<(Vec<u8>, u64), Error> {
-    let Share { excerpt, view, .. } = options;
+fn made(
+    options: &ShareCommand,
+    format: ShareFormat,
+    script: &Script,
+) -> Result<(Vec<u8>, u64), Error> {
+    let ShareCommand { excerpt, view, .. } = options;
     let (header, part) = (script.header(), excerpt.frames()?);
     let levels = level::of_script(&options.place, header)?;
     let settings = Settings {
@@ -140,10 +144,10 @@ fn made(options: &Share, format: Format, script: &Script) -> Result<(Vec<u8>, u6
         }
     };
     let animation = match format {
-        Format::Gif => AnimationFormat::Gif,
-        Format::Png => AnimationFormat::Png,
-        Format::Cast => {
-            let mut cast = Cast::begin(&mut output, options)?;
+        ShareFormat::Gif => AnimationFormat::Gif,
+        ShareFormat::Png => AnimationFormat::Png,
+        ShareFormat::Cast => {
+            let mut cast = CastWriter::begin(&mut output, options)?;
             show(&mut |frame, picture| cast.draw(frame - part.start, picture))?;
             let frames = cast.finish()?;
             return Ok((output.bytes, frames));
@@ -185,7 +189,7 @@ impl From<Stop> for Error {
 }
 
 /// A cast that is being written.
-struct Cast<'o> {
+struct CastWriter<'o> {
     asciicast: Asciicast<&'o mut Limited>,
     writer: CellWriter<Vec<u8>>,
     before: Buffer,
@@ -193,8 +197,8 @@ struct Cast<'o> {
     frames_per_second: u32,
 }
 
-impl<'o> Cast<'o> {
-    fn begin(output: &'o mut Limited, options: &Share) -> Result<Self, Stop> {
+impl<'o> CastWriter<'o> {
+    fn begin(output: &'o mut Limited, options: &ShareCommand) -> Result<Self, Stop> {
         let Excerpt { size, frames_per_second, .. } = options.excerpt;
         let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
         queue!(bytes, EnterAlternateScreen, Hide)?;

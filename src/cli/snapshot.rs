@@ -19,9 +19,9 @@ use glam::DVec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
-use self::format::Format;
+use self::format::SnapshotFormat;
 use super::options::{LevelOptions, PictureOptions, replace_art, size, within};
-use super::parse::Takes;
+use super::parse::ValidValues;
 use super::{Error, level};
 use crate::fault::{Faults, printable, printable_lines};
 use crate::game::Game;
@@ -62,7 +62,7 @@ pub(crate) struct Snapshot {
     /// The output format: characters (text), characters with colours (ansi), a list of cells (json), a text for tests and
     /// reviews (grid; see "compare"), or a picture (png)
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: SnapshotFormat,
     /// Print how the frame is drawn and what it costs, instead of the frame
     #[arg(long)]
     explain: bool,
@@ -83,23 +83,23 @@ impl Snapshot {
     }
 }
 
-fn position_and_heading(text: &str) -> Result<(DVec2, Heading), Takes> {
+fn position_and_heading(text: &str) -> Result<(DVec2, Heading), ValidValues> {
     let camera = || {
         let mut numbers = text.split(',').map(|number| number.trim().parse::<f64>().ok());
         let position = DVec2::new(numbers.next()??, numbers.next()??);
         let heading = Heading::from_degrees(numbers.next()??)?;
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
     };
-    camera().ok_or(Takes("X,Y,HEADING, three finite numbers such as 2.5,3.5,90"))
+    camera().ok_or(ValidValues("X,Y,HEADING, three finite numbers such as 2.5,3.5,90"))
 }
 
-fn eye(text: &str) -> Result<f64, Takes> {
+fn eye(text: &str) -> Result<f64, ValidValues> {
     within(text, |eye: &f64| eye.is_finite(), "a finite height in cells, such as 0.5")
 }
 
-fn pitch(text: &str) -> Result<Pitch, Takes> {
+fn pitch(text: &str) -> Result<Pitch, ValidValues> {
     let pitch = text.parse().ok().and_then(Pitch::from_degrees);
-    pitch.ok_or(Takes("degrees from -30, down, to 30, up"))
+    pitch.ok_or(ValidValues("degrees from -30, down, to 30, up"))
 }
 
 /// The number of rows of cells in a band: a multiple of the height of the dither pattern.
@@ -107,7 +107,7 @@ const BAND: u16 = 64;
 
 /// Writes the frame that `options` describe.
 pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
-    let is_png = options.format == Format::Png && !options.explain;
+    let is_png = options.format == SnapshotFormat::Png && !options.explain;
     if is_png && options.watch {
         return Err(Error::mistake(
             "a PNG holds one picture, but --watch draws several: leave one of them out",
@@ -120,7 +120,7 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
         ));
     }
     let cells = usize::from(options.size().width) * usize::from(options.size().height);
-    if options.format == Format::Grid && !options.explain && cells > MAX_CELLS {
+    if options.format == SnapshotFormat::Grid && !options.explain && cells > MAX_CELLS {
         return Err(Error::mistake(format!(
             "a grid has at most {MAX_CELLS} cells, but --size asks for {cells}: choose a smaller size"
         )));
@@ -301,7 +301,8 @@ struct PictureOutput {
 
 impl PictureOutput {
     fn of(options: &Snapshot) -> Self {
-        let is_text = matches!(options.format, Format::Text | Format::Ansi) || options.explain;
+        let is_text = matches!(options.format, SnapshotFormat::Text | SnapshotFormat::Ansi)
+            || options.explain;
         let is_terminal = is_text && io::stdout().is_terminal();
         Self { is_terminal, fits_window: is_terminal && options.size.is_none() }
     }

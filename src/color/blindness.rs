@@ -35,7 +35,7 @@ pub(crate) fn distance([one, other]: [Rgb; 2], blind: &[[f64; 3]; 3]) -> f64 {
 /// is almost three times the smallest difference that people notice.
 #[track_caller]
 pub(crate) fn assert_apart(colors: &[(&str, Rgb)]) {
-    const LEAST: f64 = 0.055;
+    const MIN_DISTANCE: f64 = 0.055;
     let usual = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (index, &(one, first)) in colors.iter().enumerate() {
         for &(other, second) in &colors[..index] {
@@ -43,7 +43,7 @@ pub(crate) fn assert_apart(colors: &[(&str, Rgb)]) {
             for pair in [pair, pair.map(|color| of_256(nearest_of_256(color)))] {
                 for eyes in BLIND.iter().chain([&usual]) {
                     let found = distance(pair, eyes);
-                    assert!(found >= LEAST, "{one} {other}: {pair:?} {found} {eyes:?}");
+                    assert!(found >= MIN_DISTANCE, "{one} {other}: {pair:?} {found} {eyes:?}");
                 }
             }
         }

@@ -13,7 +13,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::cast::{Ray, Walk};
-use crate::game::stored::{Unrestorable, check};
+use crate::game::stored::{RestoreError, check};
 use crate::generate::WindowShift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
@@ -124,7 +124,7 @@ impl Doors {
     ///
     /// # Errors
     /// If they are not doors of `world`.
-    pub(crate) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
+    pub(crate) fn show(&self, world: &mut World) -> Result<(), RestoreError> {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
             let is_possible = match door.phase {

@@ -26,7 +26,7 @@ use super::rules::Rules;
 use super::scratch::Scratch;
 use super::sight::{Cloud, Point, is_in_sight};
 use super::sound::{Sound, SoundField, SoundKind, Source};
-use super::stored::{OfLevel, Unrestorable, at_most, check};
+use super::stored::{OfLevel, RestoreError, at_most, check};
 use crate::generate::WindowShift;
 use crate::rng::hash;
 use crate::world::sprite::builtin;
@@ -37,7 +37,7 @@ use movement::{GuardWorld, RADIUS};
 use trail::Trail;
 use ways::{GuardPaths, GuardTerrain};
 
-pub(crate) use context::{Act, PerceivedPlayer};
+pub(crate) use context::{GuardEffect, PerceivedPlayer};
 pub use guard::{Alarm, GuardView, Mood};
 
 /// Guards on duty who are at least this far from all players, in cells, take several steps at once.
@@ -47,7 +47,7 @@ const FAR_STRIDE: u16 = 8;
 const FALLEN_EACH: u64 = 30;
 /// The number of cells over which sounds spread to guards in one step. Once it is reached, guards
 /// do not hear the remaining sounds of that step.
-const MAX_AIR_CELLS: usize = 16_384;
+const MAX_SOUND_CELLS: usize = 16_384;
 
 /// The distance at which a fall is heard, in cells.
 const FALL: u8 = 6;
@@ -67,18 +67,18 @@ pub(crate) struct Guards {
     #[serde(skip)]
     terrain: GuardTerrain,
     ways: GuardPaths,
-    air: SoundField,
+    sound_field: SoundField,
     #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     trails: Vec<Trail>,
     #[serde(skip)]
     others: Scratch<Vec<PerceivedGuard>>,
     /// The number of cells over which sounds have spread in this step.
     #[serde(skip)]
-    air_cells: Scratch<usize>,
+    sound_cells: Scratch<usize>,
     /// The number of guards, sounds and cells that the last step examined.
     #[serde(skip)]
     work: Scratch<u64>,
-    acts: Vec<Act>,
+    effects: Vec<GuardEffect>,
     /// The sounds that guards made in the last step.
     spoken: Vec<Sound>,
     /// Empty between steps.
@@ -124,12 +124,12 @@ impl Guards {
             sprites,
             terrain: GuardTerrain::new(world),
             ways: GuardPaths::default(),
-            air: SoundField::default(),
+            sound_field: SoundField::default(),
             trails: Vec::new(),
             others: Scratch::default(),
-            air_cells: Scratch::default(),
+            sound_cells: Scratch::default(),
             work: Scratch::default(),
-            acts: Vec::new(),
+            effects: Vec::new(),
             spoken: Vec::new(),
             woken: Vec::new(),
             steps: 0,
@@ -154,11 +154,11 @@ impl Guards {
         targets: &[PerceivedPlayer],
         sounds: &[Sound],
         clouds: &[Cloud],
-    ) -> &[Act] {
-        self.acts.clear();
-        (*self.work, *self.air_cells) = (0, 0);
+    ) -> &[GuardEffect] {
+        self.effects.clear();
+        (*self.work, *self.sound_cells) = (0, 0);
         if self.list.is_empty() {
-            return &self.acts;
+            return &self.effects;
         }
         self.steps += 1;
         self.ways.begin_step();
@@ -166,7 +166,7 @@ impl Guards {
         self.record_trails(world, targets);
         let mut spoken = std::mem::take(&mut self.spoken);
         for sound in sounds.iter().chain(&spoken) {
-            if *self.air_cells < MAX_AIR_CELLS {
+            if *self.sound_cells < MAX_SOUND_CELLS {
                 self.spread(world, targets, clouds, sound);
             }
         }
@@ -179,15 +179,15 @@ impl Guards {
         for index in self.woken.drain(..) {
             self.list[index].get_up();
         }
-        let made = self.acts.iter().filter_map(|act| match act {
-            Act::Sound(sound) => Some(*sound),
+        let made = self.effects.iter().filter_map(|effect| match effect {
+            GuardEffect::Sound(sound) => Some(*sound),
             _ => None,
         });
         spoken.extend(made);
         self.spoken = spoken;
         self.update_alarm();
-        *self.work = (self.awake.indices.len() + heard + *self.air_cells) as u64;
-        &self.acts
+        *self.work = (self.awake.indices.len() + heard + *self.sound_cells) as u64;
+        &self.effects
     }
 
     fn step_one(
@@ -203,12 +203,12 @@ impl Guards {
         }
         let now = self.steps;
         let (guard, mut context) = self.with_context(world, targets, clouds, index, stride);
-        let before = (guard.mover, guard.frame());
+        let before = (guard.motion, guard.frame());
         if (now + index as u64).is_multiple_of(FALLEN_EACH) && stride == 1 {
             guard.look_for_fallen(&mut context);
         }
         guard.step(&mut context);
-        self.has_changed |= (guard.mover, guard.frame()) != before;
+        self.has_changed |= (guard.motion, guard.frame()) != before;
     }
 
     /// The number of steps that a guard takes at once now: 0 while they wait for their turn.
@@ -217,10 +217,10 @@ impl Guards {
         match guard.state {
             // A floor may have moved under the guard.
             GuardActivity::Asleep if guard.stagger == 0 => {
-                u16::from(!guard.mover.is_at_rest(world))
+                u16::from(!guard.motion.is_at_rest(world))
             }
             GuardActivity::OnDuty | GuardActivity::Returning => {
-                let position = guard.mover.position();
+                let position = guard.motion.position();
                 let is_near = |target: &PerceivedPlayer| {
                     target.position.distance_squared(position) < FAR * FAR && target.is_noticeable
                 };
@@ -251,7 +251,7 @@ impl Guards {
         for index in 0..self.list.len() {
             let guard = &self.list[index];
             let earshot = guard.earshot(sound, self.rules.difficulty);
-            let way = guard.mover.position().distance(sound.cell.center());
+            let way = guard.motion.position().distance(sound.cell.center());
             // No path is shorter than the straight line. Two cells are added for rounding.
             if earshot == 0 || way * 2.0 > f64::from(earshot) + 4.0 {
                 continue;
@@ -259,8 +259,8 @@ impl Guards {
             if sound.by == Source::Guard(index) {
                 continue;
             }
-            *self.air_cells += self.air.reach_out(world, sound.cell, earshot, self.steps);
-            let distance = self.air.distance(guard.mover.cell());
+            *self.sound_cells += self.sound_field.reach_out(world, sound.cell, earshot, self.steps);
+            let distance = self.sound_field.distance(guard.motion.cell());
             if let Some(distance) = distance.filter(|&distance| distance <= earshot) {
                 let (guard, mut context) = self.with_context(world, targets, clouds, index, 1);
                 let was_asleep = guard.is_asleep();
@@ -293,7 +293,7 @@ impl Guards {
             now: self.steps,
             index,
             stride,
-            acts: &mut self.acts,
+            effects: &mut self.effects,
             woken: &mut self.woken,
         };
         (&mut self.list[index], context)
@@ -313,16 +313,16 @@ impl Guards {
     fn update_alarm(&mut self) {
         let alarm = self.awake().map(|guard| guard.state.mood().alarm()).max().unwrap_or_default();
         if alarm == Alarm::Raised && self.alarm < Alarm::Raised {
-            self.acts.push(Act::Raised);
+            self.effects.push(GuardEffect::Raised);
         }
         self.alarm = alarm;
     }
 
     /// Returns an error if a step could fail in this state.
-    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World) -> Result<(), RestoreError> {
         let map = (world.grid().width(), world.grid().height());
         self.ways.check(map)?;
-        check(self.air.is_possible(map), "the search of a sound")?;
+        check(self.sound_field.is_possible(map), "the search of a sound")?;
         self.trails.iter().try_for_each(|trail| trail.check(self.steps))?;
         self.list.iter().try_for_each(|guard| guard.check(world, self.list.len()))
     }
@@ -365,9 +365,9 @@ impl Guards {
         self.list.is_empty()
     }
 
-    /// The act at this index in the order of the last step's acts.
-    pub(crate) fn act(&self, index: usize) -> Option<Act> {
-        self.acts.get(index).copied()
+    /// The effect at this index in the order of the last step's effects.
+    pub(crate) fn effect(&self, index: usize) -> Option<GuardEffect> {
+        self.effects.get(index).copied()
     }
 
     /// Returns true if all guards sleep, so that none acts before they perceive something.
@@ -376,7 +376,7 @@ impl Guards {
         let has_begun = self.steps > 0 || self.list.is_empty();
         has_begun
             && !self.has_changed
-            && self.acts.is_empty()
+            && self.effects.is_empty()
             && self.spoken.is_empty()
             && self.awake().all(Guard::is_asleep)
     }
@@ -406,8 +406,8 @@ impl Guards {
     pub(crate) fn figures(&self) -> impl Iterator<Item = Figure> + '_ {
         self.list.iter().filter_map(|guard| {
             let sprite = self.sprites[guard.kind as usize]?;
-            let (position, heading) = (guard.mover.position(), guard.mover.heading);
-            let (base, frame) = (guard.mover.feet, guard.frame());
+            let (position, heading) = (guard.motion.position(), guard.motion.heading);
+            let (base, frame) = (guard.motion.feet, guard.frame());
             Some(Figure { sprite, position, base, heading, frame, opacity: u8::MAX })
         })
     }
@@ -423,7 +423,7 @@ impl Guards {
         let up =
             bearers.filter(|guard| !guard.state.is_down() && guard.state != GuardActivity::Asleep);
         let light = Light::new(0.7).unwrap_or(Light::FULL);
-        up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
+        up.map(move |guard| (guard.motion.cell(), Lamp { light, reach: Reach::default() }))
     }
 
     /// The highest alarm of any guard.
@@ -444,7 +444,7 @@ impl Guards {
     /// which they look.
     pub(crate) fn is_behind(&self, index: usize, from: DVec2) -> bool {
         let guard = self.list.get(index);
-        guard.is_some_and(|it| it.mover.facing.dot(from - it.mover.position()) < 0.0)
+        guard.is_some_and(|it| it.motion.facing.dot(from - it.motion.position()) < 0.0)
     }
 
     /// The number of guards.
@@ -459,19 +459,19 @@ impl Guards {
 
     /// The cells of all guards.
     pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> {
-        self.list.iter().map(|guard| guard.mover.cell())
+        self.list.iter().map(|guard| guard.motion.cell())
     }
 
     /// Returns true if any guard would overlap `cell` if it were solid. A door does not close on
     /// them.
     pub(crate) fn touches(&self, cell: Cell) -> bool {
-        self.list.iter().any(|guard| overlaps(guard.mover.position(), cell, RADIUS))
+        self.list.iter().any(|guard| overlaps(guard.motion.position(), cell, RADIUS))
     }
 
     /// Returns true if any guard stands in `cell`. Their weight acts on plates and on floors that
     /// crumble.
     pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
-        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
+        self.list.iter().any(|guard| guard.motion.cell() == cell && guard.motion.is_on_floor())
     }
 
     /// The positions of the guards who are awake and on their feet, are nearer than `distance` to
@@ -484,8 +484,8 @@ impl Guards {
         head: f64,
     ) -> impl Iterator<Item = DVec2> {
         let up = self.awake().filter(|guard| !guard.is_asleep() && !guard.state.is_down());
-        let level = up.filter(move |guard| guard.mover.feet < head && feet < guard.head());
-        let positions = level.map(|guard| guard.mover.position());
+        let level = up.filter(move |guard| guard.motion.feet < head && feet < guard.head());
+        let positions = level.map(|guard| guard.motion.position());
         positions.filter(move |at| at.distance_squared(position) < distance * distance)
     }
 
@@ -535,7 +535,7 @@ impl Guards {
     ) -> impl Iterator<Item = (f64, &Guard, usize)> {
         let up = self.list.iter().zip(0..).filter(|(guard, _)| !guard.state.is_down());
         up.filter_map(move |(guard, index)| {
-            let way = guard.mover.position() - position;
+            let way = guard.motion.position() - position;
             let distance = way.length();
             let is_ahead = direction.dot(way) >= least_cosine * distance;
             is_ahead.then_some((distance, guard, index))
@@ -548,12 +548,12 @@ impl Guards {
         let way = to.0 - from.0;
         let length_squared = way.length_squared();
         let hits = self.list.iter().zip(0..).filter_map(|(guard, index)| {
-            let offset = guard.mover.position() - from.0;
+            let offset = guard.motion.position() - from.0;
             let along = if length_squared > 0.0 { offset.dot(way) / length_squared } else { 0.0 };
             let along = along.clamp(0.0, 1.0);
             let height = from.1 + (to.1 - from.1) * along;
             let is_hit = (way * along).distance_squared(offset) <= HIT * HIT
-                && (guard.mover.feet..=guard.head()).contains(&height)
+                && (guard.motion.feet..=guard.head()).contains(&height)
                 && !guard.state.is_down();
             is_hit.then_some((along, index))
         });
@@ -564,7 +564,7 @@ impl Guards {
     pub(crate) fn stun(&mut self, index: usize, steps: u16) {
         let Some(guard) = self.list.get_mut(index) else { return };
         guard.stun(steps);
-        let (cell, by) = (guard.mover.cell(), Source::Guard(index));
+        let (cell, by) = (guard.motion.cell(), Source::Guard(index));
         self.find_awake();
         self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
     }
@@ -582,8 +582,8 @@ impl Guards {
     pub(crate) fn are_crushed(&self, world: &World, cell: Cell, carries: bool) -> bool {
         self.list.iter().any(|guard| {
             let ground = GuardWorld { world, terrain: &self.terrain, gait: guard.gait() };
-            overlaps(guard.mover.position(), cell, RADIUS)
-                && guard.mover.after_floor(&ground, carries).is_none()
+            overlaps(guard.motion.position(), cell, RADIUS)
+                && guard.motion.after_floor(&ground, carries).is_none()
         })
     }
 
@@ -592,9 +592,9 @@ impl Guards {
     pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
         let mut has_unsettled = false;
         for guard in &mut self.list {
-            if overlaps(guard.mover.position(), cell, RADIUS) {
+            if overlaps(guard.motion.position(), cell, RADIUS) {
                 let ground = GuardWorld { world, terrain: &self.terrain, gait: guard.gait() };
-                guard.mover = guard.mover.after_floor(&ground, carries).unwrap_or(guard.mover);
+                guard.motion = guard.motion.after_floor(&ground, carries).unwrap_or(guard.motion);
                 has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
                 guard.is_unsettled = true;
             }
@@ -628,14 +628,14 @@ impl Guards {
         self.others.clear();
         self.find_awake();
         self.ways.forget();
-        self.air.forget();
+        self.sound_field.forget();
         self.trails.iter_mut().for_each(Trail::forget);
         self.spoken.clear();
     }
 }
 
 impl OfLevel for Guards {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         let Self { rules, sprites, terrain, .. } = start;
         let list = self.list.of_level(start.list)?;
         let mut guards = Self { rules, list, sprites, terrain, ..self };

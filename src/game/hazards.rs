@@ -17,7 +17,7 @@ use super::health::{Cause, Flash, Harm};
 use super::noise::reach;
 use super::player::Motion;
 use super::sound::{Sound, SoundKind, Source};
-use super::stored::{OfLevel, Unrestorable};
+use super::stored::{OfLevel, RestoreError};
 use crate::world::sprite::builtin::SpikesFrame;
 use crate::world::{Cell, Difficulty, Heading, Rhythm, ThingKind, TileEffect, World};
 
@@ -162,7 +162,7 @@ pub(crate) struct Spikes {
 }
 
 impl OfLevel for Spikes {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         Ok(Self { each: self.each.of_level(start.each)? })
     }
 }
@@ -176,7 +176,7 @@ struct Spike {
 }
 
 impl OfLevel for Spike {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         Ok(Self { phase: self.phase, ..start })
     }
 }

@@ -13,7 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::stored::{Unrestorable, check};
+use super::stored::{RestoreError, check};
 use crate::world::{GuardKind, Heading};
 
 /// A player's points of health.
@@ -209,7 +209,7 @@ impl Warnings {
     }
 
     /// Returns an error if a warning is later than the step `now`.
-    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, now: u64) -> Result<(), RestoreError> {
         check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }
 

@@ -19,7 +19,7 @@ use super::noise::reach;
 use super::player::Motion;
 use super::rules::MAX_PLAYERS;
 use super::sound::SoundKind;
-use super::stored::{OfLevel, Unrestorable, check};
+use super::stored::{OfLevel, RestoreError, check};
 use super::tally::Share;
 use super::{Game, STEPS_PER_SECOND};
 use crate::cast::{Ray, Walk};
@@ -84,7 +84,7 @@ struct Plate {
 }
 
 impl OfLevel for Mechanisms {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         let switches = self.switches.of_level(start.switches)?;
         let plates = self.plates.of_level(start.plates)?;
         let moving = self.moving.of_level(start.moving)?;
@@ -93,13 +93,13 @@ impl OfLevel for Mechanisms {
 }
 
 impl OfLevel for Switch {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         Ok(Self { is_turned: self.is_turned, is_on: self.is_on, ..start })
     }
 }
 
 impl OfLevel for Plate {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         Ok(Self { is_down: self.is_down, ..start })
     }
 }
@@ -109,7 +109,7 @@ impl Mechanisms {
     ///
     /// # Errors
     /// If a tile is beyond its last state.
-    pub(crate) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
+    pub(crate) fn show(&mut self, world: &mut World) -> Result<(), RestoreError> {
         for moving in &self.moving {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell, moving.shown(world));
@@ -504,7 +504,7 @@ struct MovingCellStep {
 }
 
 impl OfLevel for MovingCell {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         Ok(Self { cell: start.cell, tile: start.tile, ..self })
     }
 }

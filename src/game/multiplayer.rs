@@ -29,7 +29,7 @@ use super::guards::PerceivedPlayer;
 use super::player::{Motion, Player, Supplies};
 use super::rules::{Input, MAX_PLAYERS, MultiplayerRules, PlayerId, Rules};
 use super::scratch::Scratch;
-use super::stored::{OfLevel, Unrestorable, at_most, check};
+use super::stored::{OfLevel, RestoreError, at_most, check};
 use super::{Game, Intent, Intents};
 use crate::world::sprite::builtin::{self, PlayerColor, PlayerFrame};
 use crate::world::{Cell, Figure, SpriteId, Thing, ThingKind, World};
@@ -169,7 +169,7 @@ impl Members {
     }
 
     /// Returns an error if a step after the step `now` could fail in this state.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), RestoreError> {
         check(self.slots.last().is_none_or(Option::is_some), "a player")?;
         self.each().try_for_each(|(_, member)| {
             check(member.walked >= 0.0, "how far a player has walked")?;
@@ -219,7 +219,7 @@ impl Members {
 }
 
 impl OfLevel for Members {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         let Self { rules, keys, sprites, marked, .. } = start;
         Ok(Self { rules, keys, sprites, marked, ..self })
     }

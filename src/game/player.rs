@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::health::{Cause, Flash, Health, Warnings};
 use super::intent::Intents;
 use super::sound::Hearing;
-use super::stored::{Unrestorable, check};
-use super::tally::Counts;
+use super::stored::{RestoreError, check};
+use super::tally::RunCounts;
 use crate::world::{KeyId, Supply, World};
 
 /// An upper bound on a player's counts. A count needs years to grow from here to an overflow.
@@ -49,7 +49,7 @@ pub(crate) struct Player {
     pub(crate) notice: Notice,
     /// The cause of death, if the player is dead.
     pub(crate) killed_by: Option<Cause>,
-    pub(crate) counts: Counts,
+    pub(crate) counts: RunCounts,
 }
 
 impl Player {
@@ -75,17 +75,17 @@ impl Player {
             flash: None,
             notice: Notice::default(),
             killed_by: None,
-            counts: Counts::default(),
+            counts: RunCounts::default(),
         }
     }
 
     /// Returns an error if a step after the step `now` could fail in this state.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), RestoreError> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
         check(self.health.is_possible(), "the health")?;
         check(self.supplies.are_possible(), "the number of a tool")?;
-        let Counts { alarms, deaths, stunned } = self.counts;
+        let RunCounts { alarms, deaths, stunned } = self.counts;
         let counts = [alarms, deaths, stunned, self.in_water];
         check(counts.iter().all(|&count| count < MAX_COUNT), "a count")?;
         self.motion.check(world)?;

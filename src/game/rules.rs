@@ -63,22 +63,27 @@ pub struct MultiplayerRules {
     /// [retry](super::Intent::Retry).
     pub respawns: bool,
     /// The other players that a player's map shows.
-    pub sees: Sees,
+    pub shows_on_map: ShownPlayers,
     /// The effect of a blow on another player.
-    pub strikes: Strikes,
+    pub strikes: StrikeEffect,
 }
 
 impl Default for MultiplayerRules {
     /// Players walk through each other, continue after death, see each other on the map, and cannot
     /// strike each other.
     fn default() -> Self {
-        Self { collides: false, respawns: true, sees: Sees::All, strikes: Strikes::Nobody }
+        Self {
+            collides: false,
+            respawns: true,
+            shows_on_map: ShownPlayers::All,
+            strikes: StrikeEffect::Nobody,
+        }
     }
 }
 
 /// The other players that a player's map shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Sees {
+pub enum ShownPlayers {
     /// No other player.
     Nobody,
     /// Players in sight.
@@ -89,7 +94,7 @@ pub enum Sees {
 
 /// The effect of a blow on another player. It takes no health.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Strikes {
+pub enum StrikeEffect {
     /// None: blows hit only guards.
     Nobody,
     /// The victim is pushed away.

@@ -9,7 +9,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::distances::{Costs, Distances, STRAIGHT};
-use super::stored::{Unrestorable, check};
+use super::stored::{RestoreError, check};
 use crate::world::{Cell, Heading, Tile, TileKind, World};
 
 /// A sound in one step.
@@ -116,7 +116,7 @@ impl SoundField {
         }
         let reach = reach.min(half_cells(Sound::FARTHEST));
         let mut found = 0;
-        while self.distances.radius() <= reach && self.distances.advance(&Air { world }) {
+        while self.distances.radius() <= reach && self.distances.advance(&SoundCosts { world }) {
             found += 1;
         }
         found
@@ -145,11 +145,11 @@ pub(crate) fn half_cells(reach: u8) -> u16 {
 }
 
 /// The costs of steps for sound.
-struct Air<'a> {
+struct SoundCosts<'a> {
     world: &'a World,
 }
 
-impl Air<'_> {
+impl SoundCosts<'_> {
     fn tile(&self, cell: Cell) -> Option<&Tile> {
         self.world.tile_in(cell)
     }
@@ -161,7 +161,7 @@ impl Air<'_> {
     }
 }
 
-impl Costs for Air<'_> {
+impl Costs for SoundCosts<'_> {
     type Origin = Cell;
 
     fn origin(&self, cell: Cell) -> Cell {
@@ -262,7 +262,7 @@ impl Hearing {
     }
 
     /// Returns an error for a state that no sequence of sounds can produce.
-    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World) -> Result<(), RestoreError> {
         let map = (world.grid().width(), world.grid().height());
         check(self.field.is_possible(map), "the search of a sound")?;
         let is_audible = |heard: &Heard| {

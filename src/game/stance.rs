@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::rules::STEP;
-use super::stored::{Unrestorable, check};
+use super::stored::{RestoreError, check};
 use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
@@ -35,7 +35,7 @@ pub(crate) struct Stance {
 
 impl Stance {
     /// Returns an error if the body is neither standing, ducking nor in between.
-    pub(crate) fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), RestoreError> {
         check((0.0..=1.0).contains(&self.ducking), "a stance")
     }
 

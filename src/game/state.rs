@@ -13,7 +13,7 @@ use super::Game;
 use super::checkpoint::Checkpoint;
 use super::multiplayer::Members;
 use super::rules::{MultiplayerRules, Rules};
-use super::stored::{OfLevel, Reader, Unrestorable, check, checksum, written};
+use super::stored::{OfLevel, Reader, RestoreError, check, checksum, written};
 use crate::rng::hash;
 use crate::world::{Cell, Changes, Thing};
 
@@ -45,11 +45,11 @@ impl Game {
     /// # Errors
     /// If the bytes do not contain such a game, or are damaged. Accepted bytes do not prove that
     /// the game was ever played.
-    pub fn restored(self, bytes: &[u8]) -> Result<Self, Unrestorable> {
+    pub fn restored(self, bytes: &[u8]) -> Result<Self, RestoreError> {
         let grid = self.world.grid();
         let mut input = Reader::new(KIND, bytes, (grid.width(), grid.height()))?;
         let game = self.read(&mut input, true)?;
-        if input.rest().is_empty() { Ok(game) } else { Err(Unrestorable::Longer) }
+        if input.rest().is_empty() { Ok(game) } else { Err(RestoreError::Longer) }
     }
 
     /// A checksum of the whole state: the world, the player, the guards and everything that moves.
@@ -92,10 +92,10 @@ impl Game {
 
     /// Reads a game on top of its start `self`. If `has_checkpoint` is true, also reads the game at
     /// the player's checkpoint.
-    fn read(mut self, input: &mut Reader, has_checkpoint: bool) -> Result<Self, Unrestorable> {
+    fn read(mut self, input: &mut Reader, has_checkpoint: bool) -> Result<Self, RestoreError> {
         let start = (has_checkpoint && self.members.is_none()).then(|| self.clone());
         if input.read::<[u8; 8]>()? != self.level_hash().to_le_bytes() {
-            return Err(Unrestorable::OtherLevel);
+            return Err(RestoreError::OtherLevel);
         }
         let (revision, figure_revision, has_player, is_lamplit) = input.read()?;
         if has_player {
@@ -114,7 +114,7 @@ impl Game {
         self.members = match (members, self.members) {
             (Some(members), Some(start)) => Some(Box::new(members.of_level(*start)?)),
             (None, None) => None,
-            _ => return Err(Unrestorable::OtherLevel),
+            _ => return Err(RestoreError::OtherLevel),
         };
         self.check()?;
         self.show_changes(things, is_lamplit)?;
@@ -122,7 +122,7 @@ impl Game {
         (self.revision, self.figure_revision) = (revision, figure_revision);
         let cell: Option<Cell> = input.read()?;
         let saved = if input.read()? {
-            let start = start.ok_or(Unrestorable::Damaged("a checkpoint"))?;
+            let start = start.ok_or(RestoreError::Damaged("a checkpoint"))?;
             Some(Arc::new(start.read(input, false)?))
         } else {
             None
@@ -134,7 +134,7 @@ impl Game {
     }
 
     /// Returns an error if a step could fail in this state.
-    fn check(&self) -> Result<(), Unrestorable> {
+    fn check(&self) -> Result<(), RestoreError> {
         self.missiles.check()?;
         self.smoke.check()?;
         self.guards.check(&self.world)?;
@@ -143,7 +143,7 @@ impl Game {
     }
 
     /// Applies the changes since the start to the world, which is still in its initial state.
-    fn show_changes(&mut self, things: Vec<Thing>, is_lamplit: bool) -> Result<(), Unrestorable> {
+    fn show_changes(&mut self, things: Vec<Thing>, is_lamplit: bool) -> Result<(), RestoreError> {
         self.doors.show(&mut self.world)?;
         self.mechanisms.show(&mut self.world)?;
         check(self.world.leave_things(things), "a thing")?;
@@ -159,10 +159,10 @@ impl Game {
     fn level_hash(&self) -> u64 {
         let Rules { difficulty, seed } = self.rules;
         let multiplayer = self.multiplayer_rules().map_or(0, |rules| {
-            let MultiplayerRules { collides, respawns, sees, strikes } = rules;
+            let MultiplayerRules { collides, respawns, shows_on_map, strikes } = rules;
             1 | u64::from(collides) << 1
                 | u64::from(respawns) << 2
-                | (sees as u64) << 8
+                | (shows_on_map as u64) << 8
                 | (strikes as u64) << 16
         });
         let world = &self.world;

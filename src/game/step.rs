@@ -13,7 +13,7 @@
 
 use glam::DVec2;
 
-use super::guards::Act;
+use super::guards::GuardEffect;
 use super::intent::{Intent, Intents};
 use super::multiplayer::{playing, playing_mut};
 use super::player::{RADIUS, WALK};
@@ -182,8 +182,8 @@ impl Game {
         let targets = members.as_deref().map_or(&home[..], |members| &members.targets);
         let count = guards.step(world, targets, sounds, smoke.clouds()).len();
         for index in 0..count {
-            if let Some(act) = self.guards.act(index) {
-                self.answer(act);
+            if let Some(effect) = self.guards.effect(index) {
+                self.apply(effect);
             }
         }
         self.revision += u64::from(self.guards.alarm() != alarm);
@@ -196,19 +196,19 @@ impl Game {
         }
     }
 
-    /// Applies an act of a guard to the rest of the game.
-    fn answer(&mut self, act: Act) {
-        match act {
-            Act::Hurt { target, by, from, points } => {
+    /// Applies the effect of a guard to the rest of the game.
+    fn apply(&mut self, effect: GuardEffect) {
+        match effect {
+            GuardEffect::Hurt { target, by, from, points } => {
                 self.in_turn(target, |game| game.hurt_by_guard(by, from, points));
             }
-            Act::Open(cell) => self.doors.open(cell),
-            Act::Sound(sound) => self.sounds.push(sound),
-            Act::Bolt { by, from, height, direction, slope, points } => {
+            GuardEffect::Open(cell) => self.doors.open(cell),
+            GuardEffect::Sound(sound) => self.sounds.push(sound),
+            GuardEffect::Bolt { by, from, height, direction, slope, points } => {
                 let bolt = Missile::bolt((from, height), direction, slope, (by, points));
                 self.missiles.launch(bolt);
             }
-            Act::Raised => self.count_alarm(),
+            GuardEffect::Raised => self.count_alarm(),
         }
     }
 

@@ -49,7 +49,7 @@ pub const MAX_COUNT: u64 = 1 << 53;
 
 /// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unrestorable {
+pub enum RestoreError {
     /// The bytes are not a stored game, or come from another version of the format, the rules or
     /// the crate.
     OtherVersion,
@@ -65,7 +65,7 @@ pub enum Unrestorable {
     Damaged(&'static str),
 }
 
-impl fmt::Display for Unrestorable {
+impl fmt::Display for RestoreError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OtherVersion => write!(
@@ -83,9 +83,9 @@ impl fmt::Display for Unrestorable {
     }
 }
 
-impl std::error::Error for Unrestorable {}
+impl std::error::Error for RestoreError {}
 
-impl serde::de::Error for Unrestorable {
+impl serde::de::Error for RestoreError {
     fn custom<T: fmt::Display>(_: T) -> Self {
         Self::Damaged("a value")
     }
@@ -149,13 +149,13 @@ pub fn first_line(kind: &str) -> String {
 /// A state that takes the fields skipped by serde from the level.
 pub(crate) trait OfLevel: DeserializeOwned {
     /// The state with the skipped fields of `start`, the state at the start of the same level.
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable>;
+    fn of_level(self, start: Self) -> Result<Self, RestoreError>;
 }
 
 impl<T: OfLevel> OfLevel for Vec<T> {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         if self.len() != start.len() {
-            return Err(Unrestorable::OtherLevel);
+            return Err(RestoreError::OtherLevel);
         }
         self.into_iter().zip(start).map(|(state, start)| state.of_level(start)).collect()
     }
@@ -185,13 +185,13 @@ pub mod bits {
 /// Checks a part of the restored state.
 ///
 /// # Errors
-/// [`Unrestorable::Damaged`] with `what`, unless `holds` is true.
-pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
-    if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
+/// [`RestoreError::Damaged`] with `what`, unless `holds` is true.
+pub fn check(holds: bool, what: &'static str) -> Result<(), RestoreError> {
+    if holds { Ok(()) } else { Err(RestoreError::Damaged(what)) }
 }
 
 /// Returns an error unless a position is on the map of `world`.
-pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
+pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), RestoreError> {
     let end = DVec2::new(world.grid().width().into(), world.grid().height().into());
     let is_on_map = position.cmpge(DVec2::ZERO).all() && position.cmplt(end).all();
     check(is_on_map, "a position")
@@ -246,19 +246,19 @@ impl<'de> Reader<'de> {
     ///
     /// # Errors
     /// If there are too many bytes, or if they are of another kind or version.
-    pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
+    pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, RestoreError> {
         let Self { bytes, .. } = Self::of(bytes)?;
         let bytes = bytes.strip_prefix(first_line(kind).as_bytes());
-        Ok(Self { bytes: bytes.ok_or(Unrestorable::OtherVersion)?, size })
+        Ok(Self { bytes: bytes.ok_or(RestoreError::OtherVersion)?, size })
     }
 
     /// Reads bytes that have no first line and contain no cells.
     ///
     /// # Errors
     /// If there are too many bytes.
-    pub fn of(bytes: &'de [u8]) -> Result<Self, Unrestorable> {
+    pub fn of(bytes: &'de [u8]) -> Result<Self, RestoreError> {
         let is_short = bytes.len() <= MAX_BYTES;
-        is_short.then_some(Self { bytes, size: (0, 0) }).ok_or(Unrestorable::TooLong)
+        is_short.then_some(Self { bytes, size: (0, 0) }).ok_or(RestoreError::TooLong)
     }
 
     /// The remaining bytes.
@@ -270,22 +270,22 @@ impl<'de> Reader<'de> {
     ///
     /// # Errors
     /// If the bytes end too early, or a part is out of its range.
-    pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
+    pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, RestoreError> {
         T::deserialize(self)
     }
 
     /// Reads a value. Its skipped fields come from `start`, the value at the start of the level.
-    pub(crate) fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
+    pub(crate) fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, RestoreError> {
         self.read::<T>()?.of_level(start)
     }
 
-    fn take(&mut self, count: usize) -> Result<&'de [u8], Unrestorable> {
-        let (taken, rest) = self.bytes.split_at_checked(count).ok_or(Unrestorable::Cut)?;
+    fn take(&mut self, count: usize) -> Result<&'de [u8], RestoreError> {
+        let (taken, rest) = self.bytes.split_at_checked(count).ok_or(RestoreError::Cut)?;
         self.bytes = rest;
         Ok(taken)
     }
 
-    fn number(&mut self) -> Result<u64, Unrestorable> {
+    fn number(&mut self) -> Result<u64, RestoreError> {
         let mut number = 0;
         for shift in (0..=49).step_by(7) {
             let byte = self.take(1)?[0];
@@ -295,37 +295,37 @@ impl<'de> Reader<'de> {
                 return Ok(number);
             }
         }
-        Err(Unrestorable::Damaged("a number"))
+        Err(RestoreError::Damaged("a number"))
     }
 
-    fn signed_number(&mut self) -> Result<i64, Unrestorable> {
+    fn signed_number(&mut self) -> Result<i64, RestoreError> {
         let number = self.number()?;
         Ok((number >> 1) as i64 ^ -((number & 1) as i64))
     }
 
-    fn flag(&mut self) -> Result<bool, Unrestorable> {
+    fn flag(&mut self) -> Result<bool, RestoreError> {
         let byte = self.take(1)?[0];
         check(byte <= 1, "a flag")?;
         Ok(byte == 1)
     }
 
     /// Reads the length of a list whose elements have at least one byte.
-    fn length(&mut self) -> Result<usize, Unrestorable> {
+    fn length(&mut self) -> Result<usize, RestoreError> {
         let length = self.number()?;
-        if length > self.bytes.len() as u64 { Err(Unrestorable::Cut) } else { Ok(length as usize) }
+        if length > self.bytes.len() as u64 { Err(RestoreError::Cut) } else { Ok(length as usize) }
     }
 }
 
 macro_rules! numbers {
     ($($method:ident: $read:ident, $visit:ident;)*) => {$(
-        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
             visitor.$visit(self.$read()?)
         }
     )*};
 }
 
 impl<'de> Deserializer<'de> for &mut Reader<'de> {
-    type Error = Unrestorable;
+    type Error = RestoreError;
 
     numbers! {
         deserialize_bool: flag, visit_bool;
@@ -336,11 +336,11 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         deserialize_i32: signed_number, visit_i64;
     }
 
-    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         visitor.visit_u8(self.take(1)?[0])
     }
 
-    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         let mut bits = [0; 8];
         bits.copy_from_slice(self.take(8)?);
         let real = f64::from_le_bytes(bits);
@@ -348,17 +348,17 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         visitor.visit_f64(real)
     }
 
-    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         let length = self.length()?;
         let text = std::str::from_utf8(self.take(length)?);
-        visitor.visit_borrowed_str(text.map_err(|_| Unrestorable::Damaged("a text"))?)
+        visitor.visit_borrowed_str(text.map_err(|_| RestoreError::Damaged("a text"))?)
     }
 
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         self.deserialize_str(visitor)
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         if self.flag()? { visitor.visit_some(self) } else { visitor.visit_none() }
     }
 
@@ -366,16 +366,16 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         self,
         _: &'static str,
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         let left = self.length()?;
         visitor.visit_seq(Elements { input: self, left })
     }
 
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, RestoreError> {
         let left = self.length()?;
         visitor.visit_map(Elements { input: self, left })
     }
@@ -384,7 +384,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         self,
         left: usize,
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         visitor.visit_seq(Elements { input: self, left })
     }
 
@@ -393,7 +393,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         _: &'static str,
         left: usize,
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         self.deserialize_tuple(left, visitor)
     }
 
@@ -402,7 +402,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         name: &'static str,
         fields: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         if name == "Cell" {
             let mut ahead = self.clone();
             let (column, row) = (ahead.number()?, ahead.number()?);
@@ -416,13 +416,13 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         visitor.visit_enum(self)
     }
 
     /// The format does not describe its types.
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Unrestorable> {
-        Err(Unrestorable::Damaged("a value"))
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, RestoreError> {
+        Err(RestoreError::Damaged("a value"))
     }
 
     forward_to_deserialize_any! {
@@ -441,12 +441,12 @@ struct Elements<'a, 'de> {
 }
 
 impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
-    type Error = Unrestorable;
+    type Error = RestoreError;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(
         &mut self,
         seed: T,
-    ) -> Result<Option<T::Value>, Unrestorable> {
+    ) -> Result<Option<T::Value>, RestoreError> {
         let Some(left) = self.left.checked_sub(1) else { return Ok(None) };
         self.left = left;
         seed.deserialize(&mut *self.input).map(Some)
@@ -458,47 +458,47 @@ impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
 }
 
 impl<'de> MapAccess<'de> for Elements<'_, 'de> {
-    type Error = Unrestorable;
+    type Error = RestoreError;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(
         &mut self,
         seed: K,
-    ) -> Result<Option<K::Value>, Unrestorable> {
+    ) -> Result<Option<K::Value>, RestoreError> {
         self.next_element_seed(seed)
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(
         &mut self,
         seed: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         seed.deserialize(&mut *self.input)
     }
 }
 
 impl<'de> EnumAccess<'de> for &mut Reader<'de> {
-    type Error = Unrestorable;
+    type Error = RestoreError;
     type Variant = Self;
 
     fn variant_seed<V: DeserializeSeed<'de>>(
         self,
         seed: V,
-    ) -> Result<(V::Value, Self), Unrestorable> {
+    ) -> Result<(V::Value, Self), RestoreError> {
         let variant = self.number()?;
         Ok((seed.deserialize(variant.into_deserializer())?, self))
     }
 }
 
 impl<'de> VariantAccess<'de> for &mut Reader<'de> {
-    type Error = Unrestorable;
+    type Error = RestoreError;
 
-    fn unit_variant(self) -> Result<(), Unrestorable> {
+    fn unit_variant(self) -> Result<(), RestoreError> {
         Ok(())
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(
         self,
         seed: T,
-    ) -> Result<T::Value, Unrestorable> {
+    ) -> Result<T::Value, RestoreError> {
         seed.deserialize(self)
     }
 
@@ -506,7 +506,7 @@ impl<'de> VariantAccess<'de> for &mut Reader<'de> {
         self,
         left: usize,
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         self.deserialize_tuple(left, visitor)
     }
 
@@ -514,7 +514,7 @@ impl<'de> VariantAccess<'de> for &mut Reader<'de> {
         self,
         fields: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Unrestorable> {
+    ) -> Result<V::Value, RestoreError> {
         self.deserialize_tuple(fields.len(), visitor)
     }
 }

@@ -101,7 +101,7 @@ impl fmt::Display for Rank {
 
 /// Counts that a retry does not reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub(crate) struct Counts {
+pub(crate) struct RunCounts {
     pub(crate) alarms: u32,
     pub(crate) deaths: u32,
     pub(crate) stunned: u32,
@@ -122,7 +122,7 @@ impl Game {
 
     /// The player's current results.
     pub fn tally(&self) -> Tally {
-        let Counts { alarms, deaths, stunned } = self.player.counts;
+        let RunCounts { alarms, deaths, stunned } = self.player.counts;
         let (treasure, secrets) = (self.treasure(), self.secrets());
         Tally { steps: self.steps, treasure, secrets, alarms, deaths, stunned, taken_back: 0 }
     }

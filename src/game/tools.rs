@@ -13,12 +13,12 @@ use super::multiplayer::playing;
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
 use crate::world::{Camera, GuardKind, Supply};
-pub(crate) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
+pub(crate) use missiles::{LandedMissile, Missile, MissileKind, MissileTarget, Missiles};
 pub(crate) use smoke::{Puff, Smoke};
 
 /// The reach of a blow, in cells, and the cosine of its angle to either side: 60°.
-const ARM: f64 = 1.0;
-const ARM_COSINE: f64 = 0.5;
+const BLOW_REACH: f64 = 1.0;
+const BLOW_COSINE: f64 = 0.5;
 /// The cosine of the angle within which a dart aims at a guard: 15°.
 const AIM_COSINE: f64 = 0.965_925_826_289_068_3;
 
@@ -69,8 +69,10 @@ impl Game {
         self.swing();
         let motion = self.player.motion;
         let (position, direction) = (motion.position(), motion.heading().direction());
-        let guard = self.guards.guard_near(&self.world, position, direction, ARM, ARM_COSINE);
-        if let Some(index) = self.player_struck(ARM, ARM_COSINE).filter(|_| guard.is_none()) {
+        let guard =
+            self.guards.guard_near(&self.world, position, direction, BLOW_REACH, BLOW_COSINE);
+        if let Some(index) = self.player_struck(BLOW_REACH, BLOW_COSINE).filter(|_| guard.is_none())
+        {
             self.player.strike_wait = AFTER_PUSH;
             self.sound(SoundKind::Blow, reach::BLOW);
             return self.strike_player(index, direction);
@@ -137,24 +139,24 @@ impl Game {
         }
     }
 
-    fn step_missiles(&mut self) -> Vec<Landed> {
+    fn step_missiles(&mut self) -> Vec<LandedMissile> {
         let Self { player, members, missiles, world, guards, .. } = self;
         let bodies = playing(player, members.as_deref()).map(|(index, it)| (index, it.motion));
         missiles.step(world, guards, &bodies)
     }
 
-    fn land(&mut self, landed: Landed) {
-        let Landed { missile, cell, struck } = landed;
+    fn land(&mut self, landed: LandedMissile) {
+        let LandedMissile { missile, cell, struck } = landed;
         let sound = |kind, reach| Sound { kind, cell, reach, by: Source::Object };
         match (missile.kind, struck) {
-            (MissileKind::Dart { by }, Struck::Guard(index)) => {
+            (MissileKind::Dart { by }, MissileTarget::Guard(index)) => {
                 let kind = self.guards.views().nth(index).map(|view| view.kind);
                 let is_warden = kind == Some(GuardKind::Warden);
                 self.sounds.push(sound(SoundKind::Blow, reach::BLOW));
                 self.guards.stun(index, if is_warden { WARDEN_SHOT } else { STUNNED });
                 self.in_turn(by, |game| game.count_stunned(kind));
             }
-            (MissileKind::Bolt { points, from, by }, Struck::Player(index)) => {
+            (MissileKind::Bolt { points, from, by }, MissileTarget::Player(index)) => {
                 self.in_turn(index, |game| game.hurt_by_bolt(by, from, points));
             }
             (MissileKind::Flask, _) => {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::intent::{Intent, Intents};
 use super::rules::STEP;
-use super::stored::{Unrestorable, check};
+use super::stored::{RestoreError, check};
 use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::world::Pitch;
 
@@ -62,7 +62,7 @@ impl Turning {
     }
 
     /// Returns an error if more exact turns wait than are allowed.
-    pub(crate) fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), RestoreError> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MAX_WAITING
             && self.about <= ABOUT_STEPS * MAX_WAITING;
         check(is_possible, "a turn")

@@ -26,7 +26,7 @@ const MAX_FILES: usize = 4096;
 pub fn replace_art(folder: &Path) -> Result<(), ArtError> {
     let names = names(folder)?;
     let files = Folder::of(&folder.join("any"));
-    let mut budget = picture::Budget::default();
+    let mut budget = picture::PictureBudget::default();
     let mut sheets = BTreeMap::new();
     for name in &names {
         let file = folder.join(name);
@@ -68,7 +68,7 @@ fn names(folder: &Path) -> Result<Vec<String>, ArtError> {
 fn sheet(
     name: &str,
     files: &dyn TextureFiles,
-    budget: &mut picture::Budget,
+    budget: &mut picture::PictureBudget,
 ) -> Result<(Art, Sheet), String> {
     let stem = name.trim_end_matches(".png");
     let Some(art) = all().find(|art| art.name == stem) else {

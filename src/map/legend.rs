@@ -15,7 +15,7 @@ use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Glass, Heading, ThingKind};
 use things::{GuardText, SpriteText};
-use tiles::{DoorText, ShapeText, Surroundings, WallText};
+use tiles::{DoorText, ShapeText, TileText, WallText};
 
 const ANOTHER: &str = "draw it with another character";
 
@@ -31,7 +31,7 @@ pub(crate) struct Symbol<'a> {
     /// The place of its definition.
     pub(crate) place: Range<usize>,
     pub(crate) meaning: Meaning<'a>,
-    pub(crate) surroundings: Surroundings<'a>,
+    pub(crate) tile: TileText<'a>,
     /// The character of the tile that a thing stands on, if it names one, and the place of the name.
     pub(crate) support: Option<(char, Range<usize>)>,
 }
@@ -39,7 +39,7 @@ pub(crate) struct Symbol<'a> {
 /// The meaning of a character in the grid.
 pub(crate) enum Meaning<'a> {
     Open,
-    /// Open floor with surroundings of its own.
+    /// Open floor with surfaces, a height or a mechanism of its own.
     Floor,
     Wall(WallText<'a>),
     Door(DoorText<'a>),
@@ -67,7 +67,7 @@ impl<'a> Symbol<'a> {
         match &self.meaning {
             Meaning::Door(door) => door.switch.as_ref(),
             Meaning::Wall(wall) => wall.switch.as_ref(),
-            Meaning::Floor => self.surroundings.switch.as_ref(),
+            Meaning::Floor => self.tile.switch.as_ref(),
             _ => None,
         }
     }
@@ -76,7 +76,7 @@ impl<'a> Symbol<'a> {
     pub(crate) fn sets(&self) -> Option<&Name<'a>> {
         match &self.meaning {
             Meaning::Lever(switch) => Some(switch),
-            Meaning::Floor => self.surroundings.plate.as_ref(),
+            Meaning::Floor => self.tile.plate.as_ref(),
             _ => None,
         }
     }
@@ -95,8 +95,8 @@ impl Default for Legend<'_> {
     /// The characters with the same meaning in every map.
     fn default() -> Self {
         let open = |character| {
-            let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
-            (character, Symbol { place: 0..0, meaning, surroundings, support: None })
+            let (meaning, tile) = (Meaning::Open, TileText::default());
+            (character, Symbol { place: 0..0, meaning, tile, support: None })
         };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
@@ -120,7 +120,7 @@ impl<'a> Legend<'a> {
                 self.is_complete = false;
                 continue;
             };
-            let (mut meaning, surroundings) = meaning(section, &entry);
+            let (mut meaning, tile) = meaning(section, &entry);
             if self.symbols.contains_key(&character) {
                 let message = format!("{character:?} is both a tile and a thing");
                 entry.faults.push(
@@ -135,7 +135,7 @@ impl<'a> Legend<'a> {
                 _ => None,
             };
             let place = entry.key_place;
-            self.symbols.insert(character, Symbol { place, meaning, surroundings, support });
+            self.symbols.insert(character, Symbol { place, meaning, tile, support });
         }
     }
 }
@@ -181,31 +181,31 @@ fn character(section: CharacterTable, entry: &Entry<'_, '_>) -> Option<char> {
     None
 }
 
-/// Reads the meaning and the surroundings in `entry`.
-fn meaning<'a>(section: CharacterTable, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroundings<'a>) {
-    let mut surroundings = Surroundings::default();
+/// Reads the meaning and the tile's text in `entry`.
+fn meaning<'a>(section: CharacterTable, entry: &Entry<'a, '_>) -> (Meaning<'a>, TileText<'a>) {
+    let mut tile = TileText::default();
     let Some(table) = entry.table(section.example()) else {
-        return (Meaning::Unclear, surroundings);
+        return (Meaning::Unclear, tile);
     };
     let faults_before = entry.faults.len();
     let mut meanings = Vec::new();
     for entry in entry.entries(table) {
-        if section == CharacterTable::Things || !surroundings.take(&entry, table) {
+        if section == CharacterTable::Things || !tile.take(&entry, table) {
             meanings.extend(property(section, &entry, table));
         }
     }
     if entry.faults.len() > faults_before {
-        return (Meaning::Unclear, surroundings);
+        return (Meaning::Unclear, tile);
     }
     let fault = |message: String| Fault::new(entry.key_place.clone(), message);
     let key = entry.key;
     let fault = match (meanings.pop(), meanings.is_empty()) {
-        (Some(meaning), true) => match unsuitable(&surroundings, &meaning, entry, table) {
-            None => return (meaning, surroundings),
+        (Some(meaning), true) => match unsuitable(&tile, &meaning, entry, table) {
+            None => return (meaning, tile),
             Some(fault) => fault,
         },
-        (None, _) if !surroundings.is_empty() => match surroundings.contradiction() {
-            None => return (Meaning::Floor, surroundings),
+        (None, _) if !tile.is_empty() => match tile.contradiction() {
+            None => return (Meaning::Floor, tile),
             Some(fault) => fault,
         },
         (Some(_), false) => several_at_once(entry),
@@ -213,27 +213,25 @@ fn meaning<'a>(section: CharacterTable, entry: &Entry<'a, '_>) -> (Meaning<'a>, 
             .help(format!("write, for example, {}", section.example())),
     };
     entry.faults.push(fault);
-    (Meaning::Unclear, surroundings)
+    (Meaning::Unclear, tile)
 }
 
-/// The fault of a tile whose `meaning` cannot have these surroundings. `entry` defines the tile by
+/// The fault of a tile whose `meaning` cannot have this text. `entry` defines the tile by
 /// `table`.
 fn unsuitable(
-    surroundings: &Surroundings<'_>,
+    tile: &TileText<'_>,
     meaning: &Meaning<'_>,
     entry: &Entry<'_, '_>,
     table: &DeTable<'_>,
 ) -> Option<Fault> {
-    if let Some(place) = surroundings.mechanism.clone() {
+    if let Some(place) = tile.mechanism.clone() {
         let message = "only a floor can be water, a plate, or move to another height";
         let fault = Fault::new(place, message).label("this tile is not a floor");
         return Some(fault.help("draw the two with characters of their own"));
     }
     match meaning {
-        Meaning::Wall(_) | Meaning::Mirror(..) if surroundings.has_extent() => {
-            Some(several_at_once(entry))
-        }
-        Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) if surroundings.light.is_some() => {
+        Meaning::Wall(_) | Meaning::Mirror(..) if tile.has_extent() => Some(several_at_once(entry)),
+        Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) if tile.light.is_some() => {
             let light = entry.beside(table, "light")?.key_place;
             let message = "a door, a mask or glass has no light of its own";
             let fault = Fault::new(light, message);

@@ -1,7 +1,7 @@
 //! PNG files as textures.
 //!
 //! A file of 200 bytes can have a million texels, so the texels of all files of a map are limited
-//! together: see [`Budget`].
+//! together: see [`PictureBudget`].
 
 use std::fmt;
 use std::io::Cursor;
@@ -26,19 +26,19 @@ const MAX_BYTES: usize = 64 << 20;
 /// The texels that a map may still decode, and the bytes of files that it may still read.
 ///
 /// A picture that is decoded takes its texels from the budget before memory is allocated for them.
-pub(crate) struct Budget {
+pub(crate) struct PictureBudget {
     texels: u32,
     bytes: usize,
 }
 
-impl Default for Budget {
+impl Default for PictureBudget {
     /// The budget of a whole map.
     fn default() -> Self {
         Self { texels: MAX_TEXELS, bytes: MAX_BYTES }
     }
 }
 
-impl Budget {
+impl PictureBudget {
     fn take(&mut self, texels: u32, bytes: usize) -> Result<(), PictureError> {
         let left = self.texels.checked_sub(texels).zip(self.bytes.checked_sub(bytes));
         let (texels, bytes) = left.ok_or(PictureError::OneTooMany)?;
@@ -58,7 +58,7 @@ pub(crate) enum PictureError {
         width: u32,
         height: u32,
     },
-    /// The picture exceeds the [`Budget`] of the map.
+    /// The picture exceeds the [`PictureBudget`] of the map.
     OneTooMany,
 }
 
@@ -166,7 +166,7 @@ impl Picture {
 
 /// Decodes a PNG file of any colour type and depth. Of an animation, decodes the first picture. The
 /// size is checked, and taken from `budget`, before memory is allocated.
-pub(crate) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
+pub(crate) fn decode(bytes: &[u8], budget: &mut PictureBudget) -> Result<Picture, PictureError> {
     budget.take(0, bytes.len())?;
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
     decoder.set_ignore_text_chunk(true);

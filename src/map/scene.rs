@@ -65,7 +65,7 @@ struct BodyKind {
     keys: &'static [&'static str],
     needs: &'static str,
     example: &'static str,
-    shape: fn(&Properties<'_>) -> Option<BodyShape>,
+    shape: fn(&BodyProperties<'_>) -> Option<BodyShape>,
 }
 
 const KINDS: [BodyKind; 3] = [
@@ -103,7 +103,7 @@ const KINDS: [BodyKind; 3] = [
 
 /// The properties of a body, as the map writes them.
 #[derive(Default)]
-struct Properties<'a> {
+struct BodyProperties<'a> {
     /// The positions and directions, with their keys.
     vectors: Vec<(&'a str, DVec3)>,
     /// The radius of a sphere, or the height of a plane.
@@ -252,8 +252,12 @@ impl BodyKind {
         entry.reject(message, "", format!("write {}", self.example))
     }
 
-    fn read_properties<'a>(&self, entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Properties<'a> {
-        let mut properties = Properties::default();
+    fn read_properties<'a>(
+        &self,
+        entry: &Entry<'a, '_>,
+        table: &'a DeTable<'_>,
+    ) -> BodyProperties<'a> {
+        let mut properties = BodyProperties::default();
         for entry in entry.entries(table) {
             let key = entry.key;
             match key {
@@ -298,7 +302,7 @@ fn one_too_many(place: Range<usize>, count: usize, pairs: usize) -> Option<Fault
     })
 }
 
-impl Properties<'_> {
+impl BodyProperties<'_> {
     fn vector(&self, key: &str) -> Option<DVec3> {
         self.vectors.iter().find(|&&(known, _)| known == key).map(|&(_, vector)| vector)
     }

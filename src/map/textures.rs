@@ -21,7 +21,7 @@ pub(crate) struct Textures<'m> {
     pub(crate) faults: &'m FaultList,
     files: &'m dyn TextureFiles,
     /// `None` after a picture exceeded it.
-    budget: Option<picture::Budget>,
+    budget: Option<picture::PictureBudget>,
     list: Vec<Texture>,
     /// The texture for each name; `None` if it has a fault.
     known: BTreeMap<String, Option<TextureId>>,
@@ -46,7 +46,7 @@ pub(crate) enum PaintText<'a> {
 impl<'m> Textures<'m> {
     /// Creates an empty list. Textures that are not built in come from `files`.
     pub(crate) fn new(faults: &'m FaultList, files: &'m dyn TextureFiles) -> Self {
-        let (budget, list) = (Some(picture::Budget::default()), Vec::new());
+        let (budget, list) = (Some(picture::PictureBudget::default()), Vec::new());
         Self { faults, files, budget, list, known: BTreeMap::new(), sheets: BTreeMap::new() }
     }
 

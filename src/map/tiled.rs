@@ -34,15 +34,15 @@ use png::{BitDepth, ColorType, Compression, Encoder};
 use super::picture::{self, Picture};
 use super::{Level, TextureFileError, TextureFiles, parse_level, text_of_file};
 use crate::fault::Faults;
-pub use export::{Export, export};
-use model::{Part, TiledMap, Wrong};
+pub use export::{ExportedMap, export};
+use model::{SheetRegion, TiledError, TiledMap};
 
 /// The largest file of Tiled, in bytes.
 const MAX_BYTES: usize = 16 << 20;
 
 /// A level from a map of Tiled, as a map file.
 #[derive(Debug)]
-pub struct Import {
+pub struct ImportedLevel {
     /// The level.
     pub level: Level,
     /// The text of the map file.
@@ -61,7 +61,7 @@ pub fn is_tiled(path: &Path) -> bool {
 ///
 /// # Errors
 /// All faults of the map, or the reason why the file cannot be read.
-pub fn load(path: &Path, files: &dyn TextureFiles) -> Result<Import, Faults> {
+pub fn load(path: &Path, files: &dyn TextureFiles) -> Result<ImportedLevel, Faults> {
     import(&text_of_file(path)?, &path.display().to_string(), files)
 }
 
@@ -69,7 +69,7 @@ pub fn load(path: &Path, files: &dyn TextureFiles) -> Result<Import, Faults> {
 ///
 /// # Errors
 /// All faults of the map.
-pub fn import(text: &str, name: &str, files: &dyn TextureFiles) -> Result<Import, Faults> {
+pub fn import(text: &str, name: &str, files: &dyn TextureFiles) -> Result<ImportedLevel, Faults> {
     if text.len() > MAX_BYTES {
         let limit = MAX_BYTES >> 20;
         let message = format!("{name} is larger than {limit} MiB, the maximum for a map of Tiled");
@@ -77,25 +77,25 @@ pub fn import(text: &str, name: &str, files: &dyn TextureFiles) -> Result<Import
     }
     let root = document::parse(text, name)?;
     let map = TiledMap::read(&root, files).map_err(|wrong| match wrong {
-        Wrong::Here(fault) => Faults::new(name, "", vec![fault]),
-        Wrong::Elsewhere(faults) => faults,
+        TiledError::InMap(fault) => Faults::new(name, "", vec![fault]),
+        TiledError::InOtherFile(faults) => faults,
     })?;
     let translation = level::translate(&map).map_err(|faults| Faults::new(name, "", faults))?;
-    let cut = Cut { files, parts: &translation.parts, sheets: RefCell::default() };
-    let pictures = Recorded { files: &cut, read: RefCell::default() };
+    let cut = TileFiles { files, parts: &translation.parts, sheets: RefCell::default() };
+    let pictures = RecordedFiles { files: &cut, read: RefCell::default() };
     let level = parse_level(&translation.text, name, &pictures)
         .map_err(|faults| faults.traced(|at| translation.origin(at)))?;
     let pictures = pictures.read.into_inner();
-    Ok(Import { level, text: translation.text, pictures })
+    Ok(ImportedLevel { level, text: translation.text, pictures })
 }
 
 /// Files, and a copy of each that is read.
-struct Recorded<'f> {
+struct RecordedFiles<'f> {
     files: &'f dyn TextureFiles,
     read: RefCell<BTreeMap<String, Vec<u8>>>,
 }
 
-impl TextureFiles for Recorded<'_> {
+impl TextureFiles for RecordedFiles<'_> {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
         let bytes = self.files.read(name)?;
         self.read.borrow_mut().insert(name.to_owned(), bytes.clone());
@@ -104,9 +104,9 @@ impl TextureFiles for Recorded<'_> {
 }
 
 /// Files, and the parts of them that are tiles.
-struct Cut<'f> {
+struct TileFiles<'f> {
     files: &'f dyn TextureFiles,
-    parts: &'f BTreeMap<String, Part>,
+    parts: &'f BTreeMap<String, SheetRegion>,
     sheets: RefCell<Sheets>,
 }
 
@@ -114,12 +114,12 @@ struct Cut<'f> {
 #[derive(Default)]
 struct Sheets {
     decoded: BTreeMap<String, Picture>,
-    budget: picture::Budget,
+    budget: picture::PictureBudget,
 }
 
-impl TextureFiles for Cut<'_> {
+impl TextureFiles for TileFiles<'_> {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
-        let Some(Part { file, at, size }) = self.parts.get(name) else {
+        let Some(SheetRegion { file, at, size }) = self.parts.get(name) else {
             return self.files.read(name);
         };
         let mut sheets = self.sheets.borrow_mut();

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use super::drawing::PerCharacter;
-use super::legend::tiles::{Height, Surroundings, WallText};
+use super::legend::tiles::{Height, TileText, WallText};
 use super::legend::{Meaning, Symbol};
 use super::plan::{Names, Plan};
 use super::textures::{SurfaceText, Textures};
@@ -126,7 +126,7 @@ impl Builder<'_, '_> {
         };
         let tile = self.tile(character, kind, symbol)?;
         match &symbol.meaning {
-            Meaning::Floor => self.add_floor(tile, &symbol.surroundings),
+            Meaning::Floor => self.add_floor(tile, &symbol.tile),
             Meaning::Wall(wall) if wall.moves() => self.add_moving_wall(tile, wall),
             _ => {
                 if let TileKind::Door(door) = kind {
@@ -153,7 +153,7 @@ impl Builder<'_, '_> {
 
     /// A tile with the properties that `symbol` defines. The map's own floor supplies the others.
     fn tile(&mut self, character: char, kind: TileKind, symbol: &Symbol<'_>) -> Option<Tile> {
-        let own = &symbol.surroundings;
+        let own = &symbol.tile;
         let &Common { ground, faces, .. } = self.common;
         let textures = &mut *self.textures;
         let faults_before = textures.faults.len();
@@ -191,7 +191,7 @@ impl Builder<'_, '_> {
         Some(Tile { character, kind, floor, ceiling, light, heights, riser, lintel, effect: None })
     }
 
-    fn add_floor(&mut self, floor: Tile, own: &Surroundings<'_>) -> Option<TileIndex> {
+    fn add_floor(&mut self, floor: Tile, own: &TileText<'_>) -> Option<TileIndex> {
         let effect = match self.switch(own.plate.as_ref()) {
             Some(switch) => Some(TileEffect::Plate(switch)),
             None => own.water.as_ref().map(|_| TileEffect::Water),
@@ -275,10 +275,10 @@ impl Builder<'_, '_> {
     }
 }
 
-/// The heights of a tile with the surroundings `own` below `overhead`, in a map whose ceiling is at
+/// The heights of a tile with the definition `own` below `overhead`, in a map whose ceiling is at
 /// `map_ceiling`. Returns a fault if the heights contradict each other.
 fn heights(
-    own: &Surroundings<'_>,
+    own: &TileText<'_>,
     overhead: Ceiling,
     map_ceiling: f64,
 ) -> Result<Option<Heights>, Fault> {

@@ -30,7 +30,7 @@ static OF_THE_MACHINE: LazyLock<NonZero<usize>> =
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
     /// One thread.
-    One(WhyOne),
+    One(OneThreadReason),
     /// This number of threads. Each draws a band of rows, then the next band that no thread has
     /// taken.
     Bands(NonZero<usize>),
@@ -38,7 +38,7 @@ pub enum Threads {
 
 /// The reason why one thread draws the whole frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhyOne {
+pub enum OneThreadReason {
     /// The frame is small. Other threads would take longer to start than the frame takes to draw.
     Small,
     /// No other thread is permitted.
@@ -52,11 +52,11 @@ impl Threads {
         let all = size.area() * (samples.get() * samples.get()) as usize;
         let worthwhile = (all / PIXELS_OF_A_THREAD).min(size.height.get() as usize);
         if worthwhile < 2 {
-            return Self::One(WhyOne::Small);
+            return Self::One(OneThreadReason::Small);
         }
         let most = most.unwrap_or_else(|| *OF_THE_MACHINE).get();
         match NonZero::new(worthwhile.min(most)) {
-            None | Some(NonZero::<usize>::MIN) => Self::One(WhyOne::Only),
+            None | Some(NonZero::<usize>::MIN) => Self::One(OneThreadReason::Only),
             Some(count) => Self::Bands(count),
         }
     }
@@ -85,8 +85,8 @@ impl Threads {
 impl fmt::Display for Threads {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::One(WhyOne::Small) => f.write_str("one: the picture is small"),
-            Self::One(WhyOne::Only) => f.write_str("one: no others are allowed"),
+            Self::One(OneThreadReason::Small) => f.write_str("one: the picture is small"),
+            Self::One(OneThreadReason::Only) => f.write_str("one: no others are allowed"),
             Self::Bands(count) => write!(f, "{count}, by bands of rows: the picture is large"),
         }
     }
@@ -186,9 +186,9 @@ mod tests {
             Threads::new(size, NonZeroU32::MIN, NonZero::new(most))
         };
         for (width, height) in [(1, 1), (640, 480), (1280, 720), (4_000_000, 1)] {
-            assert_eq!(threads(width, height, 8), Threads::One(WhyOne::Small));
+            assert_eq!(threads(width, height, 8), Threads::One(OneThreadReason::Small));
         }
-        assert_eq!(threads(1920, 1080, 1), Threads::One(WhyOne::Only));
+        assert_eq!(threads(1920, 1080, 1), Threads::One(OneThreadReason::Only));
         assert_eq!([2, 3, 7].map(|most| threads(1920, 1080, most).count()), [2, 3, 3]);
         assert_eq!([2, 7, 100].map(|most| threads(3840, 2160, most).count()), [2, 7, 15]);
     }

@@ -441,7 +441,7 @@ const CLOCK_GRANULARITY: Duration = Duration::from_millis(10);
 const AFTER_STALL_BYTES: f64 = 16_000.0;
 const AFTER_STALL_SECONDS: f64 = 0.024;
 /// The time for which this limit applies.
-const AFTER_STALL: Duration = Duration::from_mins(1);
+const AFTER_STALL_DURATION: Duration = Duration::from_mins(1);
 /// The longest computed time, in seconds: one day.
 const MAX_SECONDS: f64 = 86_400.0;
 
@@ -523,7 +523,7 @@ impl Link {
     fn usable_rate(&self) -> Option<f64> {
         let seconds = self.seconds_per_byte();
         let rate = (seconds > 0.0).then(|| seconds.recip());
-        let is_past = |at| self.answered_at.saturating_sub(at) > AFTER_STALL;
+        let is_past = |at| self.answered_at.saturating_sub(at) > AFTER_STALL_DURATION;
         if self.stalled_at.is_none_or(is_past) {
             return rate;
         }

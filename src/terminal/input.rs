@@ -138,13 +138,13 @@ impl Decoder {
     /// The time to wait for more bytes after the last one. `None` if there is no incomplete unit.
     pub(crate) fn timeout(&self) -> Option<Duration> {
         /// Longer than the gaps within a sequence, and shorter than a noticeable delay.
-        const KEY: Duration = Duration::from_millis(50);
+        const KEY_TIMEOUT: Duration = Duration::from_millis(50);
         /// The unit is certainly a sequence, but the link may be slow.
-        const SEQUENCE: Duration = Duration::from_secs(1);
+        const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
         match self.state {
             DecoderState::Ground => None,
-            _ if self.may_be_key() => Some(KEY),
-            _ => Some(SEQUENCE),
+            _ if self.may_be_key() => Some(KEY_TIMEOUT),
+            _ => Some(SEQUENCE_TIMEOUT),
         }
     }
 

@@ -93,7 +93,7 @@ impl Session {
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
             let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at);
             let awaits_tmux = self.tmux.is_some() || self.tmux_remedy.is_some();
-            let tmux_at = awaits_tmux.then(|| self.guard.now() + TMUX_POLL);
+            let tmux_at = awaits_tmux.then(|| self.guard.now() + TMUX_POLL_INTERVAL);
             let wake_at = wake_at.chain(tmux_at).min();
             if self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
                 continue;
@@ -228,7 +228,7 @@ impl Session {
             Event::Key(_) => {
                 let now = self.guard.now();
                 let last = mem::replace(&mut self.last_key_at, now);
-                now.saturating_sub(last) >= TIME_TO_ATTACH
+                now.saturating_sub(last) >= MIN_ATTACH_PAUSE
             }
             _ => false,
         }
@@ -389,9 +389,9 @@ impl Session {
 }
 
 /// The time between two checks for an answer from tmux.
-const TMUX_POLL: Duration = Duration::from_millis(10);
+const TMUX_POLL_INTERVAL: Duration = Duration::from_millis(10);
 /// The minimum time without a key while somebody detaches from tmux and attaches again.
-const TIME_TO_ATTACH: Duration = Duration::from_secs(1);
+const MIN_ATTACH_PAUSE: Duration = Duration::from_secs(1);
 
 fn is_past(time: Option<Duration>, now: Duration) -> bool {
     time.is_some_and(|time| time <= now)

@@ -32,7 +32,7 @@ use super::guard::TerminalGuard;
 use super::unix::wait;
 
 /// The time from a signal that should end the program until the thread ends it by force.
-const GRACE: Duration = Duration::from_secs(1);
+const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The signals that ask the program to end or to stop. By default, they end or stop it.
 const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
@@ -194,7 +194,7 @@ fn forward_signals(mut incoming: Incoming, mut sender: &UnixStream, guard: &Term
         _ = sender.write(&[number as u8]);
         if let Some(Signal::Quit(_)) = meaning(number) {
             guard.shut_down();
-            if !guard.wait_until_given_back(GRACE) {
+            if !guard.wait_until_given_back(RESTORE_TIMEOUT) {
                 end(number, guard);
             }
         }

@@ -88,10 +88,10 @@ impl Device {
     /// Writes `bytes` and returns the length of the accepted part. While the terminal accepts no more,
     /// waits as long as `go_on` returns `true`.
     pub(crate) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<usize> {
-        const MOMENT: Duration = Duration::from_millis(50);
+        const POLL_INTERVAL: Duration = Duration::from_millis(50);
         let mut written = self.write_some(bytes)?;
         while written < bytes.len() && go_on() {
-            wait(&mut [PollFd::new(&self.output, PollFlags::OUT)], Some(MOMENT))?;
+            wait(&mut [PollFd::new(&self.output, PollFlags::OUT)], Some(POLL_INTERVAL))?;
             written += self.write_some(&bytes[written..])?;
         }
         Ok(written)

@@ -181,7 +181,12 @@ fn range(name: &str, first: u16, end: u16) -> String {
 impl fmt::Display for CellDifference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { column, row, delta_e, wanted, got } = self;
-        write!(f, "column {column}, row {row}: {} in place of {}", Shown(got), Shown(wanted))?;
+        write!(
+            f,
+            "column {column}, row {row}: {} in place of {}",
+            CellInWords(got),
+            CellInWords(wanted)
+        )?;
         match delta_e {
             Some(delta_e) => write!(f, ", ΔE {delta_e:.1}"),
             None => Ok(()),
@@ -190,9 +195,9 @@ impl fmt::Display for CellDifference {
 }
 
 /// A cell in a sentence.
-struct Shown<'a>(&'a Option<Cell>);
+struct CellInWords<'a>(&'a Option<Cell>);
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for CellInWords<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(cell) = self.0 else { return f.write_str("no cell") };
         let [fg, bg] = [cell.fg, cell.bg].map(super::legend::color_text);

@@ -15,13 +15,13 @@ use crate::color::lab::Lab;
 use crate::tui::pixels::shown;
 
 /// The colour of each small letter: the colour of more than half of the cells in a family, if there is one.
-pub(super) struct Legend {
+pub(super) struct ColorLegend {
     colors: HashMap<char, Color>,
     /// The letters in use.
     used: Vec<char>,
 }
 
-impl Legend {
+impl ColorLegend {
     pub(super) fn of(grid: &CellGrid) -> Self {
         let mut cells: HashMap<Color, usize> = HashMap::new();
         for color in grid.0.content.iter().flat_map(|cell| [cell.fg, cell.bg]) {
@@ -91,13 +91,13 @@ impl Legend {
     }
 }
 
-impl Default for Legend {
+impl Default for ColorLegend {
     fn default() -> Self {
         Self { colors: HashMap::from([(DEFAULT, Color::Reset)]), used: Vec::new() }
     }
 }
 
-impl fmt::Display for Legend {
+impl fmt::Display for ColorLegend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.used.contains(&DEFAULT) {
             writeln!(f, "{DEFAULT}  default")?;

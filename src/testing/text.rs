@@ -10,7 +10,7 @@ use ratatui::buffer::{Buffer, Cell, CellWidth};
 use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier, Style};
 
-use super::legend::Legend;
+use super::legend::ColorLegend;
 use super::{CellGrid, GridError};
 
 /// A colour of a cell.
@@ -33,7 +33,7 @@ impl fmt::Display for CellGrid {
         let is_shown =
             |of_cell: ColorOf| self.0.content.iter().any(|cell| of_cell(cell) != Color::Reset);
         if planes.iter().any(|&(_, of_cell)| is_shown(of_cell)) {
-            let legend = Legend::of(self);
+            let legend = ColorLegend::of(self);
             write!(f, "\ncolours\n{legend}")?;
             for (heading, of_cell) in planes.into_iter().filter(|&(_, of_cell)| is_shown(of_cell)) {
                 self.write_plane(f, heading, |row| legend.plane_row(row.iter().map(of_cell)))?;
@@ -174,25 +174,25 @@ impl FromStr for CellGrid {
     type Err = GridError;
 
     fn from_str(text: &str) -> Result<Self, GridError> {
-        Reader { lines: text.lines(), number: 0 }.grid()
+        LineReader { lines: text.lines(), number: 0 }.grid()
     }
 }
 
 /// Reads a text line by line.
-struct Reader<'a> {
+struct LineReader<'a> {
     lines: Lines<'a>,
     /// The number of the last line that was read, from 1.
     number: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> LineReader<'a> {
     fn grid(mut self) -> Result<CellGrid, GridError> {
         let mut grid = self.title()?;
         if self.line() != Some("glyphs") {
             return Err(self.fault("should be \"glyphs\""));
         }
         self.glyphs(&mut grid)?;
-        let mut legend = Legend::default();
+        let mut legend = ColorLegend::default();
         while let Some(heading) = self.line() {
             match heading {
                 "colours" => legend = self.legend()?,
@@ -268,8 +268,8 @@ impl<'a> Reader<'a> {
         parts.ok_or_else(|| self.fault(format!("should be row {number}, between bars")))
     }
 
-    fn legend(&mut self) -> Result<Legend, GridError> {
-        let mut legend = Legend::default();
+    fn legend(&mut self) -> Result<ColorLegend, GridError> {
+        let mut legend = ColorLegend::default();
         while let Some(line) = self.line_of_section() {
             let read = legend.read(line);
             read.ok_or_else(|| self.fault("should be a letter, a name and a colour"))?;
@@ -281,7 +281,7 @@ impl<'a> Reader<'a> {
     fn plane(
         &mut self,
         grid: &mut CellGrid,
-        legend: &Legend,
+        legend: &ColorLegend,
         of_cell: fn(&mut Cell) -> &mut Color,
     ) -> Result<(), GridError> {
         let Size { width, height } = grid.size();

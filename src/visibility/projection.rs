@@ -35,7 +35,7 @@ pub struct Projection {
 
 /// A height relative to the eye: in rows above the horizon at distance 1, negative below.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rise(f64);
+pub(crate) struct RelativeHeight(f64);
 
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
@@ -146,14 +146,14 @@ impl Projection {
     }
 
     /// The rise from the eye to `height`.
-    pub(crate) fn rise_to(&self, height: f64) -> Rise {
+    pub(crate) fn relative_height(&self, height: f64) -> RelativeHeight {
         let rise = height - self.eye;
-        Rise(rise * self.focal_length)
+        RelativeHeight(rise * self.focal_length)
     }
 
     /// The first row whose centre is not above a point with `rise` at distance `t`.
     #[inline]
-    pub(crate) fn row_of(&self, Rise(rise): Rise, t: f64) -> u32 {
+    pub(crate) fn row_of(&self, RelativeHeight(rise): RelativeHeight, t: f64) -> u32 {
         if rise == 0.0 {
             return self.first_row_of_ground();
         }
@@ -161,7 +161,12 @@ impl Projection {
     }
 
     /// Writes the row of `rise` at each of `distances` to `rows`, as `row_of` does for one distance.
-    pub(crate) fn rows_of(&self, Rise(rise): Rise, distances: &[f64], rows: &mut [u32]) {
+    pub(crate) fn rows_of(
+        &self,
+        RelativeHeight(rise): RelativeHeight,
+        distances: &[f64],
+        rows: &mut [u32],
+    ) {
         if rise == 0.0 {
             rows.fill(self.first_row_of_ground());
             return;
@@ -174,7 +179,7 @@ impl Projection {
     /// The first row whose centre is not above a point at `height`, for callers that need it once.
     #[inline]
     pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {
-        self.row_of(self.rise_to(height), t)
+        self.row_of(self.relative_height(height), t)
     }
 
     /// The position in the picture of a point on the map.

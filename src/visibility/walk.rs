@@ -20,10 +20,10 @@ use glam::DVec2;
 use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, RaySegment};
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
 use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
-use super::projection::Rise;
+use super::projection::RelativeHeight;
 use super::{FrameContext, WalkStats};
 use crate::cast::{
-    Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
+    Caster, Course, DynCaster, Hit, Intersection, MirrorTransform, Ray, along_line, from_left,
     is_from_left,
 };
 use crate::world::sprite::builtin;
@@ -45,7 +45,7 @@ pub(crate) struct WalkMemory {
     fan: FanMemory,
     borders: Vec<Border>,
     /// The passage of each ray of a visit through the cell of an object.
-    passages: Vec<Passage>,
+    passages: Vec<Intersection>,
     /// Values of the current visit, by column.
     columns: ColumnMemory,
     /// The next visits: in the lower gap, in the upper gap, and in a mirror.
@@ -322,7 +322,7 @@ impl SectorWalk<'_> {
         let ColumnMemory { t, bottoms, tops, .. } = &mut self.memory.columns;
         let range = range.start as usize..range.end as usize;
         let rows = if is_top { tops } else { bottoms };
-        let rise: Rise = self.scene.projection.rise_to(height);
+        let rise: RelativeHeight = self.scene.projection.relative_height(height);
         self.scene.projection.rows_of(rise, &t[range.clone()], &mut rows[range]);
     }
 
@@ -923,11 +923,11 @@ impl SectorWalk<'_> {
         passages.extend(visit.columns.clone().map(|column| {
             let direction = self.fan.directions.of(column);
             let ray = on_map(visit.image, self.scene.projection.origin(), direction);
-            let passage = Passage::of_tile(&ray, world, cell, tile.kind);
+            let passage = Intersection::of_tile(&ray, world, cell, tile.kind);
             // After a reflection in this cell, the ray starts at the mirror. An earlier hit is not on its path.
             let is_before_mirror =
                 |hit: Hit| visit.bounces > 0 && hit.t < columns.from[column as usize];
-            if passage.hit.is_some_and(is_before_mirror) { Passage::NONE } else { passage }
+            if passage.hit.is_some_and(is_before_mirror) { Intersection::NONE } else { passage }
         }));
         let first = visit.columns.start;
         let at = |walk: &Self, column: u32| walk.memory.passages[(column - first) as usize];

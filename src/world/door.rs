@@ -110,12 +110,12 @@ impl World {
 
 /// The doors that are partly open.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Ajar {
+pub(crate) struct PartlyOpenDoors {
     /// Sorted by cell. There are few at any time.
     openings: Vec<(Cell, Opening)>,
 }
 
-impl Ajar {
+impl PartlyOpenDoors {
     /// The opening of the door in `cell`, if it is partly open.
     fn opening(&self, cell: Cell) -> Option<Opening> {
         self.find(cell).ok().map(|index| self.openings[index].1)
@@ -155,7 +155,7 @@ mod tests {
     fn only_doors_that_are_ajar_are_remembered() {
         let cell = |column| Cell { column, row: 0 };
         let half = Opening::new(0.5).unwrap();
-        let mut ajar = Ajar::default();
+        let mut ajar = PartlyOpenDoors::default();
         for column in [5, 3, 4] {
             ajar.set(cell(column), half);
         }
@@ -163,6 +163,6 @@ mod tests {
         ajar.set(cell(3), Opening::OPEN);
         assert_eq!([3, 4, 5].map(|column| ajar.opening(cell(column))), [None, None, Some(half)]);
         ajar.set(cell(5), Opening::CLOSED);
-        assert_eq!(ajar, Ajar::default());
+        assert_eq!(ajar, PartlyOpenDoors::default());
     }
 }

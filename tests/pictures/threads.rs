@@ -4,7 +4,9 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use cellcaster::map::{self, Level, builtin};
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer, Surface, Threads, WhyOne};
+use cellcaster::render::{
+    Frame, FrameSize, OneThreadReason, PixelAspect, Renderer, Surface, Threads,
+};
 use cellcaster::world::{Camera, Cell, FieldOfView, Opening, Pitch, World};
 
 /// Large enough for seven threads, with a height that no tested number of threads divides.
@@ -69,7 +71,7 @@ fn any_number_of_threads_draws_the_same_frame() {
             let mut expected = frame();
             let mut alone = renderer(1);
             let explained = alone.explain(&world, &camera, &mut expected);
-            assert_eq!(explained.threads, Threads::One(WhyOne::Only), "{name}");
+            assert_eq!(explained.threads, Threads::One(OneThreadReason::Only), "{name}");
             let surfaces_alone = surfaces(&alone);
             for count in [2, 3, 7] {
                 let (mut drawn, mut several) = (frame(), renderer(count));
@@ -89,6 +91,6 @@ fn only_large_pictures_use_threads() {
     let camera = world.start_camera(FieldOfView::default());
     let mut small = Frame::new(FrameSize::new(160, 90).unwrap(), PixelAspect::SQUARE);
     let threads = |frame: &mut Frame| renderer(7).explain(world, &camera, frame).threads;
-    assert_eq!(threads(&mut small), Threads::One(WhyOne::Small));
+    assert_eq!(threads(&mut small), Threads::One(OneThreadReason::Small));
     assert_eq!(threads(&mut frame()), Threads::Bands(NonZero::new(7).unwrap()));
 }

@@ -23,7 +23,7 @@ use crate::casters::Method;
 use crate::report::Table;
 use crate::speed::textured_scene;
 use cellcaster::cli::options::{seed, within};
-use cellcaster::cli::parse::Takes;
+use cellcaster::cli::parse::ValidValues;
 use cellcaster::game::{FRICTION, STEPS_PER_SECOND};
 use cellcaster::map::builtin;
 use cellcaster::rng::SplitMix64;
@@ -77,19 +77,19 @@ pub enum Part {
     Features,
 }
 
-fn rays(text: &str) -> Result<usize, Takes> {
+fn rays(text: &str) -> Result<usize, ValidValues> {
     within(text, |rays| (1..=1_000_000).contains(rays), "a whole number from 1 to 1000000")
 }
 
-fn rounds(text: &str) -> Result<usize, Takes> {
+fn rounds(text: &str) -> Result<usize, ValidValues> {
     within(text, |&rounds| rounds <= 1000, "a whole number from 0 to 1000")
 }
 
-fn friction(text: &str) -> Result<f64, Takes> {
+fn friction(text: &str) -> Result<f64, ValidValues> {
     within(text, |rate| (1e-3..=1e9).contains(rate), "a number from 0.001 to 1000000000")
 }
 
-fn steps_per_second(text: &str) -> Result<f64, Takes> {
+fn steps_per_second(text: &str) -> Result<f64, ValidValues> {
     within(text, |steps| (0.1..=1e4).contains(steps), "a number from 0.1 to 10000")
 }
 

@@ -60,7 +60,7 @@ pub use results::{
     LevelBoard, LevelScore, MAX_SCRIPT_BYTES, MAX_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
 };
 pub use store::HostStore;
-pub use waiting::{Late, WaitingResult, WaitingResults};
+pub use waiting::{LateOutcome, WaitingResult, WaitingResults};
 
 /// How long a player must keep a name before changing it, in seconds.
 pub const RENAME_INTERVAL: u64 = 7 * 24 * 60 * 60;

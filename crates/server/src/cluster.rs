@@ -44,7 +44,7 @@ use tokio::time::Instant;
 use self::bus::Bus;
 pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::host::{HostContext, shown_name};
-use self::leases::{GATHERED, Leases, MAX_CALLS};
+use self::leases::{BATCH_DELAY, Leases, MAX_CALLS};
 use self::nats::NatsBus;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
@@ -52,7 +52,7 @@ use crate::accounts::worker::StoreWorker;
 use crate::accounts::{HostNotice, HostStore};
 use crate::load::Load;
 use crate::rooms::directory::Rooms;
-use crate::rooms::summary::RoomWish;
+use crate::rooms::summary::RoomRequest;
 use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
 
@@ -82,8 +82,8 @@ impl Cluster {
         // Start the threads before anything can fail, because dropping a database blocks, too.
         let leases = StoreWorker::start("leases", MAX_CALLS, leases).map_err(no_thread);
         let presence = StoreWorker::start("visits", MAX_CALLS, presence).map_err(no_thread);
-        let (host, gathered) = (notice.name.clone(), GATHERED);
-        let leases = Leases { store: leases?, host, gathered, renewals: Arc::default() };
+        let (host, batch_delay) = (notice.name.clone(), BATCH_DELAY);
+        let leases = Leases { store: leases?, host, batch_delay, renewals: Arc::default() };
         let visits = Visits::new(presence?, notice.clone());
         let bus = Box::new(NatsBus::connect(address).await?);
         // If the system had no random numbers, there would be no keys, either.
@@ -95,7 +95,7 @@ impl Cluster {
     pub(crate) fn rooms(
         self,
         rooms: &Rooms,
-        standing: Vec<RoomWish>,
+        standing: Vec<RoomRequest>,
         load: Arc<Load>,
         visitors: Visitors,
     ) -> SharedRooms {

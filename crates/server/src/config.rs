@@ -37,7 +37,7 @@ use crate::admission::Limits;
 use crate::logging::LogFilter;
 use crate::rooms::directory::{RecordingBounds, RoomLimits};
 use crate::rooms::room::Mode;
-use crate::rooms::summary::RoomWish;
+use crate::rooms::summary::RoomRequest;
 use cellcaster::app::parts::{Field, Setting, Value as _, reject_range, toml_string};
 use cellcaster::fault::document::{self, Entry, FaultList};
 use cellcaster::fault::{Fault, Faults, nearest, quoted};
@@ -111,7 +111,7 @@ pub struct Config {
     /// limit that it begins with.
     pub player_bytes_per_second: u32,
     /// The rooms that always exist.
-    pub standing: Vec<RoomWish>,
+    pub standing: Vec<RoomRequest>,
     /// The most mebibytes of recordings.
     pub recordings_megabytes: u32,
     /// The days after which a finished recording is removed.
@@ -264,7 +264,7 @@ impl fmt::Display for Config {
         if !self.standing.is_empty() {
             writeln!(f, "\n# the rooms that always exist")?;
         }
-        self.standing.iter().try_for_each(|RoomWish { level, mode, difficulty }| {
+        self.standing.iter().try_for_each(|RoomRequest { level, mode, difficulty }| {
             writeln!(f, "[[room]]\nmode = \"{}\"\nlevel = \"{level}\"", mode.name())?;
             writeln!(f, "difficulty = \"{}\"", difficulty.name())
         })
@@ -361,7 +361,7 @@ fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
 }
 
 /// The standing rooms of an entry `room`; `None` if the list as a whole has a fault.
-fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
+fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomRequest>> {
     const EXAMPLE: &str = "[[room]]";
     let Some(list) = entry.list() else {
         entry.faults.push(entry.wrong_type("a list of tables", EXAMPLE));
@@ -377,18 +377,18 @@ fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
     Some(rooms.collect())
 }
 
-fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> RoomWish {
-    let mut wish = in_mode(Mode::Roam);
+fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> RoomRequest {
+    let mut request = in_mode(Mode::Roam);
     for entry in room.entries(table) {
         match entry.key {
-            "mode" => wish.mode = mode(&entry).unwrap_or(wish.mode),
+            "mode" => request.mode = mode(&entry).unwrap_or(request.mode),
             "level" => {
                 if let Some(level) = entry.string("level = \"museum\"") {
-                    level.clone_into(&mut wish.level);
+                    level.clone_into(&mut request.level);
                 }
             }
             "difficulty" => {
-                wish.difficulty = Difficulty::read(&entry).unwrap_or(wish.difficulty);
+                request.difficulty = Difficulty::read(&entry).unwrap_or(request.difficulty);
             }
             _ => {
                 let known = ["mode", "level", "difficulty"];
@@ -396,7 +396,7 @@ fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> RoomWish {
             }
         }
     }
-    wish
+    request
 }
 
 fn mode(entry: &Entry<'_, '_>) -> Option<Mode> {
@@ -413,8 +413,8 @@ fn mode(entry: &Entry<'_, '_>) -> Option<Mode> {
     })
 }
 
-fn in_mode(mode: Mode) -> RoomWish {
-    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+fn in_mode(mode: Mode) -> RoomRequest {
+    RoomRequest { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
 /// The most moderators.

@@ -22,7 +22,7 @@ use crate::rooms::room::{
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
-    HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
+    IdleLimits, Profile, RoomEntry, Session, SessionContext, SessionEvent, SessionRequest,
 };
 pub use crate::ssh::fuzzing::serve;
 use crate::visitors::{Presence, Visitors};
@@ -47,7 +47,7 @@ pub const CHECKPOINTS: usize = 24;
 const MAX_STEPS: usize = 900;
 
 /// A room and its visitors.
-pub struct Hall {
+pub struct FuzzedRoom {
     catalog: Arc<Catalog>,
     room: Room,
     /// The recording of the current round.
@@ -64,7 +64,7 @@ struct FuzzedVisitor {
     name: Line,
 }
 
-impl Hall {
+impl FuzzedRoom {
     /// A room of a built-in level, chosen by `seed`.
     pub fn new(seed: u64) -> Self {
         let catalog = Arc::clone(&CATALOG);
@@ -101,7 +101,7 @@ impl Hall {
             ignored: Vec::new(),
             configuration: Configuration::default(),
         };
-        let host = HostFacts {
+        let host = SessionContext {
             name: name.clone(),
             message: Line::of("Be kind.", CHAT_COLUMNS),
             notice: None,
@@ -236,29 +236,31 @@ impl Hall {
         }
     }
 
-    fn grant(&mut self, visitor: usize, ask: Request) -> Option<SessionEvent> {
+    fn grant(&mut self, visitor: usize, ask: SessionRequest) -> Option<SessionEvent> {
         match ask {
-            Request::Name(text) => {
+            SessionRequest::Name(text) => {
                 let line = Line::of(&text, NAME_COLUMNS).ok_or("Take another one.".to_owned());
                 if let Ok(line) = &line {
                     self.visitors[visitor].name = line.clone();
                 }
                 Some(SessionEvent::Named(line))
             }
-            Request::Rooms => {
+            SessionRequest::Rooms => {
                 let rooms = [RoomSummary::of(ROOM, &self.room)].into();
                 Some(SessionEvent::Rooms { rooms, today: Day::default() })
             }
-            Request::Go(Way::Watch(_)) => {
+            SessionRequest::Go(RoomEntry::Watch(_)) => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
                 Some(SessionEvent::Entered { room: ROOM, member: None, code: None })
             }
-            Request::Code(_) => Some(SessionEvent::Refused("No room has this code.".to_owned())),
-            Request::Go(_) if self.room.is_full() => {
+            SessionRequest::Code(_) => {
+                Some(SessionEvent::Refused("No room has this code.".to_owned()))
+            }
+            SessionRequest::Go(_) if self.room.is_full() => {
                 Some(SessionEvent::Refused("The room is full.".to_owned()))
             }
-            Request::Go(_) => {
+            SessionRequest::Go(_) => {
                 self.leave(visitor);
                 let member = self.room.next_member();
                 let name = self.visitors[visitor].name.clone();
@@ -268,35 +270,35 @@ impl Hall {
                 (*own, *is_inside) = (Some(member), true);
                 Some(SessionEvent::Entered { room: ROOM, member: Some(member), code: None })
             }
-            Request::Command(command) => {
+            SessionRequest::Command(command) => {
                 if let Some(member) = self.visitors[visitor].member {
                     self.apply(member, command);
                 }
                 None
             }
-            Request::Leave => {
+            SessionRequest::Leave => {
                 self.leave(visitor);
                 None
             }
-            Request::Say(text) => {
+            SessionRequest::Say(text) => {
                 let from = self.visitors[visitor].name.clone();
                 Some(SessionEvent::Heard { from, text, is_private: false })
             }
-            Request::Tell { to, text } => Some(SessionEvent::Told { to, text }),
-            Request::Players => {
+            SessionRequest::Tell { to, text } => Some(SessionEvent::Told { to, text }),
+            SessionRequest::Players => {
                 let names = self.visitors.iter().map(|visitor| visitor.name.clone()).collect();
                 Some(SessionEvent::Players { names, moderates: true })
             }
-            Request::Report { .. } | Request::Moderate { .. } => {
+            SessionRequest::Report { .. } | SessionRequest::Moderate { .. } => {
                 Some(SessionEvent::Advice("It is done.".to_owned()))
             }
-            Request::Board { level, difficulty } => {
+            SessionRequest::Board { level, difficulty } => {
                 Some(SessionEvent::Board { level, difficulty, rows: [].into() })
             }
-            Request::Ghosts { level, difficulty } => {
+            SessionRequest::Ghosts { level, difficulty } => {
                 Some(SessionEvent::Ghosts { level, difficulty, ghosts: [].into() })
             }
-            Request::Save(settings) => {
+            SessionRequest::Save(settings) => {
                 assert!(settings.configuration.len() <= AccountSettings::MAX_BYTES);
                 assert!(settings.ignored.len() <= AccountSettings::MAX_IGNORED);
                 let read = Configuration::parse(&settings.configuration, "settings");
@@ -325,12 +327,12 @@ impl Hall {
 }
 
 /// A host with three visitors, and its operator.
-pub struct Desk {
+pub struct FuzzedHost {
     operator: Operator,
     _visitors: Vec<Presence>,
 }
 
-impl Default for Desk {
+impl Default for FuzzedHost {
     fn default() -> Self {
         let all = Visitors::default();
         let visitors = (0..3).zip(["Ada", "Bo", "字"]).map(|(number, name)| {
@@ -345,7 +347,7 @@ impl Default for Desk {
     }
 }
 
-impl Desk {
+impl FuzzedHost {
     /// The answer on a connection that delivers `bytes` and then ends.
     ///
     /// # Panics

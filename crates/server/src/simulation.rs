@@ -10,10 +10,10 @@
 mod client;
 #[path = "../../../tests/support/emulator.rs"]
 pub(crate) mod emulator;
+mod logs;
 #[path = "../../../tests/support/looks.rs"]
 mod looks;
 mod seeds;
-mod tapes;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,7 +23,7 @@ use tokio::time::{Instant, sleep};
 
 pub(crate) use self::client::{Conditions, SimulatedClient, guest};
 pub(crate) use self::emulator::Speaks;
-pub(crate) use self::tapes::{Tapes, replayed};
+pub(crate) use self::logs::{RoomLogs, replayed};
 use crate::accounts::{HostStore, UnixTime};
 use crate::config::{Config, LiveConfig};
 use crate::line::Line;
@@ -31,7 +31,7 @@ use crate::load::Worker;
 use crate::metrics::Metrics;
 use crate::rooms::directory::Rooms;
 use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
-use crate::rooms::summary::{RoomId, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest};
 use crate::sessions::driver::{Setup, Simulated};
 use crate::sessions::session::Session;
 use crate::ssh::Visitor;
@@ -69,11 +69,11 @@ pub(crate) struct Rig {
     pub(crate) live: LiveConfig,
     pub(crate) visitors: Visitors,
     pub(crate) clients: Vec<SimulatedClient>,
-    pub(crate) tapes: Tapes,
+    pub(crate) logs: RoomLogs,
 }
 
 /// Options of a simulated server.
-pub(crate) struct Wish {
+pub(crate) struct RigOptions {
     pub(crate) catalog: Catalog,
     /// The level of the standing room.
     pub(crate) level: &'static str,
@@ -99,7 +99,7 @@ pub(crate) fn catalog(map: &str) -> Catalog {
     catalog
 }
 
-impl Wish {
+impl RigOptions {
     /// The hall as both levels, and a standing room in one of them.
     pub(crate) fn new(mode: Mode) -> Self {
         let (store_time, worker) = (Duration::ZERO, Worker::default());
@@ -112,36 +112,36 @@ impl Wish {
 impl Rig {
     /// A host with a standing room in this mode.
     pub(crate) fn new(mode: Mode) -> Self {
-        Self::with(Wish::new(mode))
+        Self::with(RigOptions::new(mode))
     }
 
-    pub(crate) fn with(wish: Wish) -> Self {
+    pub(crate) fn with(options: RigOptions) -> Self {
         let runtime =
             Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
-        let (level, difficulty) = (wish.level.to_owned(), Difficulty::Normal);
-        let room = RoomWish { level, mode: wish.mode, difficulty };
+        let (level, difficulty) = (options.level.to_owned(), Difficulty::Normal);
+        let room = RoomRequest { level, mode: options.mode, difficulty };
         let config =
             Config { message: "Be kind.".to_owned(), standing: vec![room], ..Config::default() };
-        let (live, visitors, tapes) =
-            (LiveConfig::new(config), Visitors::default(), Tapes::default());
+        let (live, visitors, logs) =
+            (LiveConfig::new(config), Visitors::default(), RoomLogs::default());
         let setup = Setup {
             live: live.clone(),
             visitors: visitors.clone(),
-            time: wish.time,
-            catalog: wish.catalog,
-            recordings: tapes.recordings(),
+            time: options.time,
+            catalog: options.catalog,
+            recordings: logs.recordings(),
             store: HostStore::in_memory(),
-            store_time: wish.store_time,
-            worker: wish.worker,
-            seed: wish.seed,
+            store_time: options.store_time,
+            worker: options.worker,
+            seed: options.seed,
         };
         let host = runtime.block_on(async {
             let host = Simulated::new(setup);
             // The host prepares the day.
-            sleep(wish.store_time).await;
+            sleep(options.store_time).await;
             host
         });
-        Self { runtime, host, live, visitors, clients: Vec::new(), tapes }
+        Self { runtime, host, live, visitors, clients: Vec::new(), logs }
     }
 
     /// Connects a visitor with a monochrome terminal; returns their index.

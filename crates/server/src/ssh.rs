@@ -19,5 +19,5 @@ pub use inbound::{Arrival, Inbound};
 pub use outbox::Outbox;
 pub use server::Server;
 #[cfg(test)]
-pub(crate) use simulated::{FarEnd, Parts, pipe};
+pub(crate) use simulated::{ClientEnd, Parts, pipe};
 pub use visitor::{Departure, Host, Link, Visitor};

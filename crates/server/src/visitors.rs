@@ -96,13 +96,13 @@ struct Table {
     run: u16,
     next: u64,
     /// The entries, in order of arrival.
-    entries: BTreeMap<u64, Entry>,
+    entries: BTreeMap<u64, VisitorEntry>,
     mutes: Vec<Ban>,
     onlookers: watch::Sender<Arc<Onlookers>>,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct VisitorEntry {
     present: Present,
     /// The [keys](Name::keys) of the name. Computing them takes longer than looking through a thousand entries.
     keys: Vec<String>,
@@ -166,7 +166,7 @@ impl Visitors {
             let address = address.to_canonical();
             let present =
                 Present { session, name: None, address, key, room: None, watches: false, since };
-            let entry = Entry { present, keys: Vec::new(), inbox: inbox.clone() };
+            let entry = VisitorEntry { present, keys: Vec::new(), inbox: inbox.clone() };
             table.entries.insert(number, entry);
             number
         });
@@ -292,7 +292,7 @@ impl Table {
     }
 
     /// The entries with a name that has one of these keys.
-    fn named<'t>(&'t self, keys: &'t [String]) -> impl Iterator<Item = &'t Entry> {
+    fn named<'t>(&'t self, keys: &'t [String]) -> impl Iterator<Item = &'t VisitorEntry> {
         self.entries.values().filter(|entry| entry.keys.iter().any(|key| keys.contains(key)))
     }
 
@@ -345,7 +345,7 @@ impl Presence {
         }
     }
 
-    fn change(&self, act: impl FnOnce(&mut Entry)) {
+    fn change(&self, act: impl FnOnce(&mut VisitorEntry)) {
         locked(&self.visitors.0, |table| {
             if let Some(entry) = table.entries.get_mut(&self.number) {
                 act(entry);

@@ -258,7 +258,7 @@ pub trait Disk: fmt::Debug + Send {
 pub struct SystemFiles;
 
 /// The time between two attempts to lock a file.
-const PAUSE: Duration = Duration::from_millis(2);
+const RETRY_INTERVAL: Duration = Duration::from_millis(2);
 
 impl Disk for SystemFiles {
     fn create_folder(&self, folder: &Path) -> io::Result<()> {
@@ -297,7 +297,7 @@ impl Disk for SystemFiles {
         let file = private::open_to_write(file)?;
         for _ in 1..attempts {
             match file.try_lock() {
-                Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),
+                Err(TryLockError::WouldBlock) => thread::sleep(RETRY_INTERVAL),
                 other => return locked(file, other),
             }
         }

@@ -121,7 +121,7 @@ impl<'a> Surroundings<'a> {
 }
 
 /// The things that a player can notice in one step.
-pub(crate) struct Moment {
+pub(crate) struct Observation {
     camera: Camera,
     health: Health,
     hurt_from: Option<&'static str>,
@@ -132,13 +132,13 @@ pub(crate) struct Moment {
 }
 
 /// Something that happens in a step.
-pub(crate) struct Event {
+pub(crate) struct StepEvent {
     pub(crate) sentence: String,
     /// `true` if the player may want to do something else.
     pub(crate) threatens: bool,
 }
 
-impl Moment {
+impl Observation {
     pub(crate) fn of(game: &Game) -> Self {
         let surroundings = Surroundings::of(game);
         let camera = surroundings.camera;
@@ -159,9 +159,9 @@ impl Moment {
     }
 
     /// The events that led from `before` to this moment.
-    pub(crate) fn events_since(&self, before: &Self) -> Vec<Event> {
+    pub(crate) fn events_since(&self, before: &Self) -> Vec<StepEvent> {
         let mut events = Vec::new();
-        let mut add = |sentence: String, threatens| events.push(Event { sentence, threatens });
+        let mut add = |sentence: String, threatens| events.push(StepEvent { sentence, threatens });
         let Health { points, most } = self.health;
         if points < before.health.points {
             let from = self.hurt_from.map_or_else(String::new, |way| format!(" from {way}"));

@@ -12,7 +12,7 @@ use glam::DVec2;
 
 use super::{Axis, Order};
 use crate::cast::ray::meeting;
-use crate::cast::{ExactOrder, Passage, Ray, Side};
+use crate::cast::{ExactOrder, Intersection, Ray, Side};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
 /// The place of all rays from one origin that have crossed the same lines, reflections included.
@@ -85,8 +85,8 @@ impl RayWalk {
     }
 
     /// The intersection of the ray with the object in `cell`, where the ray is now.
-    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
-        Passage::of_tile(&self.course.on_map(&self.ray), world, cell, kind)
+    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Intersection {
+        Intersection::of_tile(&self.course.on_map(&self.ray), world, cell, kind)
     }
 }
 

@@ -16,7 +16,7 @@ use crate::tui::{CellAspect, rgb_of};
 
 /// The format of a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
+pub(crate) enum SnapshotFormat {
     #[default]
     Text,
     Ansi,
@@ -33,7 +33,7 @@ pub(crate) trait Writer {
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-impl Format {
+impl SnapshotFormat {
     /// A writer for a picture of `size` whose cells have this shape.
     pub(crate) fn writer(
         self,
@@ -48,7 +48,7 @@ impl Format {
             Self::Grid => {
                 let area = Rect::new(0, 0, size.width, size.height);
                 let cells = Buffer { area, content: Vec::new() };
-                Box::new(Grid { output: BufWriter::new(output), cells })
+                Box::new(TextGrid { output: BufWriter::new(output), cells })
             }
             // PNG has its own buffer, and would not report an error from a second buffer behind it.
             Self::Png => Box::new(Png::new(output, size, aspect)?),
@@ -176,12 +176,12 @@ impl<W: Write + 'static> Writer for Png<W> {
 }
 
 /// Collects cells, and writes the text of their grid at the end.
-struct Grid<W> {
+struct TextGrid<W> {
     output: W,
     cells: Buffer,
 }
 
-impl<W: Write> Writer for Grid<W> {
+impl<W: Write> Writer for TextGrid<W> {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
         self.cells.content.extend_from_slice(cells);
         Ok(())

@@ -1,13 +1,13 @@
 //! The behaviour of a guard in a step: duty, wondering, searching, tracking, chasing and attacking.
 //!
-//! An attack consists of a warning, the blow and a rest. In the last [`LOCKED`] steps of the
+//! An attack consists of a warning, the blow and a rest. In the last [`LOCKED_STEPS`] steps of the
 //! warning, the guard no longer turns, so a player who leaves the line is not hit.
 
 use glam::DVec2;
 
-use super::context::{Act, Context, PerceivedPlayer};
+use super::context::{Context, GuardEffect, PerceivedPlayer};
 use super::guard::{
-    AttackPhase, GUESSES, Guard, GuardActivity, KnownPlayer, MAX_PACES, PACE, WONDERS,
+    AttackPhase, GUESS_STEPS, Guard, GuardActivity, KnownPlayer, MAX_PACES, PACE, WONDERING,
 };
 use super::perception::NOSE;
 use super::walking::WalkProgress;
@@ -15,34 +15,34 @@ use crate::game::sound::{Sound, SoundKind};
 use crate::world::{Cell, Duty, GuardKind};
 
 /// The number of steps for which a guard stops at a waypoint.
-const STOP: u16 = 80;
+const STOP_STEPS: u16 = 80;
 /// The greatest distance of searched cells from the centre of the search, in cells along each axis.
-const SEARCHED: i32 = 4;
+const SEARCH_RADIUS: i32 = 4;
 /// The distance at which guards see fallen guards, in cells.
 const SEES_FALLEN: f64 = 8.0;
 /// The number of steps after which a hound gives up at the end of a trail.
-const LOST: u16 = 150;
+const LOST_TRAIL_STEPS: u16 = 150;
 /// The number of steps after which a guard who cannot reach a player gives up.
-const BAFFLED: u16 = 300;
+const BAFFLED_STEPS: u16 = 300;
 /// The number of steps after which a guard who no longer sees a player begins to search.
-const FORGOTTEN: u16 = 600;
+const FORGET_STEPS: u16 = 600;
 /// The number of steps for which a guard who has given up on an unreachable player ignores players
 /// by sight and smell.
-const OVERLOOKS: u16 = 240;
+const IGNORE_STEPS: u16 = 240;
 /// The minimum and maximum distance that guards who do not strike keep from the player, in cells.
-const KEEPS: (f64, f64) = (4.0, 9.0);
+const KEPT_DISTANCES: (f64, f64) = (4.0, 9.0);
 /// A lantern-bearer strikes if at most this many guards are up, including themselves.
-const FEW: usize = 3;
+const MAX_FEW: usize = 3;
 /// The number of steps before a blow in which the guard does not turn.
-const LOCKED: u16 = 12;
+const LOCKED_STEPS: u16 = 12;
 /// The duration of a blow in steps.
-const STRIKE: u16 = 10;
+const BLOW_STEPS: u16 = 10;
 /// An archer who has not seen the player for this many steps lowers the bow.
-const UNSEEN: u16 = 24;
+const UNSEEN_STEPS: u16 = 24;
 /// The cosine of the largest angle at which a blow hits.
-const WIDTH: f64 = 0.5;
+const BLOW_COSINE: f64 = 0.5;
 /// The radius of a player, in cells.
-const PLAYER: f64 = 0.25;
+const PLAYER_RADIUS: f64 = 0.25;
 
 impl Guard {
     /// Advances the guard by the steps of `context`.
@@ -91,19 +91,19 @@ impl Guard {
     fn move_body(&mut self, context: &mut Context) {
         let steps = context.stride;
         let is_alarmed = self.state.is_alarmed();
-        let wanted = if self.stagger > 0 { self.mover.body.velocity } else { self.wanted };
+        let wanted = if self.stagger > 0 { self.motion.body.velocity } else { self.wanted };
         let is_walking = wanted.length_squared() > 0.01;
         let look = self.look.or(is_walking.then_some(wanted)).filter(|_| self.stagger == 0);
         if let Some(look) = look {
             let degrees = if is_alarmed { 6.0 } else { 4.0 };
-            self.mover.turn(look, degrees * f64::from(steps));
+            self.motion.turn(look, degrees * f64::from(steps));
         }
-        let before = self.mover.position();
+        let before = self.motion.position();
         let wanted = self.slowed_by_turning(wanted);
-        self.mover.walk(&context.ground(self.gait()), wanted, steps);
-        let paces = self.paces + before.distance(self.mover.position()) / PACE;
+        self.motion.walk(&context.ground(self.gait()), wanted, steps);
+        let paces = self.paces + before.distance(self.motion.position()) / PACE;
         if paces.floor() > self.paces.floor() && self.stagger == 0 {
-            context.sound(SoundKind::Walking, self.mover.cell(), self.abilities().tread);
+            context.sound(SoundKind::Walking, self.motion.cell(), self.abilities().tread);
         }
         self.paces = paces % MAX_PACES;
     }
@@ -114,7 +114,7 @@ impl Guard {
         if self.look.is_some() || self.stagger > 0 || wanted == DVec2::ZERO {
             return wanted;
         }
-        let along = self.mover.facing.dot(wanted) / wanted.length();
+        let along = self.motion.facing.dot(wanted) / wanted.length();
         wanted * ((along + 0.25) / 1.0).clamp(0.0, 1.0)
     }
 }
@@ -172,7 +172,7 @@ impl Guard {
             WalkProgress::OnTheWay => {}
             WalkProgress::There => {
                 self.stop = (self.stop + 1) % count;
-                self.pause_a_while(STOP, STOP);
+                self.pause_a_while(STOP_STEPS, STOP_STEPS);
             }
             WalkProgress::Impossible => {
                 self.stop = (self.stop + 1) % count;
@@ -214,13 +214,13 @@ impl Guard {
     /// heading, elsewhere to the guard's own heading.
     fn look_aside(&mut self) {
         let is_at_post =
-            matches!(self.duty, Duty::Stand | Duty::Sleep) && self.mover.cell() == self.post;
+            matches!(self.duty, Duty::Stand | Duty::Sleep) && self.motion.cell() == self.post;
         if is_at_post {
             self.look = Some(self.post_heading.turned(self.glance).direction());
         } else if self.glance != 0.0 && self.pause > 30 {
             // The turn consumes the glance.
             let part = self.glance.clamp(-0.03, 0.03);
-            self.look = Some(self.mover.heading.turned(part).direction());
+            self.look = Some(self.motion.heading.turned(part).direction());
             self.glance -= part;
         }
     }
@@ -232,11 +232,11 @@ impl Guard {
         let GuardActivity::Wondering { about, looks, goes, hurries, wakes } = self.state else {
             return;
         };
-        let way = about - self.mover.position();
+        let way = about - self.motion.position();
         if looks > 0 {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
             let looks = looks.saturating_sub(context.stride);
-            let goes = goes || self.awareness >= WONDERS;
+            let goes = goes || self.awareness >= WONDERING;
             self.state = GuardActivity::Wondering { about, looks, goes, hurries, wakes };
             if looks == 0 && !goes {
                 self.give_up(context);
@@ -274,7 +274,7 @@ impl Guard {
         } else if self.pause > 0 {
             self.pause = self.pause.saturating_sub(context.stride);
             let turn = if self.glance < 0.0 { -0.035 } else { 0.035 };
-            self.look = Some(self.mover.heading.turned(turn).direction());
+            self.look = Some(self.motion.heading.turned(turn).direction());
         } else if let Some(cell) = next {
             let speed = self.abilities().walk * 1.3;
             let progress = self.go_to(context, cell, speed);
@@ -284,7 +284,7 @@ impl Guard {
                 self.pause_a_while(pause, pause + 20);
             }
         } else {
-            let next = self.random_cell(context, around, SEARCHED);
+            let next = self.random_cell(context, around, SEARCH_RADIUS);
             self.state = GuardActivity::Searching { around, next, left };
         }
     }
@@ -297,7 +297,7 @@ impl Guard {
         let Some(cell) = trail.cell(mark) else { return self.stop_tracking(lost, context.stride) };
         let newer = trail.cell(mark + 1).is_some();
         let speed = self.abilities().walk * 1.4;
-        let is_near = self.mover.position().distance_squared(cell.center()) < 0.5;
+        let is_near = self.motion.position().distance_squared(cell.center()) < 0.5;
         if is_near && newer {
             self.state = GuardActivity::Tracking { target, mark: mark + 1, lost: 0 };
             return;
@@ -322,10 +322,10 @@ impl Guard {
         let lost = lost.saturating_add(stride);
         self.state = GuardActivity::Tracking { target, mark, lost };
         let side = if (lost / 20).is_multiple_of(2) { 0.05 } else { -0.05 };
-        self.look = Some(self.mover.heading.turned(side).direction());
-        if lost > LOST {
+        self.look = Some(self.motion.heading.turned(side).direction());
+        if lost > LOST_TRAIL_STEPS {
             self.blind = 120;
-            self.begin_to_search(self.mover.cell(), 360);
+            self.begin_to_search(self.motion.cell(), 360);
         }
     }
 
@@ -339,19 +339,19 @@ impl Guard {
             _ => true,
         };
         let Some(sight) = self.abilities().sight.filter(|_| !is_busy) else { return };
-        let position = self.mover.position();
+        let position = self.motion.position();
         let fallen = context.others.iter().position(|other| {
             let way = other.position - position;
             let distance = way.length();
             other.is_down
                 && distance < SEES_FALLEN
-                && self.mover.facing.dot(way) >= sight.least_cosine * distance
+                && self.motion.facing.dot(way) >= sight.least_cosine * distance
                 && self.sees(context, other.position, other.feet + 0.2)
         });
         if let Some(index) = fallen {
             let about = context.others[index].position;
-            context.sound(SoundKind::Wonder, self.mover.cell(), 7);
-            self.awareness = self.awareness.max(WONDERS);
+            context.sound(SoundKind::Wonder, self.motion.cell(), 7);
+            self.awareness = self.awareness.max(WONDERING);
             self.state = GuardActivity::Wondering {
                 about,
                 looks: 20,
@@ -368,15 +368,15 @@ impl Guard {
     pub(crate) fn chase(&mut self, context: &mut Context, fright: u16) {
         let quarry = self.quarry.filter(|quarry| context.target(quarry.target).is_some());
         let Some(quarry) = quarry else { return self.give_up(context) };
-        let way = quarry.position - self.mover.position();
+        let way = quarry.position - self.motion.position();
         if fright > 0 {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
             self.state = GuardActivity::Chasing { fright: fright.saturating_sub(context.stride) };
         } else if self.can_strike(context, quarry, way) {
             self.begin_to_strike(context);
-        } else if quarry.unseen > FORGOTTEN {
+        } else if quarry.unseen > FORGET_STEPS {
             self.lose_track(context, quarry);
-        } else if self.keeps_away(context) && quarry.unseen <= GUESSES {
+        } else if self.keeps_away(context) && quarry.unseen <= GUESS_STEPS {
             self.keep_distance(context, quarry, way);
         } else {
             self.close_in(context, quarry);
@@ -388,37 +388,37 @@ impl Guard {
         let Some(cell) = Cell::containing(quarry.position) else { return self.give_up(context) };
         let speed = self.abilities().chase;
         let progress = self.go(context, cell, quarry.position, speed);
-        let is_seen = quarry.unseen <= GUESSES;
+        let is_seen = quarry.unseen <= GUESS_STEPS;
         match progress {
             WalkProgress::OnTheWay => {
                 self.baffled = self.baffled.saturating_sub(context.stride);
             }
             WalkProgress::There if is_seen => {
-                self.look = Some(quarry.position - self.mover.position());
+                self.look = Some(quarry.position - self.motion.position());
             }
             WalkProgress::There => self.lose_track(context, quarry),
             WalkProgress::Impossible if !is_seen => self.lose_track(context, quarry),
             WalkProgress::Impossible => {
                 self.baffled += context.stride;
-                let way = quarry.position - self.mover.position();
+                let way = quarry.position - self.motion.position();
                 self.look = Some(way).filter(|way| *way != DVec2::ZERO);
                 if way.length() > 1.0 {
                     self.walk_to(context, quarry.position, speed);
                 }
             }
         }
-        if self.baffled > BAFFLED {
-            self.blind = OVERLOOKS;
+        if self.baffled > BAFFLED_STEPS {
+            self.blind = IGNORE_STEPS;
             self.lose_track(context, quarry);
         }
     }
 
     /// Searches for a player who is no longer there.
     fn lose_track(&mut self, context: &mut Context, quarry: KnownPlayer) {
-        self.awareness = WONDERS;
+        self.awareness = WONDERING;
         self.baffled = 0;
         let trail = context.trails.get(quarry.target).filter(|_| self.kind == GuardKind::Hound);
-        let position = self.mover.position();
+        let position = self.motion.position();
         let is_near = |place: DVec2| place.distance(position) <= NOSE;
         let mark = trail.and_then(|trail| trail.newest(|cell| is_near(cell.center())));
         if let Some(mark) = mark.filter(|_| self.blind == 0) {
@@ -439,13 +439,13 @@ impl Guard {
     }
 
     fn strikes_at_all(&self, context: &Context) -> bool {
-        self.kind != GuardKind::Lantern || context.count_up() <= FEW
+        self.kind != GuardKind::Lantern || context.count_up() <= MAX_FEW
     }
 
     fn keep_distance(&mut self, context: &mut Context, quarry: KnownPlayer, way: DVec2) {
         let distance = way.length();
         let speed = self.abilities().chase;
-        let (near, far) = KEEPS;
+        let (near, far) = KEPT_DISTANCES;
         if distance > far || quarry.unseen > 8 {
             self.close_in(context, quarry);
         } else {
@@ -455,14 +455,14 @@ impl Guard {
             self.look = Some(way).filter(|way| *way != DVec2::ZERO);
         }
         if self.kind == GuardKind::Lantern && context.now.is_multiple_of(600) {
-            context.sound(SoundKind::Bell, self.mover.cell(), Sound::FARTHEST);
+            context.sound(SoundKind::Bell, self.motion.cell(), Sound::FARTHEST);
         }
     }
 
     /// Walks along `direction`, or aside if something is in the way.
     fn walk_back(&mut self, context: &mut Context, direction: DVec2, speed: f64) {
         const SLANT: DVec2 = DVec2::new(0.5, 0.866);
-        let position = self.mover.position();
+        let position = self.motion.position();
         let ground = context.ground(self.gait());
         let slants = [DVec2::X, SLANT, DVec2::new(SLANT.x, -SLANT.y), DVec2::Y, -DVec2::Y];
         let ways = slants.map(|slant| direction.rotate(slant));
@@ -479,8 +479,8 @@ impl Guard {
         let reach = if self.kind == GuardKind::Hound { 1.9 } else { reach * 0.95 };
         let is_near = way.length_squared() <= reach * reach;
         let is_known = quarry.unseen <= 8;
-        let is_ahead = self.mover.facing.dot(way) >= 0.7 * way.length();
-        let is_level = target.feet < self.head() + 0.3 && self.mover.feet < target.head + 0.3;
+        let is_ahead = self.motion.facing.dot(way) >= 0.7 * way.length();
+        let is_level = target.feet < self.head() + 0.3 && self.motion.feet < target.head + 0.3;
         self.rest == 0
             && is_near
             && is_known
@@ -492,7 +492,7 @@ impl Guard {
 
     fn begin_to_strike(&mut self, context: &mut Context) {
         let kind = if self.kind == GuardKind::Archer { SoundKind::Draw } else { SoundKind::Windup };
-        context.sound(kind, self.mover.cell(), 10);
+        context.sound(kind, self.motion.cell(), 10);
         let left = self.abilities().windup;
         self.state = GuardActivity::Attacking { phase: AttackPhase::Windup, left };
     }
@@ -518,8 +518,8 @@ impl Guard {
 
     fn wind_up(&mut self, context: &mut Context, target: &PerceivedPlayer, left: u16) {
         let is_archer = self.kind == GuardKind::Archer;
-        let is_lost = self.quarry.is_some_and(|quarry| quarry.unseen > UNSEEN);
-        if is_archer && is_lost && left > LOCKED {
+        let is_lost = self.quarry.is_some_and(|quarry| quarry.unseen > UNSEEN_STEPS);
+        if is_archer && is_lost && left > LOCKED_STEPS {
             self.state = GuardActivity::Chasing { fright: 0 };
             return;
         }
@@ -528,9 +528,9 @@ impl Guard {
             Some(quarry) if self.kind == GuardKind::Listener => quarry.position,
             _ => target.position,
         };
-        let way = place - self.mover.position();
-        self.look = Some(self.mover.facing);
-        if left > LOCKED && way != DVec2::ZERO {
+        let way = place - self.motion.position();
+        self.look = Some(self.motion.facing);
+        if left > LOCKED_STEPS && way != DVec2::ZERO {
             self.look = Some(way);
         }
         if self.abilities().windup_speed > 0.0 && way.length() > self.abilities().reach * 0.8 {
@@ -541,12 +541,12 @@ impl Guard {
         }
         self.state = GuardActivity::Attacking {
             phase: AttackPhase::Strike { has_hit: false },
-            left: STRIKE,
+            left: BLOW_STEPS,
         };
         if is_archer {
             self.shoot(context, target);
         } else {
-            context.sound(SoundKind::Swing, self.mover.cell(), 6);
+            context.sound(SoundKind::Swing, self.motion.cell(), 6);
         }
     }
 
@@ -559,12 +559,12 @@ impl Guard {
     ) {
         let is_archer = self.kind == GuardKind::Archer;
         let has_hit = has_hit || !is_archer && self.hits(context, target);
-        self.look = Some(self.mover.facing);
+        self.look = Some(self.motion.facing);
         if !has_hit && self.abilities().lunge > 0.0 {
-            let ahead = self.mover.position() + self.mover.facing;
-            if context.ground(self.gait()).is_straight(self.mover.position(), ahead) {
-                self.wanted = self.mover.facing * self.abilities().lunge;
-                self.mover.body.velocity = self.wanted;
+            let ahead = self.motion.position() + self.motion.facing;
+            if context.ground(self.gait()).is_straight(self.motion.position(), ahead) {
+                self.wanted = self.motion.facing * self.abilities().lunge;
+                self.motion.body.velocity = self.wanted;
             }
         }
         self.state = GuardActivity::Attacking { phase: AttackPhase::Strike { has_hit }, left };
@@ -578,29 +578,29 @@ impl Guard {
 
     /// Hits the player if they are within reach. Returns whether the blow hit.
     fn hits(&self, context: &mut Context, target: &PerceivedPlayer) -> bool {
-        let way = target.position - self.mover.position();
+        let way = target.position - self.motion.position();
         let distance = way.length();
-        let is_level = target.feet < self.head() + 0.3 && self.mover.feet < target.head + 0.3;
-        let is_hit = distance <= self.abilities().reach + PLAYER
-            && self.mover.facing.dot(way) >= WIDTH * distance
+        let is_level = target.feet < self.head() + 0.3 && self.motion.feet < target.head + 0.3;
+        let is_hit = distance <= self.abilities().reach + PLAYER_RADIUS
+            && self.motion.facing.dot(way) >= BLOW_COSINE * distance
             && is_level
             && self.has_line_to(context, target);
         if let Some(quarry) = self.quarry.filter(|_| is_hit) {
-            let (by, from) = (context.index, self.mover.position());
+            let (by, from) = (context.index, self.motion.position());
             let points = self.abilities().points;
-            context.acts.push(Act::Hurt { target: quarry.target, by, from, points });
+            context.effects.push(GuardEffect::Hurt { target: quarry.target, by, from, points });
         }
         is_hit
     }
 
     fn shoot(&self, context: &mut Context, target: &PerceivedPlayer) {
-        let from = self.mover.position();
-        let height = self.mover.feet + self.abilities().eye;
+        let from = self.motion.position();
+        let height = self.motion.feet + self.abilities().eye;
         let distance = from.distance(target.position);
         let slope = (target.middle() - height) / distance.max(0.5);
         let (by, points) = (context.index, self.abilities().points);
-        let direction = self.mover.facing;
-        context.acts.push(Act::Bolt { by, from, height, direction, slope, points });
-        context.sound(SoundKind::Shot, self.mover.cell(), 8);
+        let direction = self.motion.facing;
+        context.effects.push(GuardEffect::Bolt { by, from, height, direction, slope, points });
+        context.sound(SoundKind::Shot, self.motion.cell(), 8);
     }
 }

@@ -27,7 +27,7 @@ pub(crate) struct Context<'a> {
     pub(crate) index: usize,
     /// The number of steps taken at once.
     pub(crate) stride: u16,
-    pub(crate) acts: &'a mut Vec<Act>,
+    pub(crate) effects: &'a mut Vec<GuardEffect>,
     /// The indices of the guards that are woken.
     pub(crate) woken: &'a mut Vec<usize>,
 }
@@ -71,7 +71,7 @@ impl PerceivedPlayer {
 
 /// An effect of a guard on the rest of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Act {
+pub(crate) enum GuardEffect {
     /// Hits the player with index `target`. The blow comes from the position `from`.
     Hurt { target: usize, by: usize, from: DVec2, points: u8 },
     /// Opens the door in a cell. A guard who waits at a door emits this in every step.
@@ -97,7 +97,7 @@ impl Context<'_> {
     /// Makes a sound.
     pub(crate) fn sound(&mut self, kind: SoundKind, cell: Cell, reach: u8) {
         let by = Source::Guard(self.index);
-        self.acts.push(Act::Sound(Sound { kind, cell, reach, by }));
+        self.effects.push(GuardEffect::Sound(Sound { kind, cell, reach, by }));
     }
 
     /// The number of guards who are not down.

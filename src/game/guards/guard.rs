@@ -5,40 +5,40 @@ use serde::{Deserialize, Serialize};
 
 use super::context::{Context, PerceivedGuard, PerceivedPlayer};
 use super::kind::{Abilities, abilities};
-use super::movement::Mover;
+use super::movement::GuardMotion;
 use super::ways::Gait;
 use crate::game::sight::{Point, is_in_sight};
 use crate::game::sound::{Sound, SoundKind};
-use crate::game::stored::{OfLevel, Unrestorable, check, check_on_map};
+use crate::game::stored::{OfLevel, RestoreError, check, check_on_map};
 use crate::generate::WindowShift;
 use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading, World};
 
 /// The awareness at which a guard wonders, and the awareness at which they are alarmed.
-pub(crate) const WONDERS: u16 = 300;
+pub(crate) const WONDERING: u16 = 300;
 pub(crate) const ALARMED: u16 = 1000;
 
 /// For this many steps, a guard still knows the position of a player who has left their sight.
-pub(crate) const GUESSES: u16 = 45;
+pub(crate) const GUESS_STEPS: u16 = 45;
 /// The number of steps for which a guard stands and shouts before they run.
-const FRIGHT: u16 = 24;
+const FRIGHT_STEPS: u16 = 24;
 /// The number of steps for which a lantern-bearer rings the bell before they run.
-const RINGING: u16 = 60;
+const RINGING_STEPS: u16 = 60;
 /// The number of steps for which a guard looks towards a noise before they go there.
-const LOOKS: u16 = 45;
+const LOOK_STEPS: u16 = 45;
 /// The angle of a glance to the side, in radians.
 const GLANCE: f64 = 0.9;
 
 /// The length of a pace, in cells. Each pace changes the sprite's frame and makes a sound.
 pub(crate) const PACE: f64 = 0.55;
 /// The number of steps for which a guard staggers after a push.
-const STAGGER: u16 = 30;
+const STAGGER_STEPS: u16 = 30;
 /// A guard who has not moved for this many steps is stuck.
-pub(crate) const STUCK: u16 = 40;
+pub(crate) const STUCK_STEPS: u16 = 40;
 /// The speed of a pushed guard, in cells per second.
 const PUSH: f64 = 4.0;
 /// An upper bound on the number of steps for which a guard is baffled.
-const MAX_BAFFLED: u16 = 1000;
+const MAX_BAFFLED_STEPS: u16 = 1000;
 /// The number of paces after which the count restarts at 0.
 pub(crate) const MAX_PACES: f64 = 1024.0;
 
@@ -51,7 +51,7 @@ pub(crate) struct Guard {
     pub(crate) post_heading: Heading,
     #[serde(skip)]
     pub(crate) duty: Duty,
-    pub(crate) mover: Mover,
+    pub(crate) motion: GuardMotion,
     pub(crate) state: GuardActivity,
     /// From 0 to [`ALARMED`].
     pub(crate) awareness: u16,
@@ -241,7 +241,7 @@ impl Guard {
             post: post.cell,
             post_heading: post.heading,
             duty: post.duty.clone(),
-            mover: Mover::new(world, post.cell, post.heading),
+            motion: GuardMotion::new(world, post.cell, post.heading),
             state: if is_asleep { GuardActivity::Asleep } else { GuardActivity::OnDuty },
             awareness: 0,
             quarry: None,
@@ -266,13 +266,13 @@ impl Guard {
     /// Lays the guard on the floor.
     pub(crate) fn stun(&mut self, steps: u16) {
         self.state = GuardActivity::Down { left: steps.max(1) };
-        self.mover.body.velocity = DVec2::ZERO;
+        self.motion.body.velocity = DVec2::ZERO;
         (self.awareness, self.quarry, self.stagger) = (0, None, 0);
     }
 
     /// Makes a guard who lies on the floor stand up and look around.
     pub(crate) fn get_up(&mut self) {
-        self.state = GuardActivity::Searching { around: self.mover.cell(), next: None, left: 600 };
+        self.state = GuardActivity::Searching { around: self.motion.cell(), next: None, left: 600 };
         self.pause = 60;
     }
 
@@ -281,12 +281,12 @@ impl Guard {
         if self.state.is_down() {
             return;
         }
-        self.stagger = STAGGER;
-        self.mover.body.velocity = direction * PUSH;
+        self.stagger = STAGGER_STEPS;
+        self.motion.body.velocity = direction * PUSH;
         match self.state {
             GuardActivity::Attacking { .. } => self.state = GuardActivity::Chasing { fright: 0 },
             GuardActivity::Asleep => {
-                let about = self.mover.position() - direction;
+                let about = self.motion.position() - direction;
                 self.state = GuardActivity::Wondering {
                     about,
                     looks: 30,
@@ -301,9 +301,9 @@ impl Guard {
 
     /// Makes a sound and looks towards `about`. If `goes` is true, the guard then walks there.
     pub(crate) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
-        let looks = if self.state == GuardActivity::Asleep { LOOKS * 2 } else { LOOKS };
+        let looks = if self.state == GuardActivity::Asleep { LOOK_STEPS * 2 } else { LOOK_STEPS };
         self.state = GuardActivity::Wondering { about, looks, goes, hurries: false, wakes: None };
-        context.sound(SoundKind::Wonder, self.mover.cell(), 7);
+        context.sound(SoundKind::Wonder, self.motion.cell(), 7);
     }
 
     pub(crate) fn begin_to_search(&mut self, around: Cell, left: u16) {
@@ -313,7 +313,7 @@ impl Guard {
 
     /// Returns to duty, with a sound.
     pub(crate) fn give_up(&mut self, context: &mut Context) {
-        context.sound(SoundKind::GiveUp, self.mover.cell(), 7);
+        context.sound(SoundKind::GiveUp, self.motion.cell(), 7);
         self.state = GuardActivity::Returning;
         (self.awareness, self.quarry, self.errand) = (0, None, None);
     }
@@ -325,12 +325,14 @@ impl Guard {
             GuardKind::Hound => (SoundKind::Bark, 10),
             _ => (SoundKind::Shout, 12),
         };
-        context.sound(kind, self.mover.cell(), reach);
+        context.sound(kind, self.motion.cell(), reach);
         self.awareness = ALARMED;
         self.baffled = 0;
         self.is_wary |= context.rules.difficulty == Difficulty::Hard;
         let is_ringing = self.kind == GuardKind::Lantern;
-        self.state = GuardActivity::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
+        self.state = GuardActivity::Chasing {
+            fright: if is_ringing { RINGING_STEPS } else { FRIGHT_STEPS },
+        };
     }
 
     /// Stands still for a random number of steps between `least` and `most`, and looks to a random
@@ -354,13 +356,13 @@ impl Guard {
 
     /// The height of the top of the head.
     pub(crate) fn head(&self) -> f64 {
-        self.mover.feet + self.kind.height()
+        self.motion.feet + self.kind.height()
     }
 
     /// The middle of the body.
     pub(crate) fn middle(&self) -> Point {
-        let height = self.mover.feet + self.kind.height() / 2.0;
-        Point { position: self.mover.position(), height }
+        let height = self.motion.feet + self.kind.height() / 2.0;
+        Point { position: self.motion.position(), height }
     }
 
     /// Whether this guard has a clear line of sight to the middle of a player, in any direction and
@@ -386,8 +388,8 @@ impl Guard {
     }
 
     pub(crate) fn eye(&self) -> Point {
-        let height = self.mover.feet + self.abilities().eye;
-        Point { position: self.mover.position(), height }
+        let height = self.motion.feet + self.abilities().eye;
+        Point { position: self.motion.position(), height }
     }
 
     /// Returns true if the guard does nothing until something wakes them.
@@ -398,9 +400,9 @@ impl Guard {
     pub(crate) fn view(&self) -> GuardView {
         GuardView {
             kind: self.kind,
-            position: self.mover.position(),
-            feet: self.mover.feet,
-            heading: self.mover.heading,
+            position: self.motion.position(),
+            feet: self.motion.feet,
+            heading: self.motion.heading,
             mood: self.state.mood(),
             is_down: self.state.is_down(),
             awareness: self.awareness,
@@ -409,12 +411,12 @@ impl Guard {
 
     pub(crate) fn as_other(&self) -> PerceivedGuard {
         let is_down = self.state.is_down();
-        PerceivedGuard { position: self.mover.position(), feet: self.mover.feet, is_down }
+        PerceivedGuard { position: self.motion.position(), feet: self.motion.feet, is_down }
     }
 
     /// The frame of the sprite.
     pub(crate) fn frame(&self) -> u8 {
-        let is_walking = self.mover.body.velocity.length_squared() > 0.04;
+        let is_walking = self.motion.body.velocity.length_squared() > 0.04;
         match self.state {
             GuardActivity::Down { .. } => 6,
             GuardActivity::Asleep => 7,
@@ -428,8 +430,8 @@ impl Guard {
     }
 
     /// Returns an error if a step of `count` guards could fail in this state.
-    pub(crate) fn check(&self, world: &World, count: usize) -> Result<(), Unrestorable> {
-        check_on_map(world, self.mover.position())?;
+    pub(crate) fn check(&self, world: &World, count: usize) -> Result<(), RestoreError> {
+        check_on_map(world, self.motion.position())?;
         if let Some(quarry) = self.quarry {
             check_on_map(world, quarry.position)?;
         }
@@ -444,8 +446,8 @@ impl Guard {
         check(wakes_nobody_else, "whom a guard wakes")?;
         let counts = self.awareness <= ALARMED
             && self.stop < stops.max(1)
-            && self.baffled <= MAX_BAFFLED
-            && self.route.still <= STUCK
+            && self.baffled <= MAX_BAFFLED_STEPS
+            && self.route.still <= STUCK_STEPS
             && (0.0..MAX_PACES).contains(&self.paces)
             && self.state != (GuardActivity::Down { left: 0 });
         check(counts, "a count of a guard")
@@ -454,10 +456,10 @@ impl Guard {
     /// Moves the guard with the window of a generated level. Returns `false` if the guard is
     /// outside it now. A remembered cell outside the window becomes the guard's own cell.
     pub(crate) fn shift(&mut self, shift: WindowShift) -> bool {
-        let Some(here) = shift.cell(self.mover.cell()) else { return false };
+        let Some(here) = shift.cell(self.motion.cell()) else { return false };
         let cell = |cell: Cell| shift.cell(cell).unwrap_or(here);
         let place = |place: DVec2| shift.position(place);
-        self.mover.body.position = place(self.mover.position());
+        self.motion.body.position = place(self.motion.position());
         self.post = cell(self.post);
         if let Duty::Patrol(stops) = &mut self.duty {
             for stop in stops {
@@ -489,12 +491,12 @@ impl Guard {
 }
 
 impl OfLevel for Guard {
-    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+    fn of_level(self, start: Self) -> Result<Self, RestoreError> {
         let Self { kind, post, post_heading, duty, .. } = start;
         if self.kind != kind {
-            return Err(Unrestorable::OtherLevel);
+            return Err(RestoreError::OtherLevel);
         }
-        Ok(Self { post, post_heading, duty, mover: self.mover.facing_ahead(), ..self })
+        Ok(Self { post, post_heading, duty, motion: self.motion.facing_ahead(), ..self })
     }
 }
 

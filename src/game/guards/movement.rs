@@ -25,7 +25,7 @@ const ACCELERATION: f64 = 0.6;
 
 /// The position and the motion of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Mover {
+pub(crate) struct GuardMotion {
     pub(crate) body: MovingBody,
     /// The height of the feet, in cells.
     pub(crate) feet: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Mover {
     pub(crate) facing: DVec2,
 }
 
-impl Mover {
+impl GuardMotion {
     pub(crate) fn new(world: &World, cell: Cell, heading: Heading) -> Self {
         Self {
             body: MovingBody { position: cell.center(), velocity: DVec2::ZERO },
@@ -48,7 +48,7 @@ impl Mover {
         }
     }
 
-    /// The same mover, with `facing` computed from the heading.
+    /// The same motion, with `facing` computed from the heading.
     pub(crate) fn facing_ahead(self) -> Self {
         Self { facing: self.heading.direction(), ..self }
     }
@@ -109,7 +109,7 @@ impl Mover {
     /// if they have no room after the lift either.
     pub(crate) fn after_floor(&self, ground: &GuardWorld, carries: bool) -> Option<Self> {
         let ridden = if carries { self.ridden(ground) } else { None };
-        let has_room = |mover: &Self| ground.has_room_for(mover);
+        let has_room = |motion: &Self| ground.has_room_for(motion);
         ridden.filter(has_room).or_else(|| Some(*self).filter(has_room)).or_else(|| {
             let place = WorldObstacles { step: STEP_HEIGHT, ..ground.place(self) };
             let feet = place.lifted(self.body.position, RADIUS)?;
@@ -152,8 +152,8 @@ pub(crate) struct GuardWorld<'a> {
 }
 
 impl GuardWorld<'_> {
-    fn place(&self, mover: &Mover) -> WorldObstacles<'_> {
-        let stature = Stature { feet: mover.feet, height: self.gait.height };
+    fn place(&self, motion: &GuardMotion) -> WorldObstacles<'_> {
+        let stature = Stature { feet: motion.feet, height: self.gait.height };
         WorldObstacles {
             world: self.world,
             stature,
@@ -164,8 +164,8 @@ impl GuardWorld<'_> {
     }
 
     /// The height of the floor under a guard.
-    fn floor(&self, mover: &Mover) -> f64 {
-        self.place(mover).room(mover.body.position, RADIUS).floor
+    fn floor(&self, motion: &GuardMotion) -> f64 {
+        self.place(motion).room(motion.body.position, RADIUS).floor
     }
 
     /// The highest floor under a guard at `position`.
@@ -178,21 +178,21 @@ impl GuardWorld<'_> {
     }
 
     /// Whether the body of a guard overlaps nothing.
-    pub(crate) fn has_room_for(&self, mover: &Mover) -> bool {
-        self.place(mover).is_clear(mover.body.position, RADIUS)
+    pub(crate) fn has_room_for(&self, motion: &GuardMotion) -> bool {
+        self.place(motion).is_clear(motion.body.position, RADIUS)
     }
 
     /// Whether a guard who does not walk stays at their position, because the floor under them has
     /// not moved.
-    fn is_at_rest(&self, mover: &Mover) -> bool {
-        self.is_free(mover, DVec2::ZERO) || mover.feet == self.floor(mover)
+    fn is_at_rest(&self, motion: &GuardMotion) -> bool {
+        self.is_free(motion, DVec2::ZERO) || motion.feet == self.floor(motion)
     }
 
     /// Whether a guard stands on level floor, and will still do so after `displacement` with
     /// nothing in the way.
-    fn is_free(&self, mover: &Mover, displacement: DVec2) -> bool {
+    fn is_free(&self, motion: &GuardMotion, displacement: DVec2) -> bool {
         let radius = RADIUS.cells();
-        let (from, to) = (mover.body.position, mover.body.position + displacement);
+        let (from, to) = (motion.body.position, motion.body.position + displacement);
         let low = from.min(to) - radius;
         let high = from.max(to) + radius;
         if low.min_element() < 0.0 {
@@ -200,7 +200,7 @@ impl GuardWorld<'_> {
         }
         let is_level = |cell| {
             let footing = self.terrain.way_through(self.world, self.gait, cell);
-            footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it))
+            footing.is_some_and(|it| it.floor == motion.feet && it.is_level_with(it))
         };
         (low.y as u32..=high.y as u32)
             .all(|row| (low.x as u32..=high.x as u32).all(|column| is_level(Cell { column, row })))

@@ -10,7 +10,7 @@
 use glam::DVec2;
 
 use super::context::{Context, PerceivedPlayer};
-use super::guard::{ALARMED, GUESSES, Guard, GuardActivity, KnownPlayer, WONDERS};
+use super::guard::{ALARMED, GUESS_STEPS, Guard, GuardActivity, KnownPlayer, WONDERING};
 use crate::game::sound::{Sound, SoundKind, Source, half_cells};
 use crate::world::{Cell, Difficulty, GuardKind};
 
@@ -75,14 +75,14 @@ impl Guard {
     /// The increase of awareness from a look at `target`; [`ALARMED`] if the guard notices it at
     /// once.
     fn gain(&self, context: &Context, target: &PerceivedPlayer) -> u16 {
-        let way = target.position - self.mover.position();
+        let way = target.position - self.motion.position();
         let distance = way.length();
-        let overlaps = target.feet < self.head() && self.mover.feet < target.head;
+        let overlaps = target.feet < self.head() && self.motion.feet < target.head;
         if distance < TOUCH && overlaps {
-            return if self.abilities().sight.is_none() { ALARMED } else { WONDERS / 2 };
+            return if self.abilities().sight.is_none() { ALARMED } else { WONDERING / 2 };
         }
         let Some(sight) = self.abilities().sight.filter(|_| self.blind == 0) else { return 0 };
-        let along = self.mover.facing.dot(way);
+        let along = self.motion.facing.dot(way);
         let range = if self.state.is_alarmed() { sight.range * 1.25 } else { sight.range };
         let least = if self.state.is_alarmed() { -0.2 } else { sight.least_cosine };
         if distance > range || along < least * distance {
@@ -144,7 +144,9 @@ impl Guard {
                     goes,
                 };
             }
-            _ if self.awareness >= WONDERS => self.begin_to_wonder(context, quarry.position, false),
+            _ if self.awareness >= WONDERING => {
+                self.begin_to_wonder(context, quarry.position, false)
+            }
             _ => {}
         }
     }
@@ -153,7 +155,7 @@ impl Guard {
     fn extrapolate_position(&mut self, context: &Context) {
         let Some(quarry) = &mut self.quarry else { return };
         if self.state.is_alarmed()
-            && quarry.unseen <= GUESSES
+            && quarry.unseen <= GUESS_STEPS
             && self.kind != GuardKind::Listener
             && let Some(target) = context.target(quarry.target)
         {
@@ -169,14 +171,14 @@ impl Guard {
             return;
         }
         for (target, trail) in context.trails.iter().enumerate() {
-            let position = self.mover.position();
+            let position = self.motion.position();
             let ground = context.ground(self.gait());
             let smells = |place: DVec2| {
                 place.distance(position) <= NOSE && ground.is_straight(position, place)
             };
             if let Some(mark) = trail.newest(|cell| smells(cell.center())) {
                 self.state = GuardActivity::Tracking { target, mark, lost: 0 };
-                context.sound(SoundKind::Wonder, self.mover.cell(), 7);
+                context.sound(SoundKind::Wonder, self.motion.cell(), 7);
                 return;
             }
         }
@@ -233,7 +235,7 @@ impl Guard {
             return;
         }
         self.awareness = (self.awareness + gain).min(MAX_BY_EAR.max(self.awareness));
-        if self.awareness >= WONDERS || self.state == GuardActivity::Asleep {
+        if self.awareness >= WONDERING || self.state == GuardActivity::Asleep {
             self.wonder_about(context, place);
         }
     }
@@ -283,7 +285,7 @@ impl Guard {
     /// Answers the call of a guard who has seen a player.
     fn answer_call(&mut self, about: DVec2) {
         let looks = if self.state == GuardActivity::Asleep { 60 } else { 20 };
-        self.awareness = self.awareness.max(WONDERS);
+        self.awareness = self.awareness.max(WONDERING);
         self.state =
             GuardActivity::Wondering { about, looks, goes: true, hurries: true, wakes: None };
     }

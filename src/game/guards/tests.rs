@@ -31,8 +31,8 @@ struct Scene {
     doors: Doors,
     target: PerceivedPlayer,
     clouds: Vec<Cloud>,
-    /// The acts of the guards in the last step.
-    acts: Vec<Act>,
+    /// The effects of the guards in the last step.
+    effects: Vec<GuardEffect>,
 }
 
 impl Scene {
@@ -59,15 +59,15 @@ impl Scene {
             has_light: false,
             is_noticeable: true,
         };
-        let (doors, clouds, acts) = (Doors::default(), Vec::new(), Vec::new());
-        Self { world, guards, doors, target, clouds, acts }
+        let (doors, clouds, effects) = (Doors::default(), Vec::new(), Vec::new());
+        Self { world, guards, doors, target, clouds, effects }
     }
 
     fn step(&mut self, sounds: &[Sound]) {
-        let acts = self.guards.step(&self.world, &[self.target], sounds, &self.clouds);
-        self.acts = acts.to_vec();
-        for act in &self.acts {
-            if let Act::Open(cell) = act {
+        let effects = self.guards.step(&self.world, &[self.target], sounds, &self.clouds);
+        self.effects = effects.to_vec();
+        for effect in &self.effects {
+            if let GuardEffect::Open(cell) = effect {
                 self.doors.open(*cell);
             }
         }
@@ -98,7 +98,9 @@ impl Scene {
     }
 
     fn has_sounded(&self, kind: SoundKind) -> bool {
-        self.acts.iter().any(|act| matches!(act, Act::Sound(sound) if sound.kind == kind))
+        self.effects
+            .iter()
+            .any(|effect| matches!(effect, GuardEffect::Sound(sound) if sound.kind == kind))
     }
 
     fn put(&mut self, x: f64, y: f64) {
@@ -118,7 +120,7 @@ impl Scene {
                 terrain: &self.guards.terrain,
                 gait: guard.gait(),
             };
-            ground.has_room_for(&guard.mover)
+            ground.has_room_for(&guard.motion)
         })
     }
 }
@@ -161,7 +163,7 @@ fn a_lit_player_at_eight_cells_is_noticed_then_followed() {
     assert!(scene.has_sounded(SoundKind::Shout));
     assert!((20..90).contains(&noticed), "{noticed}");
     assert!((30..240).contains(&more), "{more}");
-    assert!(scene.acts.contains(&Act::Raised));
+    assert!(scene.effects.contains(&GuardEffect::Raised));
 }
 
 #[test]
@@ -432,7 +434,7 @@ fn guards_climb_stairs_and_avoid_pits_and_water() {
     let mut lowest = f64::INFINITY;
     let is_there = |scene: &Scene| {
         lowest = lowest.min(scene.guard(0).feet);
-        let here = scene.guards.list[0].mover.cell();
+        let here = scene.guards.list[0].motion.cell();
         assert_ne!(here.row, if (2..7).contains(&here.column) { 2 } else { 9 });
         scene.guard(0).position.distance(cell(4, 3).center()) < 0.5
     };
@@ -524,7 +526,7 @@ proptest! {
             for step in 0..steps * 3 {
                 scene.step(if step % 15 == 0 { &sounds } else { &[] });
                 prop_assert!(scene.is_sound(), "{:?}", scene.guard(0));
-                let here = scene.guards.list[0].mover.cell();
+                let here = scene.guards.list[0].motion.cell();
                 prop_assert!(!scene.guards.terrain.is_hazard(&scene.world, here));
             }
         }
@@ -571,20 +573,20 @@ proptest! {
         for _ in 0..900 {
             scene.step(&[]);
             let guard = &scene.guards.list[0];
-            let from = guard.mover.cell();
-            let near = guard.mover.position().distance(scene.target.position) < 2.2;
+            let from = guard.motion.cell();
+            let near = guard.motion.position().distance(scene.target.position) < 2.2;
             if near || !guard.state.is_alarmed() {
                 break;
             }
             let mut known = crate::game::distances::Distances::default();
             known.begin(goal, scene.guards.terrain.size());
             let (terrain, world) = (&scene.guards.terrain, &scene.world);
-            let costs = ways::Backwards { terrain, world, gait };
+            let costs = ways::ReverseCosts { terrain, world, gait };
             while known.advance(&costs) {}
             let Some(distance) = known.distance(from) else { break };
             since = if distance < best { 0 } else { since + 1 };
             best = best.min(distance);
-            prop_assert!(since < 120, "{:?} at {distance}", guard.mover);
+            prop_assert!(since < 120, "{:?} at {distance}", guard.motion);
         }
     }
 }
@@ -601,11 +603,13 @@ fn warning(name: &str) -> u32 {
     let told =
         |scene: &Scene| scene.has_sounded(SoundKind::Windup) || scene.has_sounded(SoundKind::Draw);
     scene.steps_until(900, told).unwrap();
-    let is_blow = |act: &Act| matches!(act, Act::Hurt { .. } | Act::Bolt { .. });
+    let is_blow = |effect: &GuardEffect| {
+        matches!(effect, GuardEffect::Hurt { .. } | GuardEffect::Bolt { .. })
+    };
     let mut frames = Vec::new();
     let steps = scene.steps_until(200, |scene| {
         frames.push(scene.guards.list[0].frame());
-        scene.acts.iter().any(is_blow)
+        scene.effects.iter().any(is_blow)
     });
     assert!(frames[..23].iter().all(|&frame| frame == 4), "{name}: {frames:?}");
     steps.unwrap()
@@ -625,7 +629,9 @@ fn a_player_who_steps_aside_is_not_hit() {
     scene.put(2.4, 1.5);
     scene.steps_until(900, |scene| scene.mood(0) == Mood::Attacking).unwrap();
     scene.put(4.9, 2.5);
-    let hurt = |scene: &Scene| scene.acts.iter().any(|act| matches!(act, Act::Hurt { .. }));
+    let hurt = |scene: &Scene| {
+        scene.effects.iter().any(|effect| matches!(effect, GuardEffect::Hurt { .. }))
+    };
     assert_eq!(scene.steps_until(70, hurt), None);
 }
 
@@ -691,8 +697,8 @@ fn an_archer_keeps_its_distance_and_shoots_along_the_line() {
     let mut shots = 0;
     for _ in 0..1200 {
         scene.step(&[]);
-        for act in &scene.acts {
-            if let &Act::Bolt { from, height, direction, slope, .. } = act {
+        for effect in &scene.effects {
+            if let &GuardEffect::Bolt { from, height, direction, slope, .. } = effect {
                 let distance = (scene.target.position - from).dot(direction);
                 let meets = from + direction * distance;
                 assert!(meets.distance(scene.target.position) < 0.05);
@@ -747,7 +753,9 @@ fn a_push_stops_a_blow() {
     scene.steps_until(600, |scene| scene.mood(0) == Mood::Attacking).unwrap();
     let before = scene.guard(0).position;
     scene.guards.push(0, -DVec2::X);
-    let hurt = |scene: &Scene| scene.acts.iter().any(|act| matches!(act, Act::Hurt { .. }));
+    let hurt = |scene: &Scene| {
+        scene.effects.iter().any(|effect| matches!(effect, GuardEffect::Hurt { .. }))
+    };
     assert_eq!(scene.steps_until(30, hurt), None);
     assert!(scene.guard(0).position.x < before.x - 0.3);
 }

@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::game::stored::{Unrestorable, check};
+use crate::game::stored::{RestoreError, check};
 use crate::world::{Cell, TileEffect, World};
 
 /// The number of steps for which a cell smells: 20 seconds.
-const LASTS: u64 = 1200;
+const SMELL_STEPS: u64 = 1200;
 /// The maximum number of cells that are remembered.
 const MAX: usize = 128;
 
@@ -47,7 +47,7 @@ impl Trail {
 
     /// Removes the cells that no longer smell.
     fn fade(&mut self, now: u64) {
-        let is_stale = |mark: &TrailCell| now - mark.left_at > LASTS;
+        let is_stale = |mark: &TrailCell| now - mark.left_at > SMELL_STEPS;
         while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MAX {
             self.marks.pop_front();
             self.first += 1;
@@ -72,7 +72,7 @@ impl Trail {
     }
 
     /// Returns an error if there are too many marks, or marks later than the step `now`.
-    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, now: u64) -> Result<(), RestoreError> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
         check(are_past && self.marks.len() <= MAX, "a trail")
     }

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::game::distances::{Costs, DIAGONAL, Distances, STRAIGHT, neighbor};
 use crate::game::player::STEP_HEIGHT;
-use crate::game::stored::{Unrestorable, at_most, check};
+use crate::game::stored::{RestoreError, at_most, check};
 use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
 
 /// The highest step down, in cells.
@@ -215,7 +215,7 @@ impl Footing {
 }
 
 /// The costs of a search from a goal back to the guards who walk there.
-pub(crate) struct Backwards<'a> {
+pub(crate) struct ReverseCosts<'a> {
     pub(crate) terrain: &'a GuardTerrain,
     pub(crate) world: &'a World,
     pub(crate) gait: Gait,
@@ -230,7 +230,7 @@ pub(crate) struct Destination {
     cost: u16,
 }
 
-impl Costs for Backwards<'_> {
+impl Costs for ReverseCosts<'_> {
     /// `None` for a cell that guards do not enter.
     type Origin = Option<Destination>;
 
@@ -316,7 +316,7 @@ pub(crate) enum PathResult {
 impl GuardPaths {
     /// Returns an error if a search is later than the current step, or does not fit a map with
     /// `map` columns and rows.
-    pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), RestoreError> {
         let is_possible = |it: &GoalDistances| {
             it.begun <= self.now && it.used <= self.now && it.distances.is_around(it.goal, map)
         };
@@ -357,7 +357,7 @@ impl GuardPaths {
         let Some(index) = self.field(terrain, gait, goal) else { return PathResult::Unknown };
         let (now, field) = (self.now, &mut self.fields[index]);
         field.used = now;
-        let costs = Backwards { terrain, world, gait };
+        let costs = ReverseCosts { terrain, world, gait };
         while field.distances.distance(from).is_none() && !field.distances.is_over() {
             if self.cells_left == 0 {
                 return PathResult::Unknown;
@@ -389,7 +389,7 @@ impl GuardPaths {
         goal: Cell,
     ) -> Option<Cell> {
         let field = self.fields.iter().find(|it| it.goal == goal && it.gait == gait)?;
-        let costs = Backwards { terrain, world, gait };
+        let costs = ReverseCosts { terrain, world, gait };
         field.next(&costs, from, field.distances.distance(from)?)
     }
 
@@ -430,7 +430,7 @@ impl GoalDistances {
 
     /// The neighbour of `from` on the shortest path to the goal. `distance` is the distance of
     /// `from` from the goal.
-    fn next(&self, costs: &Backwards, from: Cell, distance: u16) -> Option<Cell> {
+    fn next(&self, costs: &ReverseCosts, from: Cell, distance: u16) -> Option<Cell> {
         let neighbors = (0..8).filter_map(|side| neighbor(from, side));
         let nearer = neighbors.filter_map(|cell| {
             let there = self.distances.distance(cell).filter(|&there| there < distance)?;
@@ -441,7 +441,7 @@ impl GoalDistances {
     }
 }
 
-impl Backwards<'_> {
+impl ReverseCosts<'_> {
     /// Whether the step from `from` to its neighbour `to` is possible now.
     fn leads(&self, from: Cell, to: Cell) -> bool {
         let straight = |from, to| self.straight(&self.origin(to), from).is_some();

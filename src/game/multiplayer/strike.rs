@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::game::Game;
 use crate::game::health::Flash;
 use crate::game::player::{Motion, RADIUS};
-use crate::game::rules::{MAX_LAG, PlayerId, Strikes};
+use crate::game::rules::{MAX_LAG, PlayerId, StrikeEffect};
 use crate::game::sight::{Point, is_in_sight};
 use crate::world::{Heading, World};
 
@@ -104,7 +104,7 @@ impl Game {
         let turn = members.turn?;
         let seen = members.member(turn)?.seen;
         let own = self.stood(turn, seen)?;
-        if members.rules.strikes == Strikes::Nobody {
+        if members.rules.strikes == StrikeEffect::Nobody {
             return None;
         }
         let is_open_to_it =
@@ -128,7 +128,7 @@ impl Game {
         let Some(member) = members.member_mut(index) else { return };
         member.player.motion = member.player.motion.pushed(direction * PUSH);
         member.player.flash = Some(Flash::struck(Heading::from_degrees(degrees)));
-        if strikes == Strikes::Stun {
+        if strikes == StrikeEffect::Stun {
             (member.stunned, member.spared) = (STUNNED, SPARED);
         }
         members.blows.extend(turn.map(|turn| (turn, index)));
@@ -144,7 +144,7 @@ impl Game {
 
     /// Whether players can strike each other, even in levels without guards.
     pub(crate) fn has_blows(&self) -> bool {
-        self.multiplayer_rules().is_some_and(|rules| rules.strikes != Strikes::Nobody)
+        self.multiplayer_rules().is_some_and(|rules| rules.strikes != StrikeEffect::Nobody)
     }
 }
 

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::*;
 use crate::game::Outcome;
 use crate::game::player::RADIUS;
-use crate::game::{Sees, Strikes};
+use crate::game::{ShownPlayers, StrikeEffect};
 use crate::map;
 use crate::world::{Cell, Difficulty, World};
 

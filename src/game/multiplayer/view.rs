@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::game::player::{Motion, Player};
-use crate::game::rules::{PlayerId, Sees};
+use crate::game::rules::{PlayerId, ShownPlayers};
 use crate::game::sight::{Point, is_in_sight};
 use crate::game::{Flash, Game, GuardView, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
@@ -220,11 +220,12 @@ impl<'a> PlayerView<'a> {
 
     /// The [other players](Self::others) that this player's map shows.
     pub fn others_on_map(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
-        let sees = self.game.multiplayer_rules().map_or(Sees::Nobody, |rules| rules.sees);
-        self.others().filter(move |other| match sees {
-            Sees::Nobody => false,
-            Sees::InSight => other.is_in_sight,
-            Sees::All => true,
+        let shown =
+            self.game.multiplayer_rules().map_or(ShownPlayers::Nobody, |rules| rules.shows_on_map);
+        self.others().filter(move |other| match shown {
+            ShownPlayers::Nobody => false,
+            ShownPlayers::InSight => other.is_in_sight,
+            ShownPlayers::All => true,
         })
     }
 

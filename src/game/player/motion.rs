@@ -8,7 +8,7 @@ use crate::game::fall::{GRAVITY, VerticalMotion, VerticalRange};
 use crate::game::intent::{Intent, Intents};
 use crate::game::rules::STEP;
 use crate::game::stance::Stance;
-use crate::game::stored::{Unrestorable, check_on_map};
+use crate::game::stored::{RestoreError, check_on_map};
 use crate::game::turning::{PitchControl, Turning};
 use crate::generate::WindowShift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
@@ -250,7 +250,7 @@ impl Motion {
 
     /// Returns an error if the position is outside `world`, or if the stance or the turns are out
     /// of range.
-    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World) -> Result<(), RestoreError> {
         check_on_map(world, self.body.position)?;
         self.stance.check()?;
         self.turning.check()

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use self::crowd::Crowd;
 use super::*;
 use crate::game::tests::missions::EVERYTHING;
-use crate::game::{Game, Intents, MultiplayerRules, Rules, Script, Sees, Strikes};
+use crate::game::{Game, Intents, MultiplayerRules, Rules, Script, ShownPlayers, StrikeEffect};
 use crate::generate::{Extent, GeneratedLevel, Generator};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
@@ -87,8 +87,9 @@ fn played(world: World, script: Vec<Intents>, seed: u64, steps: usize) {
     let multiplayer = MultiplayerRules {
         collides: random.one_in(2),
         respawns: !random.one_in(3),
-        sees: [Sees::Nobody, Sees::InSight, Sees::All][random.below(3)],
-        strikes: [Strikes::Nobody, Strikes::Push, Strikes::Stun][random.below(3)],
+        shows_on_map: [ShownPlayers::Nobody, ShownPlayers::InSight, ShownPlayers::All]
+            [random.below(3)],
+        strikes: [StrikeEffect::Nobody, StrikeEffect::Push, StrikeEffect::Stun][random.below(3)],
     };
     let difficulty = Difficulty::ALL[random.below(3)];
     let rules = Rules { difficulty, seed: random.bits() };
@@ -155,20 +156,20 @@ fn a_different_game_is_refused_with_a_sentence() {
     let game = Game::new(world(0));
     let bytes = game.stored().unwrap();
     let refused = |start: Game, bytes: &[u8]| start.restored(bytes).unwrap_err();
-    assert_eq!(refused(Game::new(world(1)), &bytes), Unrestorable::OtherLevel);
+    assert_eq!(refused(Game::new(world(1)), &bytes), RestoreError::OtherLevel);
     let hard = Rules { difficulty: Difficulty::Hard, seed: 0 };
-    assert_eq!(refused(Game::with_rules(world(0), hard), &bytes), Unrestorable::OtherLevel);
+    assert_eq!(refused(Game::with_rules(world(0), hard), &bytes), RestoreError::OtherLevel);
     let several = Game::for_players(world(0), Rules::default(), MultiplayerRules::default());
-    assert_eq!(refused(several, &bytes), Unrestorable::OtherLevel);
+    assert_eq!(refused(several, &bytes), RestoreError::OtherLevel);
     let line = String::from_utf8_lossy(&bytes).lines().next().unwrap().to_owned();
     assert_eq!(line, format!("cellcaster-game 2 rules 2 version {}", env!("CARGO_PKG_VERSION")));
     let newer = [line.replace("rules 2", "rules 3").as_bytes(), &bytes[line.len()..]].concat();
     let error = refused(game.clone(), &newer);
-    assert_eq!(error, Unrestorable::OtherVersion);
+    assert_eq!(error, RestoreError::OtherVersion);
     assert!(error.to_string().ends_with("with version 2 of the rules"), "{error}");
     let older = [line.replace("game 2", "game 1").as_bytes(), &bytes[line.len()..]].concat();
-    assert_eq!(refused(game.clone(), &older), Unrestorable::OtherVersion);
+    assert_eq!(refused(game.clone(), &older), RestoreError::OtherVersion);
     let longer = [&bytes[..], &[0]].concat();
-    assert_eq!(refused(game.clone(), &longer), Unrestorable::Longer);
-    assert_eq!(refused(game, &vec![0; MAX_BYTES + 1]), Unrestorable::TooLong);
+    assert_eq!(refused(game.clone(), &longer), RestoreError::Longer);
+    assert_eq!(refused(game, &vec![0; MAX_BYTES + 1]), RestoreError::TooLong);
 }

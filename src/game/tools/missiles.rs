@@ -12,7 +12,7 @@ use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
 use crate::game::rules::STEP;
-use crate::game::stored::{Unrestorable, check};
+use crate::game::stored::{RestoreError, check};
 use crate::generate::WindowShift;
 use crate::world::{Cell, World};
 
@@ -65,15 +65,15 @@ pub(crate) enum MissileKind {
 
 /// A missile that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Landed {
+pub(crate) struct LandedMissile {
     pub(crate) missile: Missile,
     pub(crate) cell: Cell,
-    pub(crate) struck: Struck,
+    pub(crate) struck: MissileTarget,
 }
 
 /// The target that a missile has hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Struck {
+pub(crate) enum MissileTarget {
     /// No body: the missile hit a wall or the floor, or flew for too long.
     Nothing,
     Guard(usize),
@@ -200,25 +200,25 @@ impl Missiles {
         world: &World,
         guards: &Guards,
         players: &(impl Iterator<Item = (usize, Motion)> + Clone),
-    ) -> Vec<Landed> {
+    ) -> Vec<LandedMissile> {
         let mut landed = Vec::new();
         self.flying.retain_mut(|missile| {
             let from = (missile.position, missile.height);
             let has_ended = missile.step(world);
             let to = (missile.position, missile.height);
             let struck = match missile.kind {
-                MissileKind::Dart { .. } => guards.hit_between(from, to).map(Struck::Guard),
+                MissileKind::Dart { .. } => guards.hit_between(from, to).map(MissileTarget::Guard),
                 MissileKind::Bolt { .. } => {
                     let mut players = players.clone();
                     let struck = players.find(|(_, player)| hits(player, from, to));
-                    struck.map(|(index, _)| Struck::Player(index))
+                    struck.map(|(index, _)| MissileTarget::Player(index))
                 }
                 MissileKind::Pebble | MissileKind::Flask => None,
             };
             let is_over = has_ended || struck.is_some();
             if is_over {
-                let struck = struck.unwrap_or(Struck::Nothing);
-                landed.push(Landed { missile: *missile, cell: missile.cell(), struck });
+                let struck = struck.unwrap_or(MissileTarget::Nothing);
+                landed.push(LandedMissile { missile: *missile, cell: missile.cell(), struck });
             }
             !is_over
         });
@@ -226,7 +226,7 @@ impl Missiles {
     }
 
     /// Returns an error if a missile has flown for too long.
-    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self) -> Result<(), RestoreError> {
         check(self.flying.iter().all(|missile| missile.steps < MAX_STEPS), "a missile")
     }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::game::sight::Cloud;
-use crate::game::stored::{Unrestorable, check};
+use crate::game::stored::{RestoreError, check};
 use crate::generate::WindowShift;
 
 /// The radius of a cloud in cells, and its duration in steps.
@@ -50,7 +50,7 @@ pub(crate) struct Puff {
 
 impl Smoke {
     /// Returns an error for clouds that the game cannot produce.
-    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self) -> Result<(), RestoreError> {
         let are_possible = self.clouds.len() == self.lives.len()
             && self.clouds.iter().all(|cloud| cloud.radius == RADIUS)
             && self.lives.iter().all(|life| (1..=STEPS).contains(&life.left));

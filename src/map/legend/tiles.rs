@@ -1,4 +1,4 @@
-//! Tiles, as the legend defines them: walls, doors, glass and shapes, and the surroundings that a
+//! Tiles, as the legend defines them: walls, doors, glass and shapes, and the surfaces, heights and mechanism that a
 //! tile of any kind may define for itself.
 
 use std::ops::Range;
@@ -193,7 +193,7 @@ impl Height {
 
 /// A tile's own surfaces, heights and mechanism. The map supplies the missing ones.
 #[derive(Default)]
-pub(crate) struct Surroundings<'a> {
+pub(crate) struct TileText<'a> {
     pub(crate) floor: Option<CoveringText<'a>>,
     pub(crate) ceiling: Option<CeilingText<'a>>,
     pub(crate) light: Option<Light>,
@@ -214,8 +214,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) mechanism: Option<Range<usize>>,
 }
 
-impl<'a> Surroundings<'a> {
-    /// Reads `entry` of `table` if it is part of a tile's surroundings; returns whether it is.
+impl<'a> TileText<'a> {
+    /// Reads `entry` of `table` if it is one of these keys; returns whether it is.
     pub(crate) fn take(&mut self, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> bool {
         const LIFT: &str = r#"{ floor_height = -2, moves_to = 0, switch = "lift" }"#;
         match entry.key {

@@ -28,7 +28,7 @@ fn encoded_with(
 }
 
 fn texels(bytes: &[u8]) -> [(Rgb, u8); 2] {
-    let texture = decode(bytes, &mut Budget::default()).unwrap().texture();
+    let texture = decode(bytes, &mut PictureBudget::default()).unwrap().texture();
     assert_eq!((texture.width(), texture.height()), (2, 1));
     [0, 1].map(|x| (texture.column(f64::from(x) / 2.0)[0], texture.texel(x, 0).1))
 }
@@ -86,7 +86,7 @@ fn a_palette_that_ends_mid_colour_is_an_error() {
         let bytes = encoded_with(ColorType::Indexed, BitDepth::Eight, &[0, 0], |encoder| {
             encoder.set_palette(palette);
         });
-        let decoded = decode(&bytes, &mut Budget::default());
+        let decoded = decode(&bytes, &mut PictureBudget::default());
         match length % 3 {
             0 => assert!(decoded.is_ok(), "{length}"),
             _ => assert!(matches!(decoded, Err(PictureError::BrokenPalette)), "{length}"),
@@ -111,7 +111,7 @@ fn the_largest_picture_decodes() {
     encoder.set_depth(BitDepth::Sixteen);
     let samples = vec![200; 8 * (MAX_SIDE * MAX_SIDE) as usize];
     encoder.write_header().unwrap().write_image_data(&samples).unwrap();
-    let texture = decode(&bytes, &mut Budget::default()).unwrap().texture();
+    let texture = decode(&bytes, &mut PictureBudget::default()).unwrap().texture();
     assert_eq!((texture.width(), texture.height()), (MAX_SIDE, MAX_SIDE));
     assert_eq!(texture.mean(), Rgb::new(200, 200, 200));
 }
@@ -127,7 +127,7 @@ proptest! {
             *place.get_mut(&mut bytes) = byte;
         }
         bytes.truncate(cut.index(bytes.len() + 1));
-        if let Ok(texture) = decode(&bytes, &mut Budget::default()) {
+        if let Ok(texture) = decode(&bytes, &mut PictureBudget::default()) {
             prop_assert!(texture.width() <= MAX_SIDE && texture.height() <= MAX_SIDE);
         }
     }

@@ -5,27 +5,27 @@
 use crate::world::GuardKind;
 use crate::world::sprite::builtin;
 
-/// The use of a class: it makes a thing, which stands in a cell, or a tile of each cell that it
+/// The kind of a class: it makes a thing, which stands in a cell, or a tile of each cell that it
 /// covers.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Makes {
+pub(crate) enum ClassKind {
     Thing,
     Tile,
 }
 
-use Makes::{Thing, Tile};
+use ClassKind::{Thing, Tile};
 
 /// A class: its name, which is a key of a map file, the key's value as TOML, and other keys with
 /// their defaults.
 pub(crate) struct Class {
     pub(crate) name: &'static str,
-    pub(crate) makes: Makes,
+    pub(crate) kind: ClassKind,
     pub(crate) value: &'static str,
     pub(crate) others: &'static [(&'static str, &'static str)],
 }
 
-const fn class(makes: Makes, name: &'static str, value: &'static str) -> Class {
-    Class { name, makes, value, others: &[] }
+const fn class(kind: ClassKind, name: &'static str, value: &'static str) -> Class {
+    Class { name, kind, value, others: &[] }
 }
 
 pub(crate) const CLASSES: &[Class] = &[
@@ -90,9 +90,9 @@ pub(crate) const GROUND: [&str; 12] = [
 /// `has` make one.
 pub(crate) fn is_thing(class: &str, has: impl Fn(&str) -> bool) -> bool {
     match named(class).or(of_kind(class).map(|(class, _)| class)) {
-        Some(class) => class.makes == Thing,
+        Some(class) => class.kind == Thing,
         // A door has a key, too.
-        None => !has("door") && CLASSES.iter().any(|class| class.makes == Thing && has(class.name)),
+        None => !has("door") && CLASSES.iter().any(|class| class.kind == Thing && has(class.name)),
     }
 }
 

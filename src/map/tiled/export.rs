@@ -9,9 +9,9 @@ use font8x8::{BASIC_FONTS, UnicodeFonts};
 use serde_json::{Value, json};
 use toml::de::{DeTable, DeValue};
 
-use super::classes::{CLASSES, Makes};
+use super::classes::{CLASSES, ClassKind};
 use super::properties::{CHARACTER, toml_value};
-use super::{Recorded, png};
+use super::{RecordedFiles, png};
 use crate::color::Rgb;
 use crate::fault::Faults;
 use crate::fault::document::{self, FaultList};
@@ -27,7 +27,7 @@ const COLUMNS: usize = 8;
 
 /// A map of Tiled.
 #[derive(Debug)]
-pub struct Export {
+pub struct ExportedMap {
     /// The text of the map, in Tiled's JSON format.
     pub map: String,
     /// The PNG file with the tiles.
@@ -39,9 +39,9 @@ pub struct Export {
 }
 
 /// An entry of the legend.
-struct Symbol<'d> {
+struct LegendEntry<'d> {
     character: char,
-    makes: Makes,
+    kind: ClassKind,
     keys: &'d DeTable<'d>,
 }
 
@@ -55,8 +55,8 @@ pub fn export(
     name: &str,
     tiles: &str,
     files: &dyn TextureFiles,
-) -> Result<Export, Faults> {
-    let files = Recorded { files, read: RefCell::default() };
+) -> Result<ExportedMap, Faults> {
+    let files = RecordedFiles { files, read: RefCell::default() };
     if let Level::Space(_) = map::parse_level(text, name, &files)? {
         let message = format!("{name} is a map of bodies, and Tiled has only grids");
         return Err(Faults::of_whole_file(name, &message, "name a map with a grid"));
@@ -68,7 +68,12 @@ pub fn export(
     let map = tiled_map(&document, &symbols, text, tiles);
     let tiles = sheet(&symbols, pictures);
     let pictures = files.read.into_inner();
-    Ok(Export { map: format!("{map:#}\n"), tiles, types: format!("{:#}\n", types()), pictures })
+    Ok(ExportedMap {
+        map: format!("{map:#}\n"),
+        tiles,
+        types: format!("{:#}\n", types()),
+        pictures,
+    })
 }
 
 fn entry<'d>(table: &'d DeTable<'d>, name: &str) -> Option<&'d DeValue<'d>> {
@@ -76,23 +81,28 @@ fn entry<'d>(table: &'d DeTable<'d>, name: &str) -> Option<&'d DeValue<'d>> {
 }
 
 /// The legend of a map. A waypoint is a point of a line, and no tile.
-fn symbols<'d>(document: &'d DeTable<'d>) -> Vec<Symbol<'d>> {
-    let sections = [("tiles", Makes::Tile), ("things", Makes::Thing)];
-    let symbols = sections.into_iter().flat_map(|(section, makes)| {
+fn symbols<'d>(document: &'d DeTable<'d>) -> Vec<LegendEntry<'d>> {
+    let sections = [("tiles", ClassKind::Tile), ("things", ClassKind::Thing)];
+    let symbols = sections.into_iter().flat_map(|(section, kind)| {
         let table = entry(document, section).and_then(DeValue::as_table);
         table.into_iter().flat_map(DeTable::iter).filter_map(move |(key, value)| {
             let (character, keys) = (key.get_ref().chars().next()?, value.get_ref().as_table()?);
-            Some(Symbol { character, makes, keys })
+            Some(LegendEntry { character, kind, keys })
         })
     });
     symbols.filter(|symbol| entry(symbol.keys, "waypoint").is_none()).collect()
 }
 
-fn tiled_map(document: &DeTable<'_>, symbols: &[Symbol<'_>], text: &str, tiles: &str) -> Value {
+fn tiled_map(
+    document: &DeTable<'_>,
+    symbols: &[LegendEntry<'_>],
+    text: &str,
+    tiles: &str,
+) -> Value {
     let rows: Vec<Vec<char>> =
         map::rows_of_grid(text).iter().map(|row| row.chars().collect()).collect();
     let (width, height) = (rows.first().map_or(0, Vec::len), rows.len());
-    let known: BTreeMap<char, (usize, &Symbol<'_>)> =
+    let known: BTreeMap<char, (usize, &LegendEntry<'_>)> =
         (1..).zip(symbols).map(|(gid, symbol)| (symbol.character, (gid, symbol))).collect();
     let of = |character: char| known.get(&character).copied();
     let mut legend = BTreeMap::new();
@@ -130,7 +140,8 @@ fn tiled_map(document: &DeTable<'_>, symbols: &[Symbol<'_>], text: &str, tiles: 
     let lines_on_map: Vec<Value> = lines.iter().map(line).collect();
     let mut things = Vec::new();
     for (column, row, character) in cells() {
-        let Some((gid, symbol)) = of(character).filter(|(_, it)| it.makes == Makes::Thing) else {
+        let Some((gid, symbol)) = of(character).filter(|(_, it)| it.kind == ClassKind::Thing)
+        else {
             continue;
         };
         let [x, y] = [column, row + 1].map(|cell| cell * SIDE as usize);
@@ -184,8 +195,8 @@ fn object(id: u32, mut content: Value) -> Value {
     content
 }
 
-fn tileset(symbols: &[Symbol<'_>], tiles: &str) -> Value {
-    let tile = |(id, symbol): (usize, &Symbol<'_>)| {
+fn tileset(symbols: &[LegendEntry<'_>], tiles: &str) -> Value {
+    let tile = |(id, symbol): (usize, &LegendEntry<'_>)| {
         let keys =
             symbol.keys.iter().filter(|(key, _)| !["on", "patrol"].contains(&&**key.get_ref()));
         let keys = keys.map(|(key, value)| property(key.get_ref(), value.get_ref()));
@@ -242,7 +253,7 @@ fn types() -> Value {
     let class = |class: &super::classes::Class| {
         let properties = [(class.name, class.value)];
         let properties = properties.iter().chain(class.others).map(property);
-        let color = if class.makes == Makes::Thing { "#ffd0a040" } else { "#ff6080c0" };
+        let color = if class.kind == ClassKind::Thing { "#ffd0a040" } else { "#ff6080c0" };
         json!({ "name": class.name, "color": color, "properties": properties.collect::<Value>() })
     };
     CLASSES.iter().map(class).collect()
@@ -252,10 +263,10 @@ fn text_of<'d>(table: &'d DeTable<'d>, key: &str) -> Option<&'d str> {
     entry(table, key)?.as_str()
 }
 
-impl Symbol<'_> {
+impl LegendEntry<'_> {
     /// The name of its class; empty for a floor.
     fn class(&self) -> &'static str {
-        let mut classes = CLASSES.iter().filter(|class| class.makes == self.makes);
+        let mut classes = CLASSES.iter().filter(|class| class.kind == self.kind);
         let class = classes.find(|class| entry(self.keys, class.name).is_some());
         class.map_or("", |class| class.name)
     }
@@ -263,9 +274,9 @@ impl Symbol<'_> {
     /// The texels of its tile, row by row, of red, green, blue and alpha. A picture that cannot be
     /// shown is grey.
     fn picture(&self, document: &DeTable<'_>, files: &dyn TextureFiles) -> Vec<[u8; 4]> {
-        match self.makes {
-            Makes::Thing => fitted(self.sprite(files).as_ref()),
-            Makes::Tile => self.tile(document, files),
+        match self.kind {
+            ClassKind::Thing => fitted(self.sprite(files).as_ref()),
+            ClassKind::Tile => self.tile(document, files),
         }
     }
 
@@ -287,7 +298,8 @@ impl Symbol<'_> {
             return sprite.pictures().first().cloned();
         }
         let sheet =
-            picture::decode(&files.read(name).ok()?, &mut picture::Budget::default()).ok()?;
+            picture::decode(&files.read(name).ok()?, &mut picture::PictureBudget::default())
+                .ok()?;
         let parts = |key: &str| match entry(self.keys, key) {
             Some(DeValue::Integer(count)) => count.as_str().parse::<u32>().unwrap_or(1).max(1),
             _ => 1,
@@ -307,12 +319,16 @@ impl Symbol<'_> {
         let value = entry(self.keys, if class.is_empty() { "floor" } else { class });
         let [floor, ceiling] = ["floor", "ceiling"].map(|key| entry(self.keys, key));
         let surface = match class {
-            "plate" => floor.map_or(Some(Surface::of("metal", files)), |it| surface(it, files)),
-            "water" => floor.map_or(Some(Surface::of("#1c4868", files)), |it| surface(it, files)),
-            "mirror" => Some(Surface::of(text_of(self.keys, class).unwrap_or("#b8c8d0"), files)),
+            "plate" => floor.map_or(Some(TileSurface::of("metal", files)), |it| surface(it, files)),
+            "water" => {
+                floor.map_or(Some(TileSurface::of("#1c4868", files)), |it| surface(it, files))
+            }
+            "mirror" => {
+                Some(TileSurface::of(text_of(self.keys, class).unwrap_or("#b8c8d0"), files))
+            }
             _ => value.or(ceiling).or(entry(document, "floor")).and_then(|it| surface(it, files)),
         };
-        let surface = surface.unwrap_or(Surface::Color(Rgb::new(0x58, 0x58, 0x58)));
+        let surface = surface.unwrap_or(TileSurface::Color(Rgb::new(0x58, 0x58, 0x58)));
         let radius = number("radius").unwrap_or(0.3);
         let (at, from) = (text_of(self.keys, "at"), text_of(self.keys, "from"));
         let is_part = |x: f64, y: f64| match class {
@@ -345,17 +361,17 @@ impl Symbol<'_> {
 }
 
 /// A surface of a tile.
-enum Surface {
+enum TileSurface {
     Color(Rgb),
     Texture(Texture),
 }
 
-impl Surface {
+impl TileSurface {
     /// The surface with this name; black if there is none.
     fn of(name: &str, files: &dyn TextureFiles) -> Self {
         let texture = || {
             let bytes = files.read(name).ok()?;
-            Some(picture::decode(&bytes, &mut picture::Budget::default()).ok()?.texture())
+            Some(picture::decode(&bytes, &mut picture::PictureBudget::default()).ok()?.texture())
         };
         match name.parse() {
             Ok(color) => Self::Color(color),
@@ -375,7 +391,7 @@ impl Surface {
 }
 
 /// The surface that a value of a key names, or the first of its pattern.
-fn surface(value: &DeValue<'_>, files: &dyn TextureFiles) -> Option<Surface> {
+fn surface(value: &DeValue<'_>, files: &dyn TextureFiles) -> Option<TileSurface> {
     let name = match value {
         DeValue::Table(table) => {
             let pattern =
@@ -387,7 +403,7 @@ fn surface(value: &DeValue<'_>, files: &dyn TextureFiles) -> Option<Surface> {
         }
         name => name.as_str()?,
     };
-    Some(Surface::of(name, files))
+    Some(TileSurface::of(name, files))
 }
 
 fn texel(texture: &Texture, x: f64, y: f64) -> (Rgb, u8) {
@@ -419,7 +435,7 @@ fn fitted(sprite: Option<&Texture>) -> Vec<[u8; 4]> {
 }
 
 /// The PNG file of the tiles. A tile that looks like an earlier one gets its character.
-fn sheet(symbols: &[Symbol<'_>], mut pictures: Vec<Vec<[u8; 4]>>) -> Vec<u8> {
+fn sheet(symbols: &[LegendEntry<'_>], mut pictures: Vec<Vec<[u8; 4]>>) -> Vec<u8> {
     let mut seen = BTreeSet::new();
     for (symbol, picture) in symbols.iter().zip(&mut pictures) {
         if !seen.insert(picture.clone()) {

@@ -8,12 +8,12 @@ use super::properties::{CHARACTER, Properties, toml_key};
 /// The keys of a tile or a thing, with their values as TOML and the origin of each.
 #[derive(Clone, Default)]
 pub(crate) struct Definition {
-    pub(crate) keys: BTreeMap<String, Key>,
+    pub(crate) keys: BTreeMap<String, KeyValue>,
     pub(crate) character: Option<char>,
 }
 
 #[derive(Clone)]
-pub(crate) struct Key {
+pub(crate) struct KeyValue {
     pub(crate) toml: String,
     pub(crate) origin: Rc<str>,
     /// `true` if it belongs to the floor or the ceiling, which a wall hides.
@@ -26,7 +26,7 @@ impl Definition {
     }
 
     pub(crate) fn set(&mut self, key: &str, toml: String, origin: &Rc<str>) {
-        let key_value = Key { toml, origin: origin.clone(), is_ground: false };
+        let key_value = KeyValue { toml, origin: origin.clone(), is_ground: false };
         self.keys.insert(key.to_owned(), key_value);
     }
 

@@ -9,11 +9,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 use std::rc::Rc;
 
-use super::classes::{self, FLOORS, FULL, GROUND, Makes, PICTURED, SOLID};
+use super::classes::{self, ClassKind, FLOORS, FULL, GROUND, PICTURED, SOLID};
 use super::legend::{Characters, Definition};
-use super::model::{Content, Layer, MAP, MAX_CELLS, Object, Part, TilePicture, TileView, TiledMap};
+use super::model::{
+    Content, MAP, MAX_CELLS, Object, SheetRegion, TilePicture, TileView, TiledLayer, TiledMap,
+};
 use super::properties::{Property, toml_string};
-use super::text::{Grid, Translation, Writer};
+use super::text::{GridOrigins, MapWriter, Translation};
 use crate::fault::{Fault, nearest, quoted};
 use crate::map::keys::CharacterTable;
 
@@ -34,7 +36,7 @@ enum Item {
 }
 
 /// A thing in a cell.
-struct Thing {
+struct PlacedThing {
     definition: Definition,
     origin: Rc<str>,
     patrol: Patrol,
@@ -49,7 +51,7 @@ enum Patrol {
 }
 
 /// A polyline that is nothing else.
-struct Line<'m> {
+struct Polyline<'m> {
     object: &'m Object,
     cells: Vec<usize>,
     is_walked: bool,
@@ -60,13 +62,13 @@ struct Translator<'m> {
     faults: RefCell<Vec<Fault>>,
     reported: RefCell<BTreeSet<(String, String)>>,
     tiles: BTreeMap<u32, Option<Rc<TileView>>>,
-    parts: BTreeMap<String, Part>,
+    parts: BTreeMap<String, SheetRegion>,
     /// The stack below, the layer, and the item on top. The first one is empty.
     stacks: Vec<(u32, usize, Item)>,
     known: BTreeMap<(u32, usize, Item), u32>,
     /// The stack of each cell.
     cells: Vec<u32>,
-    things: BTreeMap<usize, Thing>,
+    things: BTreeMap<usize, PlacedThing>,
     characters: Characters,
 }
 
@@ -103,7 +105,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn layers(&self) -> impl Iterator<Item = (usize, &'m Layer)> + use<'m> {
+    fn layers(&self) -> impl Iterator<Item = (usize, &'m TiledLayer)> + use<'m> {
         self.map.layers.iter().enumerate()
     }
 
@@ -125,9 +127,9 @@ impl<'m> Translator<'m> {
     fn picture(&mut self, picture: &TilePicture) -> String {
         let part = match picture {
             TilePicture::File(file) => return file.clone(),
-            TilePicture::Part(part) => part,
+            TilePicture::Region(part) => part,
         };
-        let Part { file, at, size } = part;
+        let SheetRegion { file, at, size } = part;
         let stem = file.rsplit_once('.').map_or(&**file, |(stem, _)| stem);
         let mut name = format!("{stem}-{}-{}.png", at[0], at[1]);
         if self.parts.get(&name).is_some_and(|known| known != part) {
@@ -155,7 +157,7 @@ impl<'m> Translator<'m> {
                 match &last.1 {
                     Some(definition) => {
                         let (definition, origin) = (definition.clone(), origin());
-                        self.stand(cell, Thing { definition, origin, patrol: Patrol::None });
+                        self.stand(cell, PlacedThing { definition, origin, patrol: Patrol::None });
                     }
                     None => self.put(cell, index, Item::Tile(gid)),
                 }
@@ -176,7 +178,7 @@ impl<'m> Translator<'m> {
     }
 
     /// Lets a thing stand in a cell, if nothing else does.
-    fn stand(&mut self, cell: usize, thing: Thing) {
+    fn stand(&mut self, cell: usize, thing: PlacedThing) {
         if self.things.len() >= MAX_THINGS {
             let message = format!("the map has more than {MAX_THINGS} things");
             return self.fault(MAP, message, "draw fewer of them");
@@ -199,15 +201,15 @@ impl<'m> Translator<'m> {
     }
 
     fn place_objects(&mut self) {
-        let mut lines: Vec<Line<'m>> = Vec::new();
+        let mut lines: Vec<Polyline<'m>> = Vec::new();
         let mut cells_left = MAX_CELLS;
         for (index, layer) in self.layers() {
             let Content::Objects(objects) = &layer.content else { continue };
             for (number, object) in objects.iter().enumerate().filter(|(_, it)| !it.is_text) {
-                let Some((definition, makes)) = self.definition(object) else { continue };
-                match makes {
-                    Some(Makes::Thing) => self.place_thing(object, definition),
-                    Some(Makes::Tile) => {
+                let Some((definition, kind)) = self.definition(object) else { continue };
+                match kind {
+                    Some(ClassKind::Thing) => self.place_thing(object, definition),
+                    Some(ClassKind::Tile) => {
                         let cells = self.covered(object);
                         cells_left = cells_left.saturating_sub(cells.len());
                         if cells_left == 0 {
@@ -220,7 +222,7 @@ impl<'m> Translator<'m> {
                     }
                     None => {
                         let cells = self.cells_of_points(object);
-                        lines.push(Line { object, cells, is_walked: false });
+                        lines.push(Polyline { object, cells, is_walked: false });
                     }
                 }
             }
@@ -235,7 +237,7 @@ impl<'m> Translator<'m> {
 
     /// The keys of an object and its use; no use for a line that is only a way. Reports an
     /// object that says nothing.
-    fn definition(&mut self, object: &Object) -> Option<(Definition, Option<Makes>)> {
+    fn definition(&mut self, object: &Object) -> Option<(Definition, Option<ClassKind>)> {
         let tile = match object.tile {
             0 => None,
             gid => Some(self.tile(gid, &object.origin)?),
@@ -251,15 +253,15 @@ impl<'m> Translator<'m> {
         let is_thing = classes::is_thing("", |key| definition.keys.contains_key(key));
         let is_tile = definition.has(&SOLID) || definition.has(&FLOORS);
         let picture = tile.as_ref().and_then(|tile| tile.picture.as_ref());
-        let makes = match (made, picture) {
-            (Some(makes), _) => makes,
-            (None, _) if is_thing => Makes::Thing,
+        let kind = match (made, picture) {
+            (Some(kind), _) => kind,
+            (None, _) if is_thing => ClassKind::Thing,
             (None, Some(picture)) if !is_tile => {
                 let picture = toml_string(&self.picture(picture));
                 definition.set("sprite", picture, &object.origin);
-                Makes::Thing
+                ClassKind::Thing
             }
-            (None, _) if !definition.keys.is_empty() => Makes::Tile,
+            (None, _) if !definition.keys.is_empty() => ClassKind::Tile,
             (None, _) if !object.points.is_empty() => return Some((definition, None)),
             (None, _) => {
                 let help =
@@ -268,7 +270,7 @@ impl<'m> Translator<'m> {
                 return None;
             }
         };
-        Some((definition, Some(makes)))
+        Some((definition, Some(kind)))
     }
 
     /// Adds the value of a class to a definition, unless it has one. Returns the use of
@@ -280,7 +282,7 @@ impl<'m> Translator<'m> {
         class: &str,
         tile: Option<&TileView>,
         origin: &Rc<str>,
-    ) -> Option<Option<Makes>> {
+    ) -> Option<Option<ClassKind>> {
         if matches!(class, "" | "patrol") {
             return Some(None);
         }
@@ -302,12 +304,12 @@ impl<'m> Translator<'m> {
             return None;
         };
         for (key, value) in [(class.name, value.as_str())].iter().chain(class.others) {
-            let is_required = *key == class.name || class.makes == Makes::Tile;
+            let is_required = *key == class.name || class.kind == ClassKind::Tile;
             if is_required && !definition.keys.contains_key(*key) {
                 definition.set(key, (*value).to_owned(), origin);
             }
         }
-        Some(Some(class.makes))
+        Some(Some(class.kind))
     }
 
     fn place_thing(&mut self, object: &'m Object, mut definition: Definition) {
@@ -330,7 +332,7 @@ impl<'m> Translator<'m> {
                 "move it into a cell, or delete it",
             );
         };
-        self.stand(cell, Thing { definition, origin, patrol });
+        self.stand(cell, PlacedThing { definition, origin, patrol });
     }
 
     /// The cell at a place of the map; `None` outside.
@@ -379,7 +381,7 @@ impl<'m> Translator<'m> {
 
     /// Finds the cells of each patrol. A line that no guard names belongs to the guard in the cell
     /// where it begins.
-    fn find_patrols(&mut self, lines: &mut [Line<'m>]) {
+    fn find_patrols(&mut self, lines: &mut [Polyline<'m>]) {
         for thing in self.things.values_mut() {
             let Patrol::Of(id) = thing.patrol else { continue };
             let Some(line) = lines.iter_mut().find(|line| line.object.id == id) else {
@@ -449,7 +451,7 @@ impl<'m> Translator<'m> {
 
     /// The definition of a tile on `layer`, whose name says what the picture of a tile is. The keys
     /// of the layer count for tiles that can have them and do not.
-    fn tile_on(&mut self, gid: u32, layer: &Layer) -> Definition {
+    fn tile_on(&mut self, gid: u32, layer: &TiledLayer) -> Definition {
         let mut definition = Definition::default();
         let Some(tile) = self.tile(gid, &layer.origin) else { return definition };
         definition.take(&tile.properties, &tile.origin);
@@ -548,17 +550,17 @@ impl<'m> Translator<'m> {
                 (start..).zip(stacks).map(character).collect()
             })
             .collect();
-        let mut writer = Writer::default();
+        let mut writer = MapWriter::default();
         writer.write_map(&self.map.properties, &rows);
         let tiles = tiles.values().filter(|(character, _)| *character != '.');
         let tiles: BTreeMap<char, Definition> = tiles.cloned().collect();
         writer.write_section("[tiles]", &tiles);
         writer.write_section("[things]", &legend);
-        let Writer { text, origins, grid } = writer;
+        let MapWriter { text, origins, grid } = writer;
         let tops = self.stacks.iter().map(|&(_, layer, item)| {
             let layer = self.map.layers.get(layer);
             match (layer, item) {
-                (Some(Layer { content: Content::Objects(it), .. }), Item::Object(number)) => {
+                (Some(TiledLayer { content: Content::Objects(it), .. }), Item::Object(number)) => {
                     it[number].origin.clone()
                 }
                 (Some(layer), _) => layer.origin.clone(),
@@ -566,7 +568,7 @@ impl<'m> Translator<'m> {
             }
         });
         let things = self.things.iter().map(|(cell, thing)| (*cell, thing.origin.clone()));
-        let grid = Grid {
+        let grid = GridOrigins {
             place: grid,
             width: self.map.width,
             tops: tops.collect(),

@@ -25,11 +25,11 @@ pub(crate) struct TiledMap {
     /// The width and height of a cell, in the units of objects.
     pub(crate) cell: [f64; 2],
     pub(crate) properties: Properties,
-    pub(crate) layers: Vec<Layer>,
-    tilesets: Vec<Tileset>,
+    pub(crate) layers: Vec<TiledLayer>,
+    tilesets: Vec<TiledTileset>,
 }
 
-pub(crate) struct Layer {
+pub(crate) struct TiledLayer {
     pub(crate) name: String,
     /// The place of faults.
     pub(crate) origin: Rc<str>,
@@ -58,15 +58,15 @@ pub(crate) struct Object {
     pub(crate) is_text: bool,
 }
 
-struct Tileset {
+struct TiledTileset {
     first: u32,
     name: String,
-    tiles: BTreeMap<u32, Tile>,
+    tiles: BTreeMap<u32, TilesetTile>,
     /// The image that all tiles are parts of.
-    sheet: Option<Sheet>,
+    sheet: Option<TileSheet>,
 }
 
-struct Sheet {
+struct TileSheet {
     image: String,
     columns: u32,
     /// The number of tiles.
@@ -78,7 +78,7 @@ struct Sheet {
 }
 
 #[derive(Clone, Default)]
-struct Tile {
+struct TilesetTile {
     class: String,
     properties: Properties,
     image: Option<String>,
@@ -96,26 +96,26 @@ pub(crate) struct TileView {
 pub(crate) enum TilePicture {
     /// A whole file.
     File(String),
-    Part(Part),
+    Region(SheetRegion),
 }
 
 /// A rectangle of a PNG file, with its left upper corner and its size in texels.
 #[derive(Clone, PartialEq, Eq)]
-pub(crate) struct Part {
+pub(crate) struct SheetRegion {
     pub(crate) file: String,
     pub(crate) at: [u32; 2],
     pub(crate) size: [u32; 2],
 }
 
 /// A fault of the map, or the faults of another file that it names.
-pub(crate) enum Wrong {
-    Here(Fault),
-    Elsewhere(Faults),
+pub(crate) enum TiledError {
+    InMap(Fault),
+    InOtherFile(Faults),
 }
 
-impl From<Fault> for Wrong {
+impl From<Fault> for TiledError {
     fn from(fault: Fault) -> Self {
-        Self::Here(fault)
+        Self::InMap(fault)
     }
 }
 
@@ -157,7 +157,7 @@ impl Fields for Value {
 
 impl TiledMap {
     /// Reads the map in `root`. Tilesets come from `files`.
-    pub(crate) fn read(root: &Value, files: &dyn TextureFiles) -> Result<Self, Wrong> {
+    pub(crate) fn read(root: &Value, files: &dyn TextureFiles) -> Result<Self, TiledError> {
         let fault = |message: &str, help: &str| Fault::at(MAP, message).help(help);
         if !matches!(root.text("orientation"), "" | "orthogonal") {
             let help = "make a new map, of the orientation Orthogonal";
@@ -177,14 +177,14 @@ impl TiledMap {
             return Err(too_large(MAP).into());
         }
         let properties = Properties::read(root.list("properties"), MAP, &MAP.into())?;
-        let tilesets = root.list("tilesets").iter().map(|it| Tileset::read(it, files));
+        let tilesets = root.list("tilesets").iter().map(|it| TiledTileset::read(it, files));
         let mut map = Self {
             width,
             height,
             cell,
             properties,
             layers: Vec::new(),
-            tilesets: tilesets.collect::<Result<_, Wrong>>()?,
+            tilesets: tilesets.collect::<Result<_, TiledError>>()?,
         };
         map.tilesets.sort_by_key(|tileset| tileset.first);
         let mut cells_left = MAX_CELLS;
@@ -223,7 +223,7 @@ impl TiledMap {
                 _ => continue,
             };
             let properties = Properties::read(layer.list("properties"), MAP, &origin)?;
-            self.layers.push(Layer { name: name.to_owned(), origin, properties, content });
+            self.layers.push(TiledLayer { name: name.to_owned(), origin, properties, content });
         }
         Ok(())
     }
@@ -235,14 +235,14 @@ impl TiledMap {
         let id = gid - tileset.first;
         let tile = tileset.tiles.get(&id);
         let (tile, picture) = match (tile, &tileset.sheet) {
-            (Some(Tile { image: Some(image), .. }), _) => {
+            (Some(TilesetTile { image: Some(image), .. }), _) => {
                 (tile.cloned(), Some(TilePicture::File(image.clone())))
             }
             (_, Some(sheet)) if id < sheet.count => (tile.cloned(), Some(sheet.part(id))),
             (None, _) => return None,
             _ => (tile.cloned(), None),
         };
-        let Tile { class, properties, .. } = tile.unwrap_or_default();
+        let TilesetTile { class, properties, .. } = tile.unwrap_or_default();
         let origin = format!("tile {id} of the tileset {}", quoted(&tileset.name)).into();
         Some(TileView { origin, class, properties, picture })
     }
@@ -379,8 +379,8 @@ fn points(value: &Value) -> Option<Vec<[f64; 2]>> {
     pairs.collect()
 }
 
-impl Tileset {
-    fn read(entry: &Value, files: &dyn TextureFiles) -> Result<Self, Wrong> {
+impl TiledTileset {
+    fn read(entry: &Value, files: &dyn TextureFiles) -> Result<Self, TiledError> {
         let first = entry.count("firstgid");
         let source = entry.text("source");
         if source.is_empty() {
@@ -392,8 +392,8 @@ impl Tileset {
         let bytes = files.read(&path).map_err(|error: TextureFileError| {
             fault(format!("{path} {error}")).help("copy the tileset beside the map")
         })?;
-        let text = Faults::text_of(bytes, &path, "tileset").map_err(Wrong::Elsewhere)?;
-        let tileset = document::parse(&text, &path).map_err(Wrong::Elsewhere)?;
+        let text = Faults::text_of(bytes, &path, "tileset").map_err(TiledError::InOtherFile)?;
+        let tileset = document::parse(&text, &path).map_err(TiledError::InOtherFile)?;
         let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
         Ok(Self { first, ..Self::of(&tileset, folder)? })
     }
@@ -410,7 +410,7 @@ impl Tileset {
             }),
         };
         let size = ["tilewidth", "tileheight"].map(|key| tileset.count(key));
-        let sheet = image(tileset)?.map(|image| Sheet {
+        let sheet = image(tileset)?.map(|image| TileSheet {
             image,
             columns: tileset.count("columns").max(1),
             count: tileset.count("tilecount"),
@@ -423,20 +423,20 @@ impl Tileset {
             let id = tile.count("id");
             let origin = format!("tile {id} of {origin}").into();
             let properties = Properties::read(tile.list("properties"), folder, &origin)?;
-            tiles.insert(id, Tile { class: tile.class(), properties, image: image(tile)? });
+            tiles.insert(id, TilesetTile { class: tile.class(), properties, image: image(tile)? });
         }
         Ok(Self { first: 0, name: name.to_owned(), tiles, sheet })
     }
 }
 
-impl Sheet {
+impl TileSheet {
     fn part(&self, id: u32) -> TilePicture {
         let place = [id % self.columns, id / self.columns];
         let at = [0, 1].map(|axis| {
             let step = self.size[axis].saturating_add(self.spacing);
             place[axis].saturating_mul(step).saturating_add(self.margin)
         });
-        TilePicture::Part(Part { file: self.image.clone(), at, size: self.size })
+        TilePicture::Region(SheetRegion { file: self.image.clone(), at, size: self.size })
     }
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::rc::Rc;
 
 use super::legend::Definition;
-use super::model::{MAP, Part};
+use super::model::{MAP, SheetRegion};
 use super::properties::{Properties, toml_key, toml_string};
 use crate::fault::quoted;
 use crate::map::keys;
@@ -16,15 +16,15 @@ use crate::map::keys;
 pub(crate) struct Translation {
     pub(crate) text: String,
     /// The pictures that are parts of other files, by name.
-    pub(crate) parts: BTreeMap<String, Part>,
+    pub(crate) parts: BTreeMap<String, SheetRegion>,
     /// The first byte of each part of the text, with its origin.
     pub(crate) origins: Vec<(usize, Rc<str>)>,
-    pub(crate) grid: Grid,
+    pub(crate) grid: GridOrigins,
 }
 
 /// The cells, with the places of faults.
 #[derive(Default)]
-pub(crate) struct Grid {
+pub(crate) struct GridOrigins {
     /// The bytes of the rows in the text.
     pub(crate) place: Range<usize>,
     pub(crate) width: usize,
@@ -48,7 +48,7 @@ impl Translation {
     }
 }
 
-impl Grid {
+impl GridOrigins {
     /// The origin of the cell after the text `before` of the grid.
     fn origin(&self, before: &str) -> String {
         let cell = before.chars().filter(|it| *it != '\n').count();
@@ -63,14 +63,14 @@ impl Grid {
 
 /// The text of a map file while it is written.
 #[derive(Default)]
-pub(crate) struct Writer {
+pub(crate) struct MapWriter {
     pub(crate) text: String,
     pub(crate) origins: Vec<(usize, Rc<str>)>,
     /// The bytes of the rows.
     pub(crate) grid: Range<usize>,
 }
 
-impl Writer {
+impl MapWriter {
     /// Writes the keys of the map, and the grid.
     pub(crate) fn write_map(&mut self, properties: &Properties, rows: &[String]) {
         let map: Rc<str> = MAP.into();

@@ -12,7 +12,7 @@ use crate::speed::{
 use cellcaster::cli::Error;
 use cellcaster::cli::options::within;
 use cellcaster::cli::output_file::OutputFile;
-use cellcaster::cli::parse::Takes;
+use cellcaster::cli::parse::ValidValues;
 
 /// Measure how fast this machine draws and encodes frames
 #[derive(Args, Debug)]
@@ -28,7 +28,7 @@ pub(crate) struct Bench {
     plot: Option<PathBuf>,
 }
 
-fn seconds(text: &str) -> Result<u8, Takes> {
+fn seconds(text: &str) -> Result<u8, ValidValues> {
     within(text, |seconds| (1..=60).contains(seconds), "a whole number from 1 to 60")
 }
 

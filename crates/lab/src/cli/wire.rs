@@ -12,7 +12,7 @@ use crate::wire::{WirePlan, report, report_glyphs, report_palettes};
 use cellcaster::app::parts::Choice;
 use cellcaster::app::{Replay, Settings};
 use cellcaster::cli::options::{choice, fidelity, frames, window};
-use cellcaster::cli::parse::Takes;
+use cellcaster::cli::parse::ValidValues;
 use cellcaster::cli::replay::{SHOWCASE, load};
 use cellcaster::cli::{Error, level};
 use cellcaster::color::palette::ColorDepth;
@@ -65,18 +65,18 @@ enum Glyphs {
     All,
 }
 
-fn palette(text: &str) -> Result<ColorDepth, Takes> {
+fn palette(text: &str) -> Result<ColorDepth, ValidValues> {
     let depth = ColorDepth::named(text);
     let indexed = [ColorDepth::Indexed256, ColorDepth::Indexed16];
-    depth.filter(|depth| indexed.contains(depth)).ok_or(Takes("256 or 16"))
+    depth.filter(|depth| indexed.contains(depth)).ok_or(ValidValues("256 or 16"))
 }
 
-fn glyphs(text: &str) -> Result<Glyphs, Takes> {
+fn glyphs(text: &str) -> Result<Glyphs, ValidValues> {
     match text {
         "all" => Ok(Glyphs::All),
         _ => GlyphSet::named(text)
             .map(Glyphs::One)
-            .ok_or(Takes("half, quadrant, sextant, octant, ascii, ramp or all")),
+            .ok_or(ValidValues("half, quadrant, sextant, octant, ascii, ramp or all")),
     }
 }
 

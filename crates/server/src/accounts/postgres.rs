@@ -10,7 +10,7 @@
 //!   timer here, and `statement_timeout` there.
 //! - **A lost connection is made again.** A call that lost it before the commit is run once more. A call that lost it
 //!   during the commit fails, and its sentence says that the change may be kept or not. After a failed attempt to
-//!   connect, calls fail at once for [`PAUSE`].
+//!   connect, calls fail at once for [`RETRY_INTERVAL`].
 //! - **The first host creates the tables**, under a lock, and gives them a version. Tables of another version are left
 //!   alone, and so is a database in which another program has tables with these names.
 //! - **A password is never shown.** Sentences contain neither the address as it was given nor a part of it that may
@@ -50,7 +50,7 @@ const UNDO_TIMEOUT: Duration = Duration::from_secs(1);
 /// The time limit for creating the tables, including the wait for another host that creates them.
 const SCHEMA_TIMEOUT: Duration = Duration::from_secs(30);
 /// How long calls fail at once after a failed attempt to connect.
-const PAUSE: Duration = Duration::from_secs(1);
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 /// How many times a transaction is run again after conflicts.
 const MAX_CONFLICTS: u32 = 12;
 /// The longest wait before a transaction is run again.
@@ -242,7 +242,9 @@ impl PostgresDatabase {
         &mut self,
         deadline: tokio::time::Instant,
     ) -> Result<PostgresConnection, StoreFailure> {
-        if let Some((_, failure)) = self.refused.as_ref().filter(|(at, _)| at.elapsed() < PAUSE) {
+        if let Some((_, failure)) =
+            self.refused.as_ref().filter(|(at, _)| at.elapsed() < RETRY_INTERVAL)
+        {
             return Err(failure.clone());
         }
         let Some(runtime) = &self.runtime else {

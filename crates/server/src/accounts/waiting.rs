@@ -59,7 +59,7 @@ pub struct WaitingResult {
 
 /// The outcome for a result that has waited.
 #[derive(Debug)]
-pub enum Late {
+pub enum LateOutcome {
     /// It was recorded, and no longer waits.
     Recorded(Account, VerifiedRun),
     /// Its script is not a run that counts in this version. It no longer waits.
@@ -140,10 +140,10 @@ impl WaitingResults {
         store: &mut HostStore,
         world: impl FnOnce(&str) -> Option<World>,
         now: UnixTime,
-    ) -> Option<Late> {
+    ) -> Option<LateOutcome> {
         let result = self.results.get(index)?;
         let late = result.record(store, world, now);
-        if !matches!(late, Late::Refused(_) | Late::NotNow) {
+        if !matches!(late, LateOutcome::Refused(_) | LateOutcome::NotNow) {
             self.results.remove(index);
             self.is_saved = false;
         }
@@ -194,7 +194,7 @@ impl WaitingResult {
         store: &mut HostStore,
         world: impl FnOnce(&str) -> Option<World>,
         now: UnixTime,
-    ) -> Late {
+    ) -> LateOutcome {
         // A replay takes long, so the store is asked first.
         let account = match store.account(&self.key) {
             Ok(Some(account)) => account,
@@ -203,21 +203,21 @@ impl WaitingResult {
         };
         let run = match verify_at(&self.script, self.at, world) {
             Ok(run) => run,
-            Err(reason) => return Late::Refuted(self.clone(), reason),
+            Err(reason) => return LateOutcome::Refuted(self.clone(), reason),
         };
         match store.record(account.id, &run, self.at) {
-            Ok(_) => Late::Recorded(account, run),
+            Ok(_) => LateOutcome::Recorded(account, run),
             Err(failure) => self.refused(failure, now),
         }
     }
 
-    fn refused(&self, failure: StoreFailure, now: UnixTime) -> Late {
+    fn refused(&self, failure: StoreFailure, now: UnixTime) -> LateOutcome {
         if failure.is_of_now() {
-            Late::NotNow
+            LateOutcome::NotNow
         } else if self.at.after(MAX_AGE) < now {
-            Late::GivenUp(self.clone(), failure)
+            LateOutcome::GivenUp(self.clone(), failure)
         } else {
-            Late::Refused(failure)
+            LateOutcome::Refused(failure)
         }
     }
 

@@ -21,7 +21,7 @@ use super::HostStore;
 pub(crate) type Call = Box<dyn FnOnce(&mut HostStore) + Send>;
 
 /// The answer to a call. It is an error if the call was not accepted or has panicked.
-pub(crate) type Answer<T> = oneshot::Receiver<T>;
+pub(crate) type CallResult<T> = oneshot::Receiver<T>;
 
 /// The sender of calls to a store.
 pub(crate) struct StoreWorker {
@@ -53,7 +53,7 @@ impl StoreWorker {
     pub(crate) fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut HostStore) -> T + Send + 'static,
-    ) -> Answer<T> {
+    ) -> CallResult<T> {
         let (answer, receiver) = oneshot::channel();
         self.run(move |store| _ = answer.send(act(store)));
         receiver

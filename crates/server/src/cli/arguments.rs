@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use cellcaster::cli::animation::Excerpt;
-use cellcaster::cli::parse::Takes;
+use cellcaster::cli::parse::ValidValues;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
@@ -280,13 +280,13 @@ pub(crate) struct Replay {
 struct ClusterAddress(String);
 
 impl ClusterAddress {
-    fn parse(text: &str) -> Result<Self, Takes> {
+    fn parse(text: &str) -> Result<Self, ValidValues> {
         let is_address = |text: &str| {
             let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
             rest.is_some_and(|rest| !rest.is_empty())
         };
         let takes = "a NATS address such as nats://host:4222, or several separated by commas";
-        text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(Takes(takes))
+        text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(ValidValues(takes))
     }
 }
 
@@ -297,40 +297,41 @@ impl fmt::Debug for ClusterAddress {
     }
 }
 
-fn address(text: &str) -> Result<SocketAddr, Takes> {
-    text.parse().map_err(|_| Takes("an address and a port, such as 0.0.0.0:2222 or [::]:2222"))
+fn address(text: &str) -> Result<SocketAddr, ValidValues> {
+    text.parse()
+        .map_err(|_| ValidValues("an address and a port, such as 0.0.0.0:2222 or [::]:2222"))
 }
 
-fn key(text: &str) -> Result<AccountKey, Takes> {
+fn key(text: &str) -> Result<AccountKey, ValidValues> {
     AccountKey::parse(text)
-        .ok_or(Takes("a fingerprint as ssh-keygen -l prints it, such as SHA256:..."))
+        .ok_or(ValidValues("a fingerprint as ssh-keygen -l prints it, such as SHA256:..."))
 }
 
-fn range(text: &str) -> Result<AddressPrefix, Takes> {
+fn range(text: &str) -> Result<AddressPrefix, ValidValues> {
     AddressPrefix::parse(text)
-        .ok_or(Takes("an address, or a range such as 203.0.113.0/24 or 2001:db8::/64"))
+        .ok_or(ValidValues("an address, or a range such as 203.0.113.0/24 or 2001:db8::/64"))
 }
 
-fn session(text: &str) -> Result<SessionId, Takes> {
+fn session(text: &str) -> Result<SessionId, ValidValues> {
     SessionId::parse(text)
-        .ok_or(Takes("a session id from \"cellcaster-server admin who\", such as 3f9a-7"))
+        .ok_or(ValidValues("a session id from \"cellcaster-server admin who\", such as 3f9a-7"))
 }
 
-fn level(text: &str) -> Result<String, Takes> {
+fn level(text: &str) -> Result<String, ValidValues> {
     let is_plain =
         |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte);
     let is_name = !text.is_empty() && text.bytes().all(is_plain);
-    is_name
-        .then(|| text.to_owned())
-        .ok_or(Takes("the name of a built-in level, or of one of the host's maps without .toml"))
+    is_name.then(|| text.to_owned()).ok_or(ValidValues(
+        "the name of a built-in level, or of one of the host's maps without .toml",
+    ))
 }
 
-fn difficulty(text: &str) -> Result<Difficulty, Takes> {
-    Difficulty::named(text).ok_or(Takes("easy, normal or hard"))
+fn difficulty(text: &str) -> Result<Difficulty, ValidValues> {
+    Difficulty::named(text).ok_or(ValidValues("easy, normal or hard"))
 }
 
 /// Parses a time such as `7d`, up to a hundred years.
-fn time(text: &str) -> Result<Duration, Takes> {
+fn time(text: &str) -> Result<Duration, ValidValues> {
     const MAX_LENGTH: u64 = 100 * 365 * 24 * 60 * 60;
     let seconds = || {
         let unit = text.chars().last()?;
@@ -346,7 +347,7 @@ fn time(text: &str) -> Result<Duration, Takes> {
         let seconds = number.parse::<u64>().ok().filter(|_| is_number)?.checked_mul(seconds)?;
         (1..=MAX_LENGTH).contains(&seconds).then(|| Duration::from_secs(seconds))
     };
-    seconds().ok_or(Takes("a number with m, h, d or w, such as 30m or 7d"))
+    seconds().ok_or(ValidValues("a number with m, h, d or w, such as 30m or 7d"))
 }
 
 #[cfg(test)]

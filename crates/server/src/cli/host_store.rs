@@ -9,7 +9,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use cellcaster::cli::Error;
-use cellcaster::cli::parse::Takes;
+use cellcaster::cli::parse::ValidValues;
 use cellcaster::fault::printable_path;
 
 use crate::accounts::{HostStore, StoreFailure};
@@ -25,8 +25,9 @@ pub(crate) enum StoreLocation {
 
 impl StoreLocation {
     /// Reads the value of `--store`.
-    pub(crate) fn parse(text: &str) -> Result<Self, Takes> {
-        const TAKES: Takes = Takes("a folder, or an address such as postgres://user@host/database");
+    pub(crate) fn parse(text: &str) -> Result<Self, ValidValues> {
+        const TAKES: ValidValues =
+            ValidValues("a folder, or an address such as postgres://user@host/database");
         if text.is_empty() { Err(TAKES) } else { Ok(Self::of(text.into())) }
     }
 

@@ -8,7 +8,7 @@
 //! - The first host with a standing room in its configuration creates it. A host lists the standing rooms of its own
 //!   configuration, and other standing rooms while somebody is in them. Their records stay, because another host may
 //!   have them in its configuration.
-//! - If the record of a running room has not changed for [`ABANDONED`], the room has lost its host. Any other host then
+//! - If the record of a running room has not changed for [`RECORD_TIMEOUT`], the room has lost its host. Any other host then
 //!   runs the room until it is empty.
 //! - The bus stores the room and the member of each player with a key, so that any host finds them again. The entry is
 //!   put when the player joins, and removed when they leave. Otherwise only the room ends a member. So the entry may be
@@ -23,26 +23,26 @@ use tokio::time::{Instant, interval, sleep, timeout};
 
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
-use super::message::{MemberWish, Record, to_bytes, version};
+use super::message::{Record, RequestedMember, to_bytes, version};
 use super::replica::{MemberRequest, Replica};
-use super::visits::{ANNOUNCED, Visits};
+use super::visits::{ANNOUNCEMENT_INTERVAL, Visits};
 use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::lock::locked;
 use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 use crate::rooms::room::{Header, MemberId, Mode};
 use crate::rooms::sequencer::RoomInterface;
-use crate::rooms::summary::{RoomId, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest};
 use cellcaster::rng;
 
 /// How long the record of a running room may stay unchanged before its host counts as gone.
-const ABANDONED: Duration = Duration::from_secs(15);
+const RECORD_TIMEOUT: Duration = Duration::from_secs(15);
 /// The time between two rounds of maintenance.
 const MAINTENANCE_INTERVAL: Duration = Duration::from_secs(5);
 /// The most requests to be a member that wait in one room.
 const MAX_REQUESTS: usize = 64;
 /// The time limit for leaving the rooms to other hosts.
-const ENDING: Duration = Duration::from_secs(2);
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 /// How many times a request is tried, because a replica may end at that moment.
 const TRIES: usize = 3;
 
@@ -54,7 +54,7 @@ struct SharedRoomsState {
     context: Arc<HostContext>,
     /// The directory of rooms that lobbies show.
     rooms: Rooms,
-    standing: Mutex<Vec<RoomWish>>,
+    standing: Mutex<Vec<RoomRequest>>,
     /// The numbers of the standing rooms.
     own_standing: Mutex<BTreeSet<RoomId>>,
     records: Mutex<BTreeMap<RoomId, ReceivedRecord>>,
@@ -85,7 +85,7 @@ pub(crate) struct Entrant {
 
 impl SharedRooms {
     /// Starts the directory on the current runtime.
-    pub(crate) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
+    pub(crate) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomRequest>) -> Self {
         let (standing, records) = (Mutex::new(standing), Mutex::default());
         let shared = Self(Arc::new(SharedRoomsState {
             context,
@@ -105,7 +105,7 @@ impl SharedRooms {
     /// Opens a room, and joins it. Others enter a private room with its code only.
     pub(crate) async fn open(
         &self,
-        wish: &RoomWish,
+        request: &RoomRequest,
         is_private: bool,
         visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
@@ -115,7 +115,7 @@ impl SharedRooms {
             return Err(RoomRefusal::TooMany);
         }
         let context = &self.0.context;
-        let header = self.header(wish).ok_or(RoomRefusal::NoLevel)?;
+        let header = self.header(request).ok_or(RoomRefusal::NoLevel)?;
         let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
         let code = is_private.then(|| self.0.rooms.new_code());
         let record = to_bytes(&Record::new(header, false, code));
@@ -149,7 +149,7 @@ impl SharedRooms {
 
     /// Announces this host again and again.
     async fn announce(self) {
-        let mut periods = interval(ANNOUNCED);
+        let mut periods = interval(ANNOUNCEMENT_INTERVAL);
         while !*self.0.context.ending.borrow() {
             periods.tick().await;
             self.visits().announce(self.0.context.visitors.count());
@@ -158,8 +158,8 @@ impl SharedRooms {
 
     async fn join(&self, id: RoomId, entrant: &Entrant) -> Result<Place, RoomRefusal> {
         let Entrant { name, key } = entrant;
-        let wish = MemberWish::Join { name: name.clone(), is_kept: key.is_some() };
-        let place = self.be_member(id, wish).await?;
+        let requested = RequestedMember::Join { name: name.clone(), is_kept: key.is_some() };
+        let place = self.be_member(id, requested).await?;
         if let Some((key, member)) = key.zip(place.member_id()) {
             self.note_place(key, id, member).await;
         }
@@ -179,7 +179,7 @@ impl SharedRooms {
         key: AccountKey,
         (id, member): (RoomId, MemberId),
     ) -> Result<Place, RoomRefusal> {
-        let place = self.be_member(id, MemberWish::Return(member)).await;
+        let place = self.be_member(id, RequestedMember::Return(member)).await;
         if matches!(place, Err(RoomRefusal::Gone | RoomRefusal::NoLevel)) {
             self.forget_place(key).await;
         }
@@ -219,15 +219,19 @@ impl SharedRooms {
             }
             self.visits().leave().await;
         };
-        _ = timeout(ENDING, all_ended).await;
+        _ = timeout(SHUTDOWN_TIMEOUT, all_ended).await;
     }
 
     /// Becomes a member of a room.
-    async fn be_member(&self, id: RoomId, wish: MemberWish) -> Result<Place, RoomRefusal> {
+    async fn be_member(
+        &self,
+        id: RoomId,
+        requested: RequestedMember,
+    ) -> Result<Place, RoomRefusal> {
         for _ in 0..TRIES {
             let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            let request = (wish.clone(), reply);
+            let request = (requested.clone(), reply);
             if handle.requests.send(request).await.is_err() {
                 continue;
             }
@@ -309,16 +313,16 @@ impl SharedRooms {
     async fn make_standing(&self) {
         let standing = locked(&self.0.standing, |standing| standing.clone());
         let (mut own, mut is_known) = (BTreeSet::new(), true);
-        for (index, wish) in standing.iter().enumerate() {
-            let number = standing[..index].iter().filter(|other| *other == wish).count();
-            match self.header(wish) {
+        for (index, request) in standing.iter().enumerate() {
+            let number = standing[..index].iter().filter(|other| *other == request).count();
+            match self.header(request) {
                 Some(header) => match self.make_standing_room(number, header).await {
                     Ok(id) => own.extend(id),
                     Err(_) => is_known = false,
                 },
                 None => {
                     tracing::error!(
-                        level = wish.level,
+                        level = request.level,
                         "a standing room can't be opened: there is no such level"
                     );
                 }
@@ -386,7 +390,7 @@ impl SharedRooms {
         // A host without the level leaves the room to other hosts.
         let is_abandoned = |known: &ReceivedRecord| {
             known.record.is_running
-                && now.duration_since(known.since) >= ABANDONED
+                && now.duration_since(known.since) >= RECORD_TIMEOUT
                 && catalog.has(&known.record.level)
         };
         locked(&self.0.records, |records| {
@@ -396,10 +400,11 @@ impl SharedRooms {
     }
 
     /// The header of a new room; `None` if there is no such level.
-    fn header(&self, wish: &RoomWish) -> Option<Header> {
+    fn header(&self, request: &RoomRequest) -> Option<Header> {
         let catalog = &self.0.context.catalog;
-        let level = catalog.named(&wish.level).unwrap_or(&wish.level);
-        let header = || Header::new(level, wish.mode, wish.difficulty, self.0.context.chance());
+        let level = catalog.named(&request.level).unwrap_or(&request.level);
+        let header =
+            || Header::new(level, request.mode, request.difficulty, self.0.context.chance());
         catalog.has(level).then(header)
     }
 }

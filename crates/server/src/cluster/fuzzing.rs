@@ -117,8 +117,8 @@ impl SharedRoom {
             PeerMessage::Claim(members) => {
                 sequencer.map(|it| it.claim(&members, now));
             }
-            PeerMessage::Request(token, wish) => {
-                sequencer.map(|it| it.request(token, &wish, now));
+            PeerMessage::Request(token, requested) => {
+                sequencer.map(|it| it.request(token, &requested, now));
             }
             PeerMessage::Joined(..) | PeerMessage::Refused(..) | PeerMessage::Released => {}
         }

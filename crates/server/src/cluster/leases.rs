@@ -1,6 +1,6 @@
 //! The leases of a host's rooms.
 //!
-//! All rooms of a host ask for a renewal at the same time. The requests within [`GATHERED`] become one call to the
+//! All rooms of a host ask for a renewal at the same time. The requests within [`BATCH_DELAY`] become one call to the
 //! store, because each call costs a write to its disk. So a host with many rooms renews all of their leases in time,
 //! however long a write takes.
 
@@ -10,14 +10,14 @@ use std::{mem, thread};
 
 use tokio::sync::oneshot;
 
-use crate::accounts::worker::{Answer, StoreWorker};
+use crate::accounts::worker::{CallResult, StoreWorker};
 use crate::accounts::{Lease, StoreFailure};
 use crate::lock::locked;
 
 /// How long a lease lasts without a renewal.
-pub(crate) const LEASE_TIME: Duration = Duration::from_secs(3);
+pub(crate) const LEASE_DURATION: Duration = Duration::from_secs(3);
 /// How long the first renewal waits for others.
-pub(crate) const GATHERED: Duration = Duration::from_millis(50);
+pub(crate) const BATCH_DELAY: Duration = Duration::from_millis(50);
 /// The most calls that wait: one a second for each room.
 pub(crate) const MAX_CALLS: usize = 4_096;
 
@@ -25,12 +25,12 @@ pub(crate) const MAX_CALLS: usize = 4_096;
 pub(crate) struct Leases {
     pub(crate) store: StoreWorker,
     pub(crate) host: String,
-    pub(crate) gathered: Duration,
+    pub(crate) batch_delay: Duration,
     pub(crate) renewals: Arc<Mutex<Vec<Renewal>>>,
 }
 
 /// The answer to a call; an error if it was not accepted.
-pub(crate) type LeaseAnswer<T> = Answer<Result<T, StoreFailure>>;
+pub(crate) type LeaseAnswer<T> = CallResult<Result<T, StoreFailure>>;
 
 /// A lease to renew, and the sender of the answer.
 pub(crate) type Renewal = (Lease, oneshot::Sender<Result<bool, StoreFailure>>);
@@ -39,20 +39,20 @@ impl Leases {
     /// Asks for the lease of a room, with an epoch above the epoch of its log.
     pub(crate) fn acquire(&self, room: &str, epoch: u64) -> LeaseAnswer<Option<Lease>> {
         let (room, host) = (room.to_owned(), self.host.clone());
-        self.store.call(move |store| store.acquire(&room, &host, LEASE_TIME, epoch))
+        self.store.call(move |store| store.acquire(&room, &host, LEASE_DURATION, epoch))
     }
 
     /// Renews a lease, together with the other waiting renewals.
     pub(crate) fn renew(&self, lease: &Lease) -> LeaseAnswer<bool> {
         let (reply, answer) = oneshot::channel();
         locked(&self.renewals, |renewals| renewals.push((lease.clone(), reply)));
-        let (renewals, gathered) = (Arc::clone(&self.renewals), self.gathered);
+        let (renewals, batch_delay) = (Arc::clone(&self.renewals), self.batch_delay);
         let is_accepted = self.store.run(move |store| {
             // An earlier call may have renewed all of them.
             if locked(&renewals, |renewals| renewals.is_empty()) {
                 return;
             }
-            thread::sleep(gathered);
+            thread::sleep(batch_delay);
             let (leases, replies): (Vec<_>, Vec<_>) =
                 locked(&renewals, mem::take).into_iter().unzip();
             let renewed = store.renew(&leases);
@@ -90,11 +90,16 @@ mod tests {
         let (worker, mut queue) = StoreWorker::new(MAX_CALLS);
         let renewals = Arc::<Mutex<Vec<Renewal>>>::default();
         let host = "one".to_owned();
-        let own =
-            Leases { store: worker, host, gathered: GATHERED, renewals: Arc::clone(&renewals) };
+        let own = Leases {
+            store: worker,
+            host,
+            batch_delay: BATCH_DELAY,
+            renewals: Arc::clone(&renewals),
+        };
         let mut store = HostStore::in_memory();
-        let mut take =
-            |room: usize| store.acquire(&room.to_string(), "one", LEASE_TIME, 0).unwrap().unwrap();
+        let mut take = |room: usize| {
+            store.acquire(&room.to_string(), "one", LEASE_DURATION, 0).unwrap().unwrap()
+        };
         let leases: Vec<Lease> = (0..100).map(&mut take).collect();
         assert!(store.release(&leases[7]).unwrap());
         let asking =

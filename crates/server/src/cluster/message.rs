@@ -17,7 +17,7 @@ use crate::rooms::room::{
     Command, Entry, Header, MemberId, NAME_COLUMNS, Phase, Room, line_within,
 };
 use crate::rooms::summary::{RoomId, RoomRefusal, RoomSummary};
-use cellcaster::game::stored::{Reader, Unrestorable, appended, bits, check};
+use cellcaster::game::stored::{Reader, RestoreError, appended, bits, check};
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 
 /// The version of the format of messages, records and checkpoints.
@@ -64,7 +64,7 @@ pub(crate) enum PeerMessage {
     /// The members on the sending host.
     Claim(Vec<MemberId>),
     /// A request to be a member.
-    Request(Token, MemberWish),
+    Request(Token, RequestedMember),
     /// The answer to a request to join: the member is in the log.
     Joined(Token, MemberId, PlayerColor),
     /// A refused request. The log itself answers a request to return that is granted.
@@ -79,7 +79,7 @@ pub(crate) struct Token(#[serde(with = "bits")] pub(crate) u64);
 
 /// The member that somebody asks to be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum MemberWish {
+pub(crate) enum RequestedMember {
     /// A new member.
     Join {
         #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
@@ -112,13 +112,13 @@ pub(crate) struct Record {
 
 impl LogMessage {
     /// Parses a message.
-    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, RestoreError> {
         let message: Self = parse(bytes)?;
         message.check()?;
         Ok(message)
     }
 
-    fn check(&self) -> Result<(), Unrestorable> {
+    fn check(&self) -> Result<(), RestoreError> {
         check(self.steps <= MAX_STEPS, "the steps of a message")?;
         check(self.entries.iter().all(|entry| entry.step < self.steps), "an entry")
     }
@@ -139,7 +139,7 @@ impl LogMessage {
 
 impl PeerMessage {
     /// Parses a message.
-    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, RestoreError> {
         let message = parse(bytes)?;
         if let Self::Appended(_, message) = &message {
             message.check()?;
@@ -157,7 +157,7 @@ impl Record {
     }
 
     /// Parses a record.
-    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, RestoreError> {
         let record: Self = parse(bytes)?;
         check(record.header.is_possible(), "the header")?;
         check(record.names.iter().all(|name| name.fits(NAME_COLUMNS)), "a name")?;
@@ -197,15 +197,15 @@ pub(crate) fn to_bytes(value: &impl Serialize) -> Vec<u8> {
 }
 
 /// A reader of the bytes after the versions.
-pub(crate) fn reader(bytes: &[u8]) -> Result<Reader<'_>, Unrestorable> {
+pub(crate) fn reader(bytes: &[u8]) -> Result<Reader<'_>, RestoreError> {
     let rest = bytes.strip_prefix((version() + "\n").as_bytes());
-    Reader::of(rest.ok_or(Unrestorable::OtherVersion)?)
+    Reader::of(rest.ok_or(RestoreError::OtherVersion)?)
 }
 
-fn parse<'b, T: Deserialize<'b>>(bytes: &'b [u8]) -> Result<T, Unrestorable> {
+fn parse<'b, T: Deserialize<'b>>(bytes: &'b [u8]) -> Result<T, RestoreError> {
     let mut input = reader(bytes)?;
     let value = input.read()?;
-    if input.rest().is_empty() { Ok(value) } else { Err(Unrestorable::Longer) }
+    if input.rest().is_empty() { Ok(value) } else { Err(RestoreError::Longer) }
 }
 
 #[cfg(test)]
@@ -237,7 +237,7 @@ mod tests {
     fn broadcasts_round_trip() {
         let name = Line::of("a b", NAME_COLUMNS).unwrap();
         let want = Command::Intents { seen: 3, intents: Intents::new() };
-        let join = |is_kept| MemberWish::Join { name: name.clone(), is_kept };
+        let join = |is_kept| RequestedMember::Join { name: name.clone(), is_kept };
         for message in [
             PeerMessage::Appended(9, message(None, vec![leave(0)])),
             PeerMessage::Commands(vec![(MemberId(1), want), (MemberId(2), Command::Leave)]),
@@ -245,7 +245,7 @@ mod tests {
             PeerMessage::Claim(Vec::new()),
             PeerMessage::Request(Token(u64::MAX), join(true)),
             PeerMessage::Request(Token(3), join(false)),
-            PeerMessage::Request(Token(u64::MAX), MemberWish::Return(MemberId(3))),
+            PeerMessage::Request(Token(u64::MAX), RequestedMember::Return(MemberId(3))),
             PeerMessage::Joined(Token(7), MemberId(3), PlayerColor::ALL[2]),
             PeerMessage::Refused(Token(0), RoomRefusal::Full),
             PeerMessage::Refused(Token(7), RoomRefusal::Taken),
@@ -257,7 +257,7 @@ mod tests {
                 assert!(PeerMessage::parse(&bytes[..end]).is_err(), "{message:?}, {end} bytes");
             }
             let longer = [&bytes[..], b"x"].concat();
-            assert_eq!(PeerMessage::parse(&longer), Err(Unrestorable::Longer));
+            assert_eq!(PeerMessage::parse(&longer), Err(RestoreError::Longer));
         }
     }
 
@@ -311,7 +311,7 @@ mod tests {
         assert!(PeerMessage::parse(&to_bytes(&PeerMessage::Claim(vec![member]))).is_err());
         let bytes = to_bytes(&good);
         let other = [b"0.1", &bytes[version().len()..]].concat();
-        assert_eq!(LogMessage::parse(&other), Err(Unrestorable::OtherVersion));
-        assert_eq!(LogMessage::parse(b"\xff"), Err(Unrestorable::OtherVersion));
+        assert_eq!(LogMessage::parse(&other), Err(RestoreError::OtherVersion));
+        assert_eq!(LogMessage::parse(b"\xff"), Err(RestoreError::OtherVersion));
     }
 }

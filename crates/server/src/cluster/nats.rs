@@ -37,9 +37,9 @@ use crate::rooms::summary::RoomId;
 /// The time limit for a call.
 const TIMEOUT: Duration = Duration::from_secs(1);
 /// The time limit for the first connection.
-const FIRST_TIMEOUT: Duration = Duration::from_secs(5);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 /// The time between two pings of the server.
-const PINGS: Duration = Duration::from_secs(2);
+const PING_INTERVAL: Duration = Duration::from_secs(2);
 /// The most messages in a room's log: some minutes without a checkpoint.
 const MAX_MESSAGES: i64 = 20_000;
 /// The most broadcasts of a room, or changes in the list of rooms, that wait. Further ones are lost.
@@ -74,14 +74,14 @@ impl NatsBus {
             servers.iter().map(|it| format!("{}:{}", it.host(), it.port())).collect();
         let names = names.join(", ");
         let options = ConnectOptions::new()
-            .connection_timeout(FIRST_TIMEOUT)
+            .connection_timeout(CONNECT_TIMEOUT)
             .request_timeout(Some(TIMEOUT))
-            .ping_interval(PINGS)
+            .ping_interval(PING_INTERVAL)
             .subscription_capacity(MAX_QUEUED);
         let client = options.connect(servers).await;
         let client = client.map_err(|error| format!("NATS at {names}: {error}"))?;
         let mut context = jetstream::new(client.clone());
-        context.set_timeout(FIRST_TIMEOUT);
+        context.set_timeout(CONNECT_TIMEOUT);
         let made = Self::make(&context).await;
         let (log, store) = made.map_err(|error| format!("JetStream at {names}: {error}"))?;
         context.set_timeout(TIMEOUT);

@@ -28,7 +28,7 @@ const TIMEOUT: Duration = Duration::from_secs(2);
 /// The time limit for the database to list the hosts.
 const DATABASE_TIMEOUT: Duration = Duration::from_secs(1);
 /// The pause before a bus that did not answer is asked again.
-const PAUSE: Duration = Duration::from_secs(1);
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 /// The most visitors in a host's answer. Each takes about 250 bytes, and NATS accepts a megabyte.
 const MAX_ROWS: usize = 2_000;
 
@@ -147,7 +147,7 @@ impl SharedRooms {
 
     /// Warns about hosts with other maps, once this host has started.
     pub(crate) async fn compare_maps(self) {
-        sleep(PAUSE).await;
+        sleep(RETRY_INTERVAL).await;
         let (_, others) = self.ask_others(&AdminRequest::Hosts).await;
         let hosts = others.replies.into_values().filter_map(|reply| match reply {
             AdminReply::Hosts(hosts) => Some(hosts),
@@ -171,7 +171,7 @@ impl SharedRooms {
                     }
                 }
             }
-            sleep(PAUSE).await;
+            sleep(RETRY_INTERVAL).await;
         }
     }
 

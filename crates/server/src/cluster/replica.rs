@@ -9,7 +9,7 @@
 //! - A replica applies only messages of the log.
 //! - A message contains the two steps of a [`MESSAGE_INTERVAL`]. So a command waits for up to a period and for the round
 //!   trip to the log. In a room of one process, it waits for up to a step.
-//! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
+//! - A replica that receives nothing for [`SILENCE_TIMEOUT`] reads the log, and asks for the lease.
 //! - A member is in the room once the log has their `join` entry.
 //! - Members who are not claimed for a while are away. A host that has ended claims nobody.
 //! - A member who was away has returned once the log has the token of the request. A host with another token for the
@@ -31,8 +31,8 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
-use super::leases::{LEASE_TIME, LeaseAnswer};
-use super::message::{LogMessage, MemberWish, PeerMessage, Record, Token, to_bytes};
+use super::leases::{LEASE_DURATION, LeaseAnswer};
+use super::message::{LogMessage, PeerMessage, Record, RequestedMember, Token, to_bytes};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::Lease;
@@ -50,23 +50,23 @@ pub(crate) const MESSAGE_INTERVAL: Duration = STEP.saturating_mul(STEPS);
 /// The steps in a message period.
 const STEPS: u32 = 2;
 /// How long a replica receives no messages before it reads the log.
-const SILENCE: Duration = Duration::from_secs(1);
+const SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 /// How long a room takes no steps before members are told.
-const STANDSTILL: Duration = Duration::from_millis(1_500);
+const STANDSTILL_TIMEOUT: Duration = Duration::from_millis(1_500);
 /// The least time for which a replica exists without members and watchers.
 const MIN_STAY: Duration = Duration::from_secs(3);
 /// The time between two claims, and between two renewals of the lease.
-const SECOND: Duration = Duration::from_secs(1);
+const RENEWAL_INTERVAL: Duration = Duration::from_secs(1);
 /// The time after which a request is sent again.
-const REQUEST_RETRY: Duration = Duration::from_millis(500);
+const REQUEST_RETRY_INTERVAL: Duration = Duration::from_millis(500);
 /// The time after which a request fails. Another host takes over a room sooner.
-const TIMEOUT: Duration = Duration::from_secs(8);
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(8);
 /// The most messages for which a host that ends waits until the log has its last entries.
 const MAX_LAST_MESSAGES: usize = 15;
 /// The time between two checkpoints.
-const CHECKPOINTS: Duration = Duration::from_secs(5);
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
 /// The time between two requests for the lease.
-const LEASE_RETRY: Duration = Duration::from_millis(500);
+const LEASE_RETRY_INTERVAL: Duration = Duration::from_millis(500);
 
 /// A room on one host.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
@@ -167,12 +167,12 @@ struct Leasing {
 type MemberReply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
 
 /// A request to be a member, from a visitor of this host.
-pub(crate) type MemberRequest = (MemberWish, MemberReply);
+pub(crate) type MemberRequest = (RequestedMember, MemberReply);
 
 /// A request that is neither granted nor refused yet.
 struct PendingRequest {
     token: Token,
-    wish: MemberWish,
+    requested: RequestedMember,
     /// `None` for a member of this host who was away because the host was cut off.
     reply: Option<MemberReply>,
     since: Instant,
@@ -255,7 +255,7 @@ impl Replica {
         if self.sequencer.is_some() {
             self.sequence(now).await;
             self.keep(now).await;
-        } else if is_due(self.times.read, now, SILENCE) && self.is_silent(now) {
+        } else if is_due(self.times.read, now, SILENCE_TIMEOUT) && self.is_silent(now) {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
@@ -280,7 +280,7 @@ impl Replica {
     }
 
     async fn claim(&mut self, now: Instant) {
-        if !is_due(self.times.claimed, now, SECOND) {
+        if !is_due(self.times.claimed, now, RENEWAL_INTERVAL) {
             return;
         }
         self.times.claimed = Some(now);
@@ -321,8 +321,8 @@ impl Replica {
                 let answers = sequencer.claim(&members, now);
                 self.send_answers(answers).await;
             }
-            (PeerMessage::Request(token, wish), Some(sequencer)) => {
-                if let Some(answer) = sequencer.request(token, &wish, now) {
+            (PeerMessage::Request(token, requested), Some(sequencer)) => {
+                if let Some(answer) = sequencer.request(token, &requested, now) {
                     self.broadcast(&answer).await;
                 }
             }
@@ -448,7 +448,7 @@ impl Replica {
     /// Replaces the state with the newest checkpoint.
     async fn restore(&mut self) -> Result<(), BusFault> {
         let now = Instant::now();
-        if !is_due(self.times.restored, now, SECOND) {
+        if !is_due(self.times.restored, now, RENEWAL_INTERVAL) {
             return Err(BusFault::Unknown);
         }
         self.times.restored = Some(now);
@@ -466,7 +466,7 @@ impl Replica {
     /// Tells members when the room begins to wait, goes on alone, or goes on as usual.
     fn tell(&mut self, now: Instant) {
         let has_members = self.state.room.len() > 0 && !self.interface.inbox.seated().is_empty();
-        let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
+        let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL_TIMEOUT;
         let progress = match &self.alone {
             _ if waits => Progress::Waiting,
             Some(_) => Progress::Alone,
@@ -479,7 +479,7 @@ impl Replica {
     }
 
     fn is_silent(&self, now: Instant) -> bool {
-        now.duration_since(self.times.moved) >= SILENCE
+        now.duration_since(self.times.moved) >= SILENCE_TIMEOUT
     }
 
     /// Returns true if the replica is no longer needed.
@@ -506,12 +506,12 @@ impl Replica {
 impl PendingRequest {
     /// Returns true if it asks to return to a member who has left.
     fn is_lost(&self, room: &Room) -> bool {
-        matches!(self.wish, MemberWish::Return(member) if room.has_lost(member))
+        matches!(self.requested, RequestedMember::Return(member) if room.has_lost(member))
     }
 
     /// The member that `room` lets it return to.
     fn granted(&self, room: &Room) -> Option<MemberId> {
-        let MemberWish::Return(member) = self.wish else { return None };
+        let RequestedMember::Return(member) = self.requested else { return None };
         let kept = room.kept_place(member)?;
         (kept.token == self.token.0).then_some(member)
     }
@@ -528,50 +528,56 @@ impl PendingRequest {
 /// A request has a token, which identifies its answer. A request to return is granted once the log has the token,
 /// whichever host wrote it.
 impl Replica {
-    async fn receive_request(&mut self, (wish, reply): MemberRequest) {
-        if let MemberWish::Return(member) = wish
+    async fn receive_request(&mut self, (requested, reply): MemberRequest) {
+        if let RequestedMember::Return(member) = requested
             && self.interface.inbox.seated().contains(&member)
         {
             _ = reply.send(Err(RoomRefusal::Taken));
             return;
         }
-        self.begin_request(wish, Some(reply), Instant::now()).await;
+        self.begin_request(requested, Some(reply), Instant::now()).await;
     }
 
-    async fn begin_request(&mut self, wish: MemberWish, reply: Option<MemberReply>, now: Instant) {
+    async fn begin_request(
+        &mut self,
+        requested: RequestedMember,
+        reply: Option<MemberReply>,
+        now: Instant,
+    ) {
         let token = Token(self.context.chance());
         self.pending.push(PendingRequest {
             token,
-            wish: wish.clone(),
+            requested: requested.clone(),
             reply,
             since: now,
             sent: now,
         });
-        self.send_request(token, wish, now).await;
+        self.send_request(token, requested, now).await;
     }
 
-    async fn send_request(&mut self, token: Token, wish: MemberWish, now: Instant) {
+    async fn send_request(&mut self, token: Token, requested: RequestedMember, now: Instant) {
         match &mut self.sequencer {
             Some(sequencer) => {
-                if let Some(answer) = sequencer.request(token, &wish, now) {
+                if let Some(answer) = sequencer.request(token, &requested, now) {
                     self.answer(&answer);
                 }
             }
-            None => self.broadcast(&PeerMessage::Request(token, wish)).await,
+            None => self.broadcast(&PeerMessage::Request(token, requested)).await,
         }
     }
 
     /// Sends unanswered requests again.
     async fn repeat_requests(&mut self, now: Instant) {
         self.settle_requests(now);
-        let is_due =
-            |pending: &&mut PendingRequest| now.duration_since(pending.sent) >= REQUEST_RETRY;
+        let is_due = |pending: &&mut PendingRequest| {
+            now.duration_since(pending.sent) >= REQUEST_RETRY_INTERVAL
+        };
         let due = self.pending.iter_mut().filter(is_due).map(|pending| {
             pending.sent = now;
-            (pending.token, pending.wish.clone())
+            (pending.token, pending.requested.clone())
         });
-        for (token, wish) in due.collect::<Vec<_>>() {
-            self.send_request(token, wish, now).await;
+        for (token, requested) in due.collect::<Vec<_>>() {
+            self.send_request(token, requested, now).await;
         }
     }
 
@@ -591,7 +597,7 @@ impl Replica {
             }
         }
         let is_over = |pending: &mut PendingRequest| {
-            pending.is_lost(room) || now.duration_since(pending.since) >= TIMEOUT
+            pending.is_lost(room) || now.duration_since(pending.since) >= REQUEST_TIMEOUT
         };
         for pending in pending.extract_if(.., is_over) {
             let is_lost = pending.is_lost(room);
@@ -626,13 +632,13 @@ impl Replica {
     async fn return_own(&mut self, now: Instant) {
         self.settle_requests(now);
         let is_pending = |member: &MemberId| {
-            self.pending.iter().any(|it| it.wish == MemberWish::Return(*member))
+            self.pending.iter().any(|it| it.requested == RequestedMember::Return(*member))
         };
         let room = &self.state.room;
         let mut away = self.interface.inbox.seated();
         away.retain(|member| room.is_away(*member) && self.is_own(*member) && !is_pending(member));
         for member in away {
-            self.begin_request(MemberWish::Return(member), None, now).await;
+            self.begin_request(RequestedMember::Return(member), None, now).await;
         }
     }
 
@@ -709,8 +715,8 @@ impl Replica {
             Some(_) => {}
             None => {
                 let is_first = self.times.leased.is_none();
-                let is_time =
-                    is_first || self.is_silent(now) && is_due(self.times.leased, now, LEASE_RETRY);
+                let is_time = is_first
+                    || self.is_silent(now) && is_due(self.times.leased, now, LEASE_RETRY_INTERVAL);
                 // A host that cannot write the log would keep the room from hosts that can.
                 if is_time && self.reaches_bus {
                     self.leasing.acquiring =
@@ -745,7 +751,7 @@ impl Replica {
 
     /// Notes that the lease lasts from the time of the request.
     fn note_lease(&mut self) {
-        self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_TIME);
+        self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_DURATION);
     }
 
     fn step_down(&mut self) {
@@ -790,7 +796,7 @@ impl Replica {
 
     /// Stores a checkpoint and the record of the room every few seconds, and the record also when it changes.
     async fn keep(&mut self, now: Instant) {
-        let is_time = is_due(self.times.kept, now, CHECKPOINTS);
+        let is_time = is_due(self.times.kept, now, CHECKPOINT_INTERVAL);
         // A host that was replaced and has not noticed has appended nothing now, and must not store an old state.
         let is_surely_sequencer = self.times.published == Some(now);
         if self.sequencer.is_none() || self.is_append_unknown || !(is_time || self.is_changed) {

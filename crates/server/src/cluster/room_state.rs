@@ -16,7 +16,7 @@ use super::message::{Check, LogMessage, reader, to_bytes};
 use crate::rooms::room::{Catalog, Entry, Header, Room};
 use crate::rooms::sequencer::{Changes, Recording, RoundLog};
 use cellcaster::game::STEPS_PER_SECOND;
-use cellcaster::game::stored::{MAX_BYTES, Unrestorable};
+use cellcaster::game::stored::{MAX_BYTES, RestoreError};
 
 /// The steps between two checksums.
 const CHECKED: u64 = STEPS_PER_SECOND as u64;
@@ -136,7 +136,7 @@ impl RoomState {
     /// # Errors
     /// A sentence, if the bytes are damaged or of another version, or if the catalog does not have the level.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
-        let sentence = |error: Unrestorable| error.to_string();
+        let sentence = |error: RestoreError| error.to_string();
         let mut input = reader(bytes).map_err(sentence)?;
         let numbers = input.read().map_err(sentence)?;
         let mut room = Vec::new();
@@ -153,7 +153,7 @@ mod tests {
     use crate::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode, parse_log};
     use crate::rooms::summary::RoomId;
-    use crate::simulation::{Tapes, replayed};
+    use crate::simulation::{RoomLogs, replayed};
     use cellcaster::game::PlayerColor;
     use cellcaster::game::stored::MAX_COUNT;
     use cellcaster::world::Difficulty;
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_recorded_replica_replays_with_kept_seats() {
         let catalog = Arc::new(Catalog::builtin());
-        let [whole, part] = [Tapes::default(), Tapes::default()];
+        let [whole, part] = [RoomLogs::default(), RoomLogs::default()];
         let mut state = state();
         state.record(whole.recordings().open(RoomId(7)));
         let apply = |state: &mut RoomState, commands: Vec<Command>| {
@@ -268,8 +268,8 @@ mod tests {
             apply(&mut later, commands);
         }
         assert_eq!(state.room.header().round, 2);
-        for (tapes, rounds) in [(whole, 2), (part, 1)] {
-            let text = tapes.text(RoomId(7));
+        for (logs, rounds) in [(whole, 2), (part, 1)] {
+            let text = logs.text(RoomId(7));
             assert!(text.contains("member 1 ") && text.contains("kept 1 0\n"), "{text}");
             assert_eq!(parse_log(&text).unwrap().len(), rounds);
             let room = replayed(&text, &catalog, state.room.step());

@@ -8,7 +8,7 @@
 //! When somebody asks to return to a member, the member may still have a host:
 //!
 //! - A member who is away has no host.
-//! - A member who was not claimed for [`UNHEARD`] since the request almost certainly has no host; the log does not show
+//! - A member who was not claimed for [`CLAIM_TIMEOUT`] since the request almost certainly has no host; the log does not show
 //!   yet that the host is gone. If there is a host nevertheless, it sees that the token is not its own, and lets the
 //!   member go.
 //! - A member who is claimed has a host, and the request is refused: nobody takes the place of a member who plays.
@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::message::{LogMessage, MemberWish, PeerMessage, Token};
+use super::message::{LogMessage, PeerMessage, RequestedMember, Token};
 use super::room_state::RoomState;
 use crate::accounts::Lease;
 use crate::line::Line;
@@ -28,9 +28,9 @@ use crate::rooms::summary::RoomRefusal;
 use cellcaster::game::PlayerColor;
 
 /// How long a member may go unclaimed before they are marked away.
-const UNCLAIMED: Duration = Duration::from_secs(4);
+const AWAY_TIMEOUT: Duration = Duration::from_secs(4);
 /// How long a member must go unclaimed before somebody else may return to them.
-const UNHEARD: Duration = Duration::from_millis(2_500);
+const CLAIM_TIMEOUT: Duration = Duration::from_millis(2_500);
 /// The most requests of each kind that are remembered, with their answers.
 const MAX_REQUESTS: usize = 64;
 
@@ -171,12 +171,14 @@ impl ClusterSequencer {
     pub(crate) fn request(
         &mut self,
         token: Token,
-        wish: &MemberWish,
+        requested: &RequestedMember,
         now: Instant,
     ) -> Option<PeerMessage> {
-        match wish {
-            MemberWish::Join { name, is_kept } => self.request_join(token, name, *is_kept, now),
-            MemberWish::Return(member) => self.request_return(token, *member, now),
+        match requested {
+            RequestedMember::Join { name, is_kept } => {
+                self.request_join(token, name, *is_kept, now)
+            }
+            RequestedMember::Return(member) => self.request_return(token, *member, now),
         }
     }
 
@@ -219,7 +221,7 @@ impl ClusterSequencer {
         if let Some(known) = self.returning.iter().find(|it| it.token == token) {
             match known.decision {
                 Decision::Refused => return Some(known.refusal()),
-                Decision::Open if now.duration_since(known.since) >= UNHEARD => {
+                Decision::Open if now.duration_since(known.since) >= CLAIM_TIMEOUT => {
                     self.take_back(token, member, now);
                 }
                 Decision::Open | Decision::Granted => {}
@@ -263,7 +265,7 @@ impl ClusterSequencer {
 
     /// Marks members away who are no longer claimed.
     pub(crate) fn set_unclaimed_away(&mut self, now: Instant) {
-        let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
+        let is_lost = |time: &Instant| now.duration_since(*time) >= AWAY_TIMEOUT;
         let lost: Vec<MemberId> =
             self.claimed.iter().filter(|(_, time)| is_lost(time)).map(|(id, _)| *id).collect();
         for member in lost {

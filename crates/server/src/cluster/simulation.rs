@@ -40,7 +40,7 @@ use crate::load::{Load, Worker};
 use crate::metrics::Metrics;
 use crate::rooms::directory::{Recordings, RoomLimits, Rooms, Seeds};
 use crate::rooms::room::{Catalog, MemberId, Mode};
-use crate::rooms::summary::{RoomId, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest};
 use crate::simulation::{HALL, catalog};
 use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
@@ -180,13 +180,13 @@ impl SimulatedHost {
         let (notice, visits) = (notice(index), world.visits(index));
         let cluster = Cluster { bus, leases, visits, notice, seed };
         let visitors = Visitors::default();
-        let shared = cluster.rooms(&rooms, vec![wish()], load, visitors.clone());
+        let shared = cluster.rooms(&rooms, vec![room_request()], load, visitors.clone());
         Self { rooms, shared, visitors, metrics, is_killed: false, well_at: Instant::now() }
     }
 }
 
-fn wish() -> RoomWish {
-    RoomWish { level: "hall".to_owned(), mode: Mode::Tag, difficulty: Difficulty::Normal }
+fn room_request() -> RoomRequest {
+    RoomRequest { level: "hall".to_owned(), mode: Mode::Tag, difficulty: Difficulty::Normal }
 }
 
 /// Plays a seed. Returns how many checksums were compared, how many steps rooms took alone, and how many times

@@ -3,7 +3,7 @@
 //! # Rules
 //!
 //! - A visit begins in the database once the visitor is known, and ends with their session.
-//! - A host announces itself each second. The visits of a host that has been silent for [`THERE`] do not count.
+//! - A host announces itself each second. The visits of a host that has been silent for [`HOST_TIMEOUT`] do not count.
 //! - A visitor may be over a limit because of their own visit on a host that was just killed. So a visitor over a limit
 //!   waits until each host of the earlier visits has announced itself again, or until its visits no longer count.
 //! - While the database is unavailable, no visit begins, and running visits go on. Visits that end meanwhile are ended
@@ -22,18 +22,18 @@ use std::time::Duration;
 
 use tokio::time::{Instant, sleep};
 
-use crate::accounts::worker::{Answer, StoreWorker};
+use crate::accounts::worker::{CallResult, StoreWorker};
 use crate::accounts::{AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitId};
 use crate::admission::{Refusal, counted_address};
 use crate::lock::locked;
 use crate::logging;
 
 /// The time between two announcements of a host.
-pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);
+pub(crate) const ANNOUNCEMENT_INTERVAL: Duration = Duration::from_secs(1);
 /// How long a host counts as present after an announcement.
-pub(crate) const THERE: Duration = Duration::from_secs(5);
+pub(crate) const HOST_TIMEOUT: Duration = Duration::from_secs(5);
 /// The time after which a visitor over a limit is counted again.
-const AGAIN: Duration = Duration::from_millis(250);
+const RECOUNT_INTERVAL: Duration = Duration::from_millis(250);
 /// The visits of this host. Clones share them.
 #[derive(Clone, Debug)]
 pub(crate) struct Visits(Arc<VisitsState>);
@@ -127,7 +127,7 @@ impl Visits {
                 Err(TooMany { reason, ago }) if ago < waited => {
                     return Err(VisitRefusal::TooMany(reason));
                 }
-                Err(_) => sleep(AGAIN).await,
+                Err(_) => sleep(RECOUNT_INTERVAL).await,
             }
         }
     }
@@ -140,7 +140,7 @@ impl Visits {
 
     /// The present hosts; `None` if the database does not answer.
     pub(crate) async fn hosts(&self) -> Option<Vec<HostRow>> {
-        self.call(|_, store| store.hosts(THERE)).await.ok()?.ok()
+        self.call(|_, store| store.hosts(HOST_TIMEOUT)).await.ok()?.ok()
     }
 
     /// Forgets this host.
@@ -157,7 +157,7 @@ impl Visits {
     fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut Registry, &mut HostStore) -> T + Send + 'static,
-    ) -> Answer<T> {
+    ) -> CallResult<T> {
         let inner = Arc::clone(&self.0);
         self.0.store.call(move |store| {
             locked(&inner.registry, |registry| {
@@ -193,7 +193,7 @@ impl Registry {
     ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
         let mut ids = Vec::new();
         for (visitor, most, reason) in new_visit.limits() {
-            match presence.begin_visit(&self.notice.name, &visitor, most, THERE) {
+            match presence.begin_visit(&self.notice.name, &visitor, most, HOST_TIMEOUT) {
                 Ok(Ok(id)) => {
                     self.counting.insert(id);
                     ids.push(id);
@@ -235,7 +235,7 @@ impl Registry {
 
     /// Ends the visits of this host that no session holds, after a call has failed.
     fn end_unknown(&mut self, presence: &mut HostStore) -> Result<(), StoreFailure> {
-        for visit in presence.visits(THERE)? {
+        for visit in presence.visits(HOST_TIMEOUT)? {
             if visit.host == self.notice.name && !self.counting.contains(&visit.id) {
                 presence.end_visit(visit.id)?;
             }

@@ -28,11 +28,11 @@ use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
 pub(crate) use crate::rooms::summary::RoomRefusal;
-use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use cellcaster::rng::SplitMix64;
 
 /// How long [`Rooms::end`] waits for the rooms to close.
-const ENDING: Duration = Duration::from_secs(1);
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 /// Shown to a member who was removed.
 const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
 
@@ -50,7 +50,7 @@ pub(crate) struct RoomLimits {
     /// How long a room stays open without members.
     pub(crate) closes_after: Duration,
     /// The rooms that are always open.
-    pub(crate) standing: Vec<RoomWish>,
+    pub(crate) standing: Vec<RoomRequest>,
 }
 
 #[derive(Debug)]
@@ -96,8 +96,8 @@ struct OpenRoom {
     interface: Arc<RoomInterface>,
     /// The summary, without the number of watchers and the code.
     summary: RoomSummary,
-    /// The standing room for which it was opened, even if that wish has been withdrawn since.
-    stood_for: Option<RoomWish>,
+    /// The standing room for which it was opened, even if that request has been withdrawn since.
+    stood_for: Option<RoomRequest>,
 }
 
 impl Rooms {
@@ -155,11 +155,12 @@ impl Rooms {
     /// Opens a room and joins it. Others enter a private room with its code only.
     pub(crate) fn open(
         &self,
-        wish: &RoomWish,
+        request: &RoomRequest,
         is_private: bool,
         name: &Line,
     ) -> Result<Place, RoomRefusal> {
-        let (id, room, interface) = self.add(wish, false, is_private.then(|| self.new_code()))?;
+        let (id, room, interface) =
+            self.add(request, false, is_private.then(|| self.new_code()))?;
         // Join before the room runs: a room for a single member closes as soon as it is empty.
         let member = interface.inbox.join(name)?;
         let place = Place::member(id, member, Arc::clone(&interface));
@@ -248,7 +249,7 @@ impl Rooms {
         self.publish();
     }
 
-    /// Closes all rooms and waits until their recordings are written, for at most [`ENDING`].
+    /// Closes all rooms and waits until their recordings are written, for at most [`SHUTDOWN_TIMEOUT`].
     pub(crate) async fn end(&self) {
         let interfaces: Vec<Arc<RoomInterface>> = locked(&self.0.open, |open| {
             open.rooms.values().map(|room| Arc::clone(&room.interface)).collect()
@@ -258,7 +259,7 @@ impl Rooms {
         }
         let mut summaries = self.summaries();
         let all_closed = async { _ = summaries.wait_for(|rooms| rooms.is_empty()).await };
-        _ = timeout(ENDING, all_closed).await;
+        _ = timeout(SHUTDOWN_TIMEOUT, all_closed).await;
     }
 
     /// Opens the missing standing rooms, and lets rooms that are no longer wanted close.
@@ -267,8 +268,8 @@ impl Rooms {
             locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));
         locked(&self.0.open, |open| {
             for room in open.rooms.values() {
-                let Some(wish) = &room.stood_for else { continue };
-                let wanted = missing.iter().position(|missing| missing == wish);
+                let Some(request) = &room.stood_for else { continue };
+                let wanted = missing.iter().position(|missing| missing == request);
                 match wanted.filter(|_| !room.interface.inbox.is_closed()) {
                     Some(index) => {
                         missing.remove(index);
@@ -278,11 +279,11 @@ impl Rooms {
                 }
             }
         });
-        for wish in missing {
-            match self.add(&wish, true, None) {
+        for request in missing {
+            match self.add(&request, true, None) {
                 Ok(room) => self.spawn(room),
                 Err(refusal) => tracing::error!(
-                    level = wish.level,
+                    level = request.level,
                     "a standing room can't be opened: {refusal}"
                 ),
             }
@@ -292,7 +293,7 @@ impl Rooms {
     /// Adds a room without running it.
     fn add(
         &self,
-        wish: &RoomWish,
+        request: &RoomRequest,
         stands: bool,
         code: Option<RoomCode>,
     ) -> Result<NewRoom, RoomRefusal> {
@@ -302,14 +303,14 @@ impl Rooms {
             open.last += 1;
             (RoomId(open.last), open.chance.bits())
         });
-        let level = catalog.named(&wish.level).unwrap_or(&wish.level);
-        let header = Header::new(level, wish.mode, wish.difficulty, seed);
+        let level = catalog.named(&request.level).unwrap_or(&request.level);
+        let header = Header::new(level, request.mode, request.difficulty, seed);
         let room = Room::new(catalog, header).ok_or(RoomRefusal::NoLevel)?;
         let interface = RoomInterface::new(&room, stands, closes_after, code);
         let open_room = OpenRoom {
             interface: Arc::clone(&interface),
             summary: RoomSummary::of(id, &room),
-            stood_for: stands.then(|| wish.clone()),
+            stood_for: stands.then(|| request.clone()),
         };
         locked(open, |open| {
             let is_allowed = open.rooms.len() < most;

@@ -41,8 +41,8 @@ use self::member::{AWAY, Member, looking_only};
 pub(crate) use self::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 pub use self::mode::Mode;
 pub(crate) use self::mode::SECOND;
-use self::replay::Recorder;
-pub(crate) use self::replay::{Moment, Replay};
+use self::replay::MomentRecorder;
+pub(crate) use self::replay::{Moment, RoundReplay};
 use self::round::{Field, Round, STANDINGS};
 pub(crate) use self::round::{Finish, Phase, Role, Standing, ordinal};
 use self::ways::ExitWays;
@@ -71,14 +71,14 @@ pub(crate) struct Room {
     /// The latest day of which the room was told in this round.
     today: Option<Day>,
     emotes: Vec<(MemberId, Emote, u64)>,
-    said: VecDeque<Said>,
+    said: VecDeque<ChatLine>,
     said_count: u64,
     inputs: Vec<Input>,
     standings: Arc<[Standing]>,
     /// The ways to the exit; `None` unless the mode is a race.
     ways: Option<Arc<ExitWays>>,
-    recorder: Recorder,
-    replay: Option<Arc<Replay>>,
+    recorder: MomentRecorder,
+    replay: Option<Arc<RoundReplay>>,
 }
 
 /// An immutable snapshot of a room. It shares the game with the room, which copies the game only if a
@@ -102,9 +102,9 @@ pub(crate) struct RoomView {
     /// The standings of the round, winner first; empty until the round ends.
     pub(crate) standings: Arc<[Standing]>,
     /// The winner's last seconds; `None` until the round ends, or if nobody won.
-    pub(crate) replay: Option<Arc<Replay>>,
+    pub(crate) replay: Option<Arc<RoundReplay>>,
     /// The latest chat lines, oldest first.
-    pub(crate) said: Arc<[Said]>,
+    pub(crate) said: Arc<[ChatLine]>,
 }
 
 /// The public part of a member's state.
@@ -133,7 +133,7 @@ pub(crate) struct MemberView {
 
 /// A line of chat, or a remark of the room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Said {
+pub(crate) struct ChatLine {
     /// The line's number in the room, from 1, by which sessions recognise new lines.
     pub(crate) number: u64,
     /// The speaker's name and colour; `None` for a remark of the room.
@@ -173,7 +173,7 @@ impl Room {
             inputs: Vec::new(),
             standings: Arc::from([]),
             ways: (header.mode == Mode::Race).then(|| catalog.exit_ways(&header.level)).flatten(),
-            recorder: Recorder::default(),
+            recorder: MomentRecorder::default(),
             replay: None,
             header: Arc::new(header),
         })
@@ -340,9 +340,9 @@ impl Room {
     fn record(&mut self, is_open: bool) {
         if !is_open {
             if matches!(self.round.phase, Phase::Countdown { .. }) {
-                self.recorder = Recorder::default();
+                self.recorder = MomentRecorder::default();
             }
-        } else if Recorder::is_due(self.step) && self.header.mode != Mode::Roam {
+        } else if MomentRecorder::is_due(self.step) && self.header.mode != Mode::Roam {
             let Self { recorder, members, game, round, step, .. } = self;
             let looks = members.iter().filter_map(|it| Some((it.player?, look(round, it, *step))));
             let figures = looks::figures(game, looks);
@@ -354,7 +354,7 @@ impl Room {
         }
     }
 
-    fn replay_of_best(&mut self) -> Option<Replay> {
+    fn replay_of_best(&mut self) -> Option<RoundReplay> {
         let best = self.round.best()?;
         let name = self.member(best)?.name.clone();
         self.recorder.replay(best, name)
@@ -540,7 +540,7 @@ impl Room {
 
     fn remember(&mut self, by: Option<(Line, PlayerColor)>, text: String) {
         self.said_count += 1;
-        self.said.push_back(Said { number: self.said_count, by, text });
+        self.said.push_back(ChatLine { number: self.said_count, by, text });
         if self.said.len() > SAID {
             self.said.pop_front();
         }

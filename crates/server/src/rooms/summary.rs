@@ -69,7 +69,7 @@ impl RoomSummary {
 
 /// A request to open a room.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RoomWish {
+pub struct RoomRequest {
     /// The name of the level in the catalog.
     pub level: String,
     pub mode: Mode,

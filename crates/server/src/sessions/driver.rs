@@ -32,11 +32,11 @@ use std::time::Duration;
 use tokio::sync::{Notify, Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
 
-use self::results::Recorder;
+use self::results::ResultRecorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::visit::Driver;
-use crate::accounts::worker::{Answer, StoreWorker};
+use crate::accounts::worker::{CallResult, StoreWorker};
 use crate::accounts::{Day, HostStore, KnownPlayers, UnixTime, WaitingResults};
 use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
@@ -70,7 +70,7 @@ struct Shared {
     /// The shared rooms of a cluster; `None` outside of a cluster.
     cluster: Option<SharedRooms>,
     store: StoreWorker,
-    recorder: Recorder,
+    recorder: ResultRecorder,
     /// The players that the host remembers while the database is away; `None` if the store is a file.
     known: Option<Arc<Mutex<KnownPlayers>>>,
     wrong_codes: Mutex<WrongCodes>,
@@ -111,14 +111,14 @@ impl Clock {
 /// The interval between two looks at the clock for a new day.
 const DAY_INTERVAL: Duration = Duration::from_secs(5);
 /// The interval between two decisions of the governor.
-const GOVERNED: Duration = Duration::from_millis(250);
+const GOVERNOR_INTERVAL: Duration = Duration::from_millis(250);
 /// The maximum number of queued calls to the store.
 const MAX_CALLS: usize = 256;
 /// Shown to a player that the host remembers while the database is away.
 const AWAY: &str =
     "The host's database is away: results are recorded later, and changed settings are lost.";
 /// How long the store may take to shut down.
-const STORE_END: Duration = Duration::from_secs(10);
+const STORE_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The parts from which a [`GameHost`] is started.
 pub struct HostParts {
@@ -188,7 +188,7 @@ impl GameHost {
         let cluster = parts.cluster.map(|cluster| {
             cluster.rooms(&rooms, shared_standing, Arc::clone(&load), visitors.clone())
         });
-        let recorder = Recorder {
+        let recorder = ResultRecorder {
             catalog: Arc::clone(rooms.catalog()),
             clock,
             metrics: Arc::clone(&metrics),
@@ -245,7 +245,7 @@ impl GameHost {
                 }
                 recorder.end(store);
             });
-            _ = timeout(STORE_END, ended).await;
+            _ = timeout(STORE_SHUTDOWN_TIMEOUT, ended).await;
         }
     }
 
@@ -318,7 +318,7 @@ impl Shared {
     }
 
     /// Prepares a day, and tells the rooms. The result fails if the store accepts no more calls.
-    fn prepare(&self, today: Day) -> Answer<()> {
+    fn prepare(&self, today: Day) -> CallResult<()> {
         let rooms = self.rooms.clone();
         self.store.call(move |store| {
             rooms.catalog().world(&today.level());
@@ -379,12 +379,12 @@ async fn follow_days(shared: Weak<Shared>) {
 /// Adjusts the frame rate for as long as the host exists.
 async fn govern(shared: Weak<Shared>) {
     let mut governor = Governor::new();
-    let mut ticks = interval(GOVERNED);
+    let mut ticks = interval(GOVERNOR_INTERVAL);
     loop {
         ticks.tick().await;
         let Some(shared) = shared.upgrade() else { return };
         let most = shared.config.get().frames_per_second;
-        let sample = shared.load.sample(GOVERNED);
+        let sample = shared.load.sample(GOVERNOR_INTERVAL);
         shared.load.set_rate(governor.decide(sample, most));
     }
 }

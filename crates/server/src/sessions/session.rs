@@ -1,7 +1,7 @@
 //! A visitor's session: draws the visitor's screen and handles their keys.
 //!
 //! A session owns neither the connection nor the clock nor the room. Its driver passes it input with the time
-//! of arrival, takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows
+//! of arrival, takes bytes and [requests](SessionRequest) from it, notifies it of [events](SessionEvent), and shows
 //! it the latest [snapshot](RoomView) of the room: the visitor's room, or in the lobby the liveliest one. The
 //! driver calls it in this order:
 //!
@@ -44,7 +44,7 @@ use std::time::Duration;
 pub(crate) use self::endings::IdleLimits;
 use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{
-    BoardRow, HostFacts, Moderation, Profile, Request, SessionEvent, Way,
+    BoardRow, Moderation, Profile, RoomEntry, SessionContext, SessionEvent, SessionRequest,
 };
 use self::stay::Stay;
 use self::ui::Ui;
@@ -64,7 +64,7 @@ const KEYS_AT_ONCE: f64 = 300.0;
 /// eight times as long.
 const LARGE: usize = 12_000;
 /// The shortest round-trip time of a link that is not local.
-const FAR: Duration = Duration::from_millis(3);
+const MIN_REMOTE_ROUND_TRIP: Duration = Duration::from_millis(3);
 
 /// A visitor's session.
 pub(crate) struct Session {
@@ -104,7 +104,7 @@ impl Session {
         identity: Profile,
         options: SessionOptions,
         size: WindowSize,
-        host: HostFacts,
+        host: SessionContext,
         now: Duration,
     ) -> Self {
         let mut protocol = Protocol::new(options, size);
@@ -172,7 +172,7 @@ impl Session {
     }
 
     /// Takes the session's requests since the last call.
-    pub(crate) fn requests(&mut self) -> Vec<Request> {
+    pub(crate) fn requests(&mut self) -> Vec<SessionRequest> {
         std::mem::take(&mut self.ui.requests)
     }
 
@@ -381,7 +381,7 @@ impl Session {
     /// Returns true if compression would make pictures finer. Until pictures of a room have been measured,
     /// this is assumed for every link that is not local.
     fn wants_compression(&self) -> bool {
-        let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
+        let is_far = self.protocol.round_trip().is_some_and(|time| time >= MIN_REMOTE_ROUND_TRIP);
         !self.ui.host.compresses && self.is_limited.unwrap_or(is_far)
     }
 

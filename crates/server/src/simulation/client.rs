@@ -11,14 +11,14 @@ use super::emulator::{Emulator, Speaks};
 use crate::lock::locked;
 use crate::metrics::Metrics;
 use crate::sessions::driver::{Simulated, Visiting};
-use crate::ssh::{FarEnd, Parts, Visitor, pipe};
+use crate::ssh::{ClientEnd, Parts, Visitor, pipe};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{Detected, WindowSize};
 
 /// A client, with a handle to its session.
 pub(crate) struct SimulatedClient {
     pub(crate) visiting: Visiting,
-    end: FarEnd,
+    end: ClientEnd,
     terminal: Arc<Mutex<Terminal>>,
     conditions_changed: Arc<Notify>,
     sent: mpsc::UnboundedSender<(Instant, Vec<u8>)>,
@@ -55,11 +55,11 @@ pub(crate) fn guest(name: &str, (columns, rows): (u16, u16)) -> Visitor {
 struct Terminal {
     emulator: Emulator,
     conditions: Conditions,
-    arrivals: Vec<Arrived>,
+    arrivals: Vec<Arrival>,
 }
 
 /// The time of an arrival, and the total number of bytes received by then.
-type Arrived = (Instant, usize);
+type Arrival = (Instant, usize);
 
 impl SimulatedClient {
     /// Connects to a host. Must be called within a runtime.
@@ -192,7 +192,7 @@ async fn receive(
 }
 
 /// Delivers the client's bytes in order, each when it is due.
-async fn deliver(mut waiting: mpsc::UnboundedReceiver<(Instant, Vec<u8>)>, end: FarEnd) {
+async fn deliver(mut waiting: mpsc::UnboundedReceiver<(Instant, Vec<u8>)>, end: ClientEnd) {
     while let Some((due, bytes)) = waiting.recv().await {
         if due > Instant::now() {
             sleep_until(due).await;

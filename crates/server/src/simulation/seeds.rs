@@ -26,7 +26,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{Conditions, ENTER, HALL, Rig, SimulatedClient, Speaks, Wish, catalog};
+use super::{Conditions, ENTER, HALL, Rig, RigOptions, SimulatedClient, Speaks, catalog};
 use crate::load::Worker;
 use crate::rooms::room::Mode;
 use cellcaster::color::palette::ColorDepth;
@@ -78,7 +78,8 @@ impl SeedRun {
         let store_time = Duration::from_millis([0, 1, 40, 400][chance.below(4)]);
         let worker = if is_slow(seed) { Worker::SLOW } else { Worker::default() };
         let catalog = catalog(&hall());
-        let mut rig = Rig::with(Wish { catalog, store_time, worker, seed, ..Wish::new(mode) });
+        let mut rig =
+            Rig::with(RigOptions { catalog, store_time, worker, seed, ..RigOptions::new(mode) });
         let tasks = rig.tasks();
         // With colours, no two frames of a brick wall are the same.
         let steady = rig.visitor_with("Mara", (24, 7), Speaks::Kitty, ColorDepth::True);

@@ -19,7 +19,7 @@ use russh::{Channel, ChannelId, ChannelOpenFailure, Error, Pty};
 use tokio::sync::oneshot;
 
 use super::gate::Gate;
-use super::inbound::{Inlet, inbound};
+use super::inbound::{InboundSender, inbound};
 use super::outbox::Outbox;
 use super::visitor::{self, Departure, Link, MAX_VARIABLES, Visitor};
 use super::wire::ConnectionState;
@@ -29,10 +29,10 @@ use crate::logging;
 use cellcaster::terminal::WindowSize;
 
 /// A session that is about to begin.
-pub(crate) struct Begun {
+pub(crate) struct PendingSession {
     pub(crate) visitor: Visitor,
     pub(crate) link: Link,
-    pub(crate) inlet: Inlet,
+    pub(crate) inlet: InboundSender,
     pub(crate) handle: Handle,
     pub(crate) channel: ChannelId,
 }
@@ -44,7 +44,7 @@ pub(crate) struct Client {
     visit: ConnectionId,
     peer: SocketAddr,
     /// Taken when the session begins.
-    begin: Option<oneshot::Sender<Begun>>,
+    begin: Option<oneshot::Sender<PendingSession>>,
     /// Whether the client has tried the method `none`.
     has_asked: bool,
     user: String,
@@ -54,7 +54,7 @@ pub(crate) struct Client {
     channel: Option<ChannelId>,
     terminal: Option<(String, WindowSize)>,
     environment: BTreeMap<String, String>,
-    inlet: Option<Inlet>,
+    inlet: Option<InboundSender>,
 }
 
 /// The user name that is a guest even with a key.
@@ -70,7 +70,7 @@ impl Client {
         line: Arc<ConnectionState>,
         visit: ConnectionId,
         peer: SocketAddr,
-        begin: oneshot::Sender<Begun>,
+        begin: oneshot::Sender<PendingSession>,
     ) -> Self {
         Self {
             gate,
@@ -119,12 +119,12 @@ impl Client {
             compresses: self.line.compresses(),
         };
         let handle = session.handle();
-        let outbox = Outbox::new(handle.clone(), channel, self.line.passage.clone());
+        let outbox = Outbox::new(handle.clone(), channel, self.line.progress.clone());
         let (inlet, inbound) = inbound(self.line.limits);
         self.inlet = Some(inlet.clone());
         let link = Link { inbound, outbox };
         // This fails only if the connection is closing.
-        _ = begin.send(Begun { visitor, link, inlet, handle, channel });
+        _ = begin.send(PendingSession { visitor, link, inlet, handle, channel });
         Ok(())
     }
 
@@ -304,7 +304,7 @@ impl Handler for Client {
         if let Some(inlet) = &self.inlet {
             inlet.end();
         }
-        self.line.passage.close();
+        self.line.progress.close();
         Ok(())
     }
 }

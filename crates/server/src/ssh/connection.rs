@@ -16,10 +16,10 @@ use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use super::client::{Begun, Client};
+use super::client::{Client, PendingSession};
 use super::gate::{AdmittedConnection, Gate, ShutdownPhase, VERSION};
 use super::host_key::HostKey;
-use super::outbox::Passage;
+use super::outbox::FrameProgress;
 use super::visitor::Host;
 use super::wire::{ByteLimits, ConnectionState, Stage, Wire};
 use crate::admission::Outcome;
@@ -27,13 +27,13 @@ use crate::config::LiveConfig;
 use crate::logging::{self, ConnectionEvent};
 
 /// The time limit for a client's first line, the version. A client sends it without input from its user.
-pub(crate) const VERSION_TIME: Duration = Duration::from_secs(3);
+pub(crate) const VERSION_TIMEOUT: Duration = Duration::from_secs(3);
 /// How long a session may take to finish after its link has ended.
-const AFTERWARDS: Duration = Duration::from_secs(5);
+const FINISH_TIMEOUT: Duration = Duration::from_secs(5);
 /// The shortest pause between two checks whether a client is gone.
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// The time limit for a client to close the connection after its session has ended.
-const FAREWELL: Duration = Duration::from_secs(2);
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(2);
 /// The maximum number of messages queued for russh: a frame, the three closing messages, and keep-alive questions.
 const MAX_MESSAGES: usize = 32;
 /// The channel's receive window, in bytes.
@@ -47,12 +47,12 @@ pub(crate) async fn serve<H: Host>(
     socket: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
     AdmittedConnection { visit, peer, displaced }: AdmittedConnection,
 ) {
-    let _open = Counted::new(&gate.metrics.connections);
+    let _open = GaugeGuard::new(&gate.metrics.connections);
     let config = gate.config.get();
     let limits =
         ByteLimits { before_login: config.login_bytes.into(), per_second: config.bytes_per_second };
-    let passage = Arc::new(Passage::new(gate.metrics.clone()));
-    let line = Arc::new(ConnectionState::new(limits, passage));
+    let progress = Arc::new(FrameProgress::new(gate.metrics.clone()));
+    let line = Arc::new(ConnectionState::new(limits, progress));
     let (begin, begun) = oneshot::channel();
     let client = Client::new(gate.clone(), line.clone(), visit, peer, begin);
     let wire = Wire::new(socket, line.clone());
@@ -66,7 +66,7 @@ pub(crate) async fn serve<H: Host>(
     let logged_in = tokio::select! {
         Ok(sentence) = displaced => {
             if let (Some(sentence), Ok(handle)) = (sentence, handle.try_recv()) {
-                _ = timeout(FAREWELL, disconnect(&handle, sentence, transport.as_mut())).await;
+                _ = timeout(CLOSE_TIMEOUT, disconnect(&handle, sentence, transport.as_mut())).await;
             }
             Err(Outcome::Displaced)
         }
@@ -103,12 +103,12 @@ async fn log_in(
     gate: &Gate,
     line: &ConnectionState,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
-    mut begun: oneshot::Receiver<Begun>,
-) -> Result<Begun, Outcome> {
+    mut begun: oneshot::Receiver<PendingSession>,
+) -> Result<PendingSession, Outcome> {
     loop {
         let config = gate.config.get();
         let time = match line.stage() {
-            Stage::Version => config.handshake.min(VERSION_TIME),
+            Stage::Version => config.handshake.min(VERSION_TIMEOUT),
             Stage::Offer | Stage::Exchange => config.handshake,
             Stage::Done => config.login,
         };
@@ -137,10 +137,10 @@ async fn converse<H: Host>(
     host: &H,
     line: &ConnectionState,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
-    begun: Begun,
+    begun: PendingSession,
 ) {
-    let Begun { visitor, link, inlet, handle, channel } = begun;
-    let _session = Counted::new(&gate.metrics.sessions);
+    let PendingSession { visitor, link, inlet, handle, channel } = begun;
+    let _session = GaugeGuard::new(&gate.metrics.sessions);
     let peer = visitor.peer.ip();
     let mut session = pin!(host.serve(visitor, link));
     let mut lost = pin!(lost(&gate.config, line, &handle));
@@ -151,7 +151,7 @@ async fn converse<H: Host>(
             departure = &mut session => break departure,
             _ = &mut transport => {
                 inlet.end();
-                _ = timeout(AFTERWARDS, session).await;
+                _ = timeout(FINISH_TIMEOUT, session).await;
                 return;
             }
             () = &mut lost, if !is_lost => {
@@ -174,7 +174,7 @@ async fn converse<H: Host>(
         _ = handle.close(channel).await;
         _ = transport.as_mut().await;
     };
-    if timeout(FAREWELL, farewell).await.is_err() {
+    if timeout(CLOSE_TIMEOUT, farewell).await.is_err() {
         line.cut();
         _ = transport.await;
     }
@@ -186,14 +186,14 @@ async fn converse<H: Host>(
 /// keep-alives. They queue behind a frame that the socket does not accept, and they arrive while the user
 /// types a passphrase, which makes OpenSSH's client complain.
 async fn lost(config: &LiveConfig, line: &ConnectionState, handle: &Handle) {
-    let mut part = (line.passage.parts(), Instant::now());
+    let mut part = (line.progress.parts(), Instant::now());
     loop {
         let config = config.get();
         let pause = config.silence / 3;
         let now = Instant::now();
-        let is_waiting = line.passage.is_waiting();
-        if !is_waiting || line.passage.parts() != part.0 {
-            part = (line.passage.parts(), now);
+        let is_waiting = line.progress.is_waiting();
+        if !is_waiting || line.progress.parts() != part.0 {
+            part = (line.progress.parts(), now);
         }
         let silent = now.saturating_duration_since(line.last_sign());
         if now - part.1 >= config.stall || silent >= config.silence && !is_waiting {
@@ -296,16 +296,16 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
 }
 
 /// Increments a gauge for as long as it lives.
-struct Counted<'a>(&'a Gauge);
+struct GaugeGuard<'a>(&'a Gauge);
 
-impl<'a> Counted<'a> {
+impl<'a> GaugeGuard<'a> {
     fn new(count: &'a Gauge) -> Self {
         count.inc();
         Self(count)
     }
 }
 
-impl Drop for Counted<'_> {
+impl Drop for GaugeGuard<'_> {
     fn drop(&mut self) {
         self.0.dec();
     }

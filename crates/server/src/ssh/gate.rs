@@ -7,8 +7,8 @@
 //! status 255. The server does no cryptography for it.
 //!
 //! In a flood, an explanation must not cost more than closing the connection. Only a few clients get one: at
-//! most [`MAX`] within [`LINGER`], of which at most [`MAX_PER_NETWORK`] in one network. This also limits the
-//! number of tasks and sockets, because no explanation lasts longer than [`LINGER`]. All other connections
+//! most [`MAX`] within [`EXPLANATION_TIMEOUT`], of which at most [`MAX_PER_NETWORK`] in one network. This also limits the
+//! number of tasks and sockets, because no explanation lasts longer than [`EXPLANATION_TIMEOUT`]. All other connections
 //! are closed silently.
 //!
 //! Rejected: lines before the version, which the protocol also allows. OpenSSH's client shows them only with `-v`.
@@ -216,17 +216,17 @@ impl Gate {
     }
 }
 
-/// The refused connections that were given the reason in the last [`LINGER`].
+/// The refused connections that were given the reason in the last [`EXPLANATION_TIMEOUT`].
 #[derive(Debug, Default)]
 struct Explanations(VecDeque<(Duration, AddressPrefix)>);
 
 /// The server's version, without the line ending.
 pub(crate) const VERSION: &str = "SSH-2.0-cellcaster";
 /// The longest duration of an explanation. A client closes the connection once it has read the message.
-const LINGER: Duration = Duration::from_secs(2);
-/// The maximum number of explanations within [`LINGER`].
+const EXPLANATION_TIMEOUT: Duration = Duration::from_secs(2);
+/// The maximum number of explanations within [`EXPLANATION_TIMEOUT`].
 const MAX: usize = 64;
-/// The maximum number of explanations per network within [`LINGER`].
+/// The maximum number of explanations per network within [`EXPLANATION_TIMEOUT`].
 const MAX_PER_NETWORK: usize = 8;
 /// The most bytes read from a client during an explanation. Its version and its offer of algorithms take about 2,000.
 const MAX_READ: u64 = 16 << 10;
@@ -241,7 +241,7 @@ const TOO_MANY_CONNECTIONS: u32 = 12;
 impl Explanations {
     /// Returns true if a connection from `network`, refused at `now`, may be told the reason, and counts it.
     fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
-        while self.0.front().is_some_and(|(at, _)| *at + LINGER <= now) {
+        while self.0.front().is_some_and(|(at, _)| *at + EXPLANATION_TIMEOUT <= now) {
             self.0.pop_front();
         }
         let of_network = self.0.iter().filter(|(_, other)| *other == network).count();
@@ -261,7 +261,7 @@ pub(crate) async fn explain(mut socket: TcpStream, sentence: String) {
         // Closing a socket with unread data resets the connection, and the client might lose the sentence.
         tokio::io::copy(&mut (&mut socket).take(MAX_READ), &mut tokio::io::sink()).await
     };
-    _ = timeout(LINGER, told).await;
+    _ = timeout(EXPLANATION_TIMEOUT, told).await;
 }
 
 /// The version, and the message as an unencrypted packet (RFC 4253, section 6).

@@ -46,7 +46,7 @@ pub struct Inbound {
 
 /// The connection's end of the buffer.
 #[derive(Clone, Debug)]
-pub(crate) struct Inlet {
+pub(crate) struct InboundSender {
     shared: Arc<InboundState>,
 }
 
@@ -83,12 +83,12 @@ enum Appended {
 }
 
 /// Both ends of a buffer.
-pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
+pub(crate) fn inbound(limits: ByteLimits) -> (InboundSender, Inbound) {
     let waiting = PendingInput::new(limits.bucket(Duration::ZERO));
     let [arrived, taken] = [(); 2].map(|()| Notify::new());
     let begun = Instant::now();
     let shared = Arc::new(InboundState { begun, waiting: Mutex::new(waiting), arrived, taken });
-    (Inlet { shared: shared.clone() }, Inbound { shared, yields: false })
+    (InboundSender { shared: shared.clone() }, Inbound { shared, yields: false })
 }
 
 impl Arrival {
@@ -131,7 +131,7 @@ impl Drop for Inbound {
     }
 }
 
-impl Inlet {
+impl InboundSender {
     /// Passes bytes on. Waits while the buffer is full or the bytes come too fast.
     pub(crate) async fn bytes(&self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
@@ -237,8 +237,9 @@ mod tests {
         let (inlet, mut inbound) = inbound(LIMITS);
         let flood = vec![b'w'; 10 << 20];
         assert_eq!(poll(inlet.bytes(&flood)), None);
-        let held =
-            |inlet: &Inlet| locked(&inlet.shared.waiting, |waiting| waiting.bytes.capacity());
+        let held = |inlet: &InboundSender| {
+            locked(&inlet.shared.waiting, |waiting| waiting.bytes.capacity())
+        };
         assert!(held(&inlet) <= 2 * Inbound::MAX_BYTES);
         let mut taken = 0;
         while let Some(Arrival::Bytes(bytes)) = next(&mut inbound) {

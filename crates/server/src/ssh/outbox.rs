@@ -27,11 +27,11 @@ use crate::metrics::Metrics;
 
 /// The slot for one frame. It is free when the previous frame has drained.
 pub struct Outbox {
-    passage: Arc<Passage>,
+    progress: Arc<FrameProgress>,
 }
 
 /// The state of the current frame, shared by the outbox, the frame and the stream.
-pub(crate) struct Passage {
+pub(crate) struct FrameProgress {
     state: AtomicU8,
     /// Whether the link has ended, so that nothing can be sent.
     is_closed: AtomicBool,
@@ -61,40 +61,40 @@ const ENCRYPTED: u8 = 2;
 
 impl Outbox {
     /// An outbox that sends frames to a channel.
-    pub(crate) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
+    pub(crate) fn new(handle: Handle, channel: ChannelId, progress: Arc<FrameProgress>) -> Self {
         // The queue cannot be full: it holds at most one part, a few questions and the three closing messages.
-        Self::into(move |part| _ = at_once(handle.data(channel, part)), passage)
+        Self::into(move |part| _ = at_once(handle.data(channel, part)), progress)
     }
 
     /// An outbox that passes frames to `sink`, part by part.
     pub(crate) fn into(
         sink: impl Fn(Bytes) + Send + Sync + 'static,
-        passage: Arc<Passage>,
+        progress: Arc<FrameProgress>,
     ) -> Self {
         // This cannot fail, because a connection has only one session channel.
-        _ = passage.sink.set(Box::new(sink));
-        Self { passage }
+        _ = progress.sink.set(Box::new(sink));
+        Self { progress }
     }
 
     /// Returns true if a frame can be sent.
     pub fn is_empty(&self) -> bool {
-        self.passage.is_empty()
+        self.progress.is_empty()
     }
 
     /// Returns true if the last frame has drained or the link has ended.
     pub(crate) fn has_drained(&self) -> bool {
-        self.is_empty() || self.passage.is_closed.load(Ordering::Acquire)
+        self.is_empty() || self.progress.is_closed.load(Ordering::Acquire)
     }
 
     /// The time at which the last frame drained.
     pub(crate) fn drained_at(&self) -> Instant {
-        let micros = self.passage.drained_at.load(Ordering::Acquire);
-        self.passage.begun + Duration::from_micros(micros)
+        let micros = self.progress.drained_at.load(Ordering::Acquire);
+        self.progress.begun + Duration::from_micros(micros)
     }
 
     /// The number of bytes that the connection has written to its socket, after compression and encryption.
     pub fn on_wire(&self) -> u64 {
-        self.passage.on_wire.load(Ordering::Acquire)
+        self.progress.on_wire.load(Ordering::Acquire)
     }
 
     /// Sends a frame. After the link has ended, frames are accepted and discarded.
@@ -105,13 +105,13 @@ impl Outbox {
         if !self.is_empty() {
             return Err(frame);
         }
-        if frame.is_empty() || self.passage.is_closed.load(Ordering::Acquire) {
+        if frame.is_empty() || self.progress.is_closed.load(Ordering::Acquire) {
             return Ok(());
         }
-        let metrics = self.passage.metrics.clone();
+        let metrics = self.progress.metrics.clone();
         metrics.frames.inc();
         metrics.frame_bytes.inc_by(frame.len() as u64);
-        self.passage.send_part(Frame::new(frame, metrics));
+        self.progress.send_part(Frame::new(frame, metrics));
         Ok(())
     }
 
@@ -122,16 +122,16 @@ impl Outbox {
     /// the caller may miss that it has drained and then wait forever for another event.
     pub async fn drained(&mut self) {
         while !self.has_drained() {
-            self.passage.changed.notified().await;
+            self.progress.changed.notified().await;
         }
-        if self.passage.is_closed.load(Ordering::Acquire) {
+        if self.progress.is_closed.load(Ordering::Acquire) {
             // Without this yield, a session that sends frame after frame would never let its task notice the end.
             yield_now().await;
         }
     }
 }
 
-impl Passage {
+impl FrameProgress {
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         Self {
             state: AtomicU8::new(EMPTY),
@@ -195,7 +195,7 @@ impl Passage {
         locked(&self.rest, |kept| *kept = rest);
         self.state.store(QUEUED, Ordering::Release);
         self.parts.fetch_add(1, Ordering::AcqRel);
-        sink(Bytes::from_owner(Part { frame, passage: self.clone() }));
+        sink(Bytes::from_owner(Part { frame, progress: self.clone() }));
     }
 }
 
@@ -234,7 +234,7 @@ impl Drop for Frame {
 /// A part of a frame. russh drops it after encrypting it.
 struct Part {
     frame: Frame,
-    passage: Arc<Passage>,
+    progress: Arc<FrameProgress>,
 }
 
 impl AsRef<[u8]> for Part {
@@ -245,7 +245,7 @@ impl AsRef<[u8]> for Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
-        self.passage.state.store(ENCRYPTED, Ordering::Release);
+        self.progress.state.store(ENCRYPTED, Ordering::Release);
     }
 }
 

@@ -37,9 +37,9 @@ pub(crate) async fn read(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Op
 }
 
 /// The visitor in a valid header; `None` inside for the proxy's own address.
-type Visitor = Option<Option<SocketAddr>>;
+type ProxiedAddress = Option<Option<SocketAddr>>;
 
-async fn text(stream: &mut (impl AsyncRead + Unpin), start: &[u8]) -> io::Result<Visitor> {
+async fn text(stream: &mut (impl AsyncRead + Unpin), start: &[u8]) -> io::Result<ProxiedAddress> {
     let mut line = start.to_vec();
     while !line.ends_with(b"\r\n") {
         if !line.starts_with(b"PROXY ") || line.len() == MAX_LINE {
@@ -50,7 +50,7 @@ async fn text(stream: &mut (impl AsyncRead + Unpin), start: &[u8]) -> io::Result
     Ok(str::from_utf8(&line).ok().and_then(of_line))
 }
 
-fn of_line(line: &str) -> Visitor {
+fn of_line(line: &str) -> ProxiedAddress {
     let words: Vec<&str> = line.strip_suffix("\r\n")?.split(' ').collect();
     let address = |text: &str, is_v4: bool| {
         let address: IpAddr = text.parse().ok()?;
@@ -68,7 +68,7 @@ fn of_line(line: &str) -> Visitor {
     }
 }
 
-async fn binary(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Visitor> {
+async fn binary(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<ProxiedAddress> {
     let [command, family] = [stream.read_u8().await?, stream.read_u8().await?];
     let length = usize::from(stream.read_u16().await?);
     if length > MAX_FIELDS {
@@ -79,7 +79,7 @@ async fn binary(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Visitor> {
     Ok(of_fields(command, family, &fields))
 }
 
-fn of_fields(command: u8, family: u8, fields: &[u8]) -> Visitor {
+fn of_fields(command: u8, family: u8, fields: &[u8]) -> ProxiedAddress {
     const LOCAL: u8 = 0x20;
     const PROXY: u8 = 0x21;
     const UNSPECIFIED: u8 = 0x00;

@@ -10,7 +10,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
-use super::connection::{self, VERSION_TIME, ssh_config};
+use super::connection::{self, VERSION_TIMEOUT, ssh_config};
 use super::gate::{Gate, ShutdownPhase, explain};
 use super::host_key::HostKey;
 use super::proxy_header;
@@ -39,9 +39,9 @@ const SEND_BUFFER: u32 = 128 << 10;
 /// The maximum number of connections that wait to be accepted.
 const BACKLOG: u32 = 1024;
 /// The extra time after the drain in which sessions may say their last words.
-const LAST_WORDS: Duration = Duration::from_secs(2);
+const FAREWELL_TIMEOUT: Duration = Duration::from_secs(2);
 /// How long closed connections may take to end.
-const CLOSING: Duration = Duration::from_secs(2);
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Server {
     /// Listens on the address of `config`.
@@ -82,7 +82,7 @@ impl Server {
         let mut tasks = JoinSet::new();
         // The connections from proxies whose headers are incomplete. They count apart from the admitted ones, because
         // the addresses that those count by are unknown, but are limited to the same number.
-        let mut headers = JoinSet::<Headed>::new();
+        let mut headers = JoinSet::<ProxiedConnection>::new();
         let enter = |tasks: &mut JoinSet<()>, socket: TcpStream, peer| match gate.admit(peer) {
             Ok(entry) => {
                 // Frames are small, and each is written whole.
@@ -116,7 +116,7 @@ impl Server {
                     Ok((socket, proxy)) => {
                         let config = config.get();
                         if headers.len() < config.admission.startups as usize {
-                            let time = config.handshake.min(VERSION_TIME);
+                            let time = config.handshake.min(VERSION_TIMEOUT);
                             headers.spawn(read_header(socket, proxy, time));
                         } else {
                             let sentence = gate.refuse_early(Refusal::Startups, proxy.ip());
@@ -133,9 +133,9 @@ impl Server {
         drop((listener, headers));
         let drain = config.get().drain;
         logging::draining(drain.as_secs());
-        let until_end = drain + LAST_WORDS.min(drain);
+        let until_end = drain + FAREWELL_TIMEOUT.min(drain);
         for (next, time) in
-            [(ShutdownPhase::Draining, until_end), (ShutdownPhase::Closing, CLOSING)]
+            [(ShutdownPhase::Draining, until_end), (ShutdownPhase::Closing, CLOSE_TIMEOUT)]
         {
             gate.enter(next);
             let all = async { while tasks.join_next().await.is_some() {} };
@@ -149,10 +149,14 @@ impl Server {
 }
 
 /// A connection from a proxy whose header was read: the socket, the proxy, and the visitor's address.
-type Headed = (TcpStream, SocketAddr, Result<SocketAddr, Outcome>);
+type ProxiedConnection = (TcpStream, SocketAddr, Result<SocketAddr, Outcome>);
 
 /// Reads the header of a connection from `proxy`.
-async fn read_header(mut socket: TcpStream, proxy: SocketAddr, time: Duration) -> Headed {
+async fn read_header(
+    mut socket: TcpStream,
+    proxy: SocketAddr,
+    time: Duration,
+) -> ProxiedConnection {
     let visitor = match timeout(time, proxy_header::read(&mut socket)).await {
         Ok(Ok(visitor)) => Ok(visitor.unwrap_or(proxy)),
         Ok(Err(error)) if error.kind() == io::ErrorKind::InvalidData => Err(Outcome::BrokeProtocol),

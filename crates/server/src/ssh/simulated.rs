@@ -9,8 +9,8 @@ use bytes::Bytes;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 use super::Link;
-use super::inbound::{Inlet, inbound};
-use super::outbox::{Outbox, Passage};
+use super::inbound::{InboundSender, inbound};
+use super::outbox::{FrameProgress, Outbox};
 use super::wire::ByteLimits;
 use crate::config::Config;
 use crate::metrics::Metrics;
@@ -18,29 +18,29 @@ use cellcaster::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones refer to the same end.
 #[derive(Clone)]
-pub(crate) struct FarEnd {
-    inlet: Inlet,
-    passage: Weak<Passage>,
+pub(crate) struct ClientEnd {
+    inlet: InboundSender,
+    progress: Weak<FrameProgress>,
 }
 
 /// The output of a session.
 pub(crate) struct Parts {
     parts: UnboundedReceiver<Bytes>,
-    passage: Weak<Passage>,
+    progress: Weak<FrameProgress>,
 }
 
 /// A link, its far end, and its output. `metrics` counts the frames.
-pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
-    let passage = Arc::new(Passage::new(metrics));
+pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, ClientEnd, Parts) {
+    let progress = Arc::new(FrameProgress::new(metrics));
     let (sender, parts) = unbounded_channel();
     let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
     let (inlet, inbound) = inbound(limits);
-    let [for_end, for_parts] = [(); 2].map(|()| Arc::downgrade(&passage));
-    let link = Link { inbound, outbox: Outbox::into(move |part| _ = sender.send(part), passage) };
-    (link, FarEnd { inlet, passage: for_end }, Parts { parts, passage: for_parts })
+    let [for_end, for_parts] = [(); 2].map(|()| Arc::downgrade(&progress));
+    let link = Link { inbound, outbox: Outbox::into(move |part| _ = sender.send(part), progress) };
+    (link, ClientEnd { inlet, progress: for_end }, Parts { parts, progress: for_parts })
 }
 
-impl FarEnd {
+impl ClientEnd {
     /// Sends bytes. Waits while the session does not take them.
     pub(crate) async fn send(&self, bytes: &[u8]) {
         self.inlet.bytes(bytes).await;
@@ -56,8 +56,8 @@ impl FarEnd {
 
     /// Ends the link: nothing more arrives, and nothing can be sent.
     pub(crate) fn end(&self) {
-        if let Some(passage) = self.passage.upgrade() {
-            passage.close();
+        if let Some(progress) = self.progress.upgrade() {
+            progress.close();
         }
         self.inlet.end();
     }
@@ -72,8 +72,8 @@ impl Parts {
 
     /// Reports that the last part was written. It must have been dropped.
     pub(crate) fn written(&self) {
-        if let Some(passage) = self.passage.upgrade() {
-            passage.flushed();
+        if let Some(progress) = self.progress.upgrade() {
+            progress.flushed();
         }
     }
 }

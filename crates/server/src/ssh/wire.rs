@@ -24,7 +24,7 @@ use russh::keys::ssh_encoding::Decode;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use super::outbox::Passage;
+use super::outbox::FrameProgress;
 use crate::bucket::Bucket;
 use crate::lock::locked;
 
@@ -60,7 +60,7 @@ pub(crate) struct Wire<S> {
 
 /// The shared state of a connection.
 pub(crate) struct ConnectionState {
-    pub(crate) passage: Arc<Passage>,
+    pub(crate) progress: Arc<FrameProgress>,
     pub(crate) limits: ByteLimits,
     pub(crate) begun: Instant,
     hello: Mutex<Hello>,
@@ -94,9 +94,9 @@ impl<S> Wire<S> {
 }
 
 impl ConnectionState {
-    pub(crate) fn new(limits: ByteLimits, passage: Arc<Passage>) -> Self {
+    pub(crate) fn new(limits: ByteLimits, progress: Arc<FrameProgress>) -> Self {
         Self {
-            passage,
+            progress,
             limits,
             begun: Instant::now(),
             hello: Mutex::default(),
@@ -237,14 +237,14 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
             self.line.note_sign();
         }
         if let Poll::Ready(Ok(count)) = written {
-            self.line.passage.wrote(count);
+            self.line.progress.wrote(count);
         }
         written
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         ready!(Pin::new(&mut self.socket).poll_flush(cx))?;
-        self.line.passage.flushed();
+        self.line.progress.flushed();
         Poll::Ready(Ok(()))
     }
 
@@ -255,7 +255,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
 
 impl<S> Drop for Wire<S> {
     fn drop(&mut self) {
-        self.line.passage.close();
+        self.line.progress.close();
     }
 }
 

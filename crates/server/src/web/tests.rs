@@ -19,7 +19,7 @@ use crate::config::Config;
 use crate::metrics::Metrics;
 use crate::rooms::directory::{Place, Recordings, RoomLimits, Seeds};
 use crate::rooms::room::{Catalog, Command, Mode, NAME_COLUMNS};
-use crate::rooms::summary::RoomWish;
+use crate::rooms::summary::RoomRequest;
 use cellcaster::game::{Intent, Intents};
 use cellcaster::world::Difficulty;
 
@@ -34,8 +34,8 @@ struct House {
     service: JoinHandle<()>,
 }
 
-fn wish(mode: Mode) -> RoomWish {
-    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+fn wish(mode: Mode) -> RoomRequest {
+    RoomRequest { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
 fn name(text: &str) -> Line {

@@ -4,7 +4,7 @@ use super::*;
 
 const HALL: [&str; 3] = ["##########", "#@.......#", "##########"];
 
-fn rules(strikes: Strikes) -> MultiplayerRules {
+fn rules(strikes: StrikeEffect) -> MultiplayerRules {
     MultiplayerRules { strikes, collides: true, ..MultiplayerRules::default() }
 }
 
@@ -86,7 +86,7 @@ fn players_start_out_of_sight_of_guards_if_possible() {
 
 #[test]
 fn players_push_against_each_other_and_slide_past() {
-    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Nobody), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(StrikeEffect::Nobody), 2);
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
     let apart = position(&game, ids[1]).x - position(&game, ids[0]).x;
     assert!((0.5..0.5 + 1e-9).contains(&apart), "{apart}");
@@ -97,7 +97,7 @@ fn players_push_against_each_other_and_slide_past() {
 
 #[test]
 fn a_rule_lets_players_walk_through_each_other() {
-    let rules = MultiplayerRules { collides: false, ..rules(Strikes::Nobody) };
+    let rules = MultiplayerRules { collides: false, ..rules(StrikeEffect::Nobody) };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
     assert!(position(&game, ids[0]).x > position(&game, ids[1]).x + 1.0);
@@ -107,12 +107,12 @@ fn a_rule_lets_players_walk_through_each_other() {
 
 #[test]
 fn a_blow_pushes_or_stuns_as_the_rules_say() {
-    for strikes in [Strikes::Nobody, Strikes::Push, Strikes::Stun] {
+    for strikes in [StrikeEffect::Nobody, StrikeEffect::Push, StrikeEffect::Stun] {
         let (mut game, ids) = with_players(level(&HALL, "", ""), rules(strikes), 2);
         let before = position(&game, ids[1]);
         play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
         let blows: Vec<_> = game.blows().collect();
-        let is_hit = strikes != Strikes::Nobody;
+        let is_hit = strikes != StrikeEffect::Nobody;
         assert_eq!(blows, if is_hit { vec![(ids[0], ids[1])] } else { vec![] });
         play(&mut game, 30, &[(ids[1], &[Intent::StrafeRight])]);
         assert_eq!(game.blows().count(), 0);
@@ -120,16 +120,16 @@ fn a_blow_pushes_or_stuns_as_the_rules_say() {
         assert_eq!(moved.x > 0.3, is_hit, "{strikes:?}: {moved}");
         let view = game.seen_by(ids[0]).unwrap();
         let other = view.others().next().unwrap();
-        assert_eq!(other.is_down, strikes == Strikes::Stun);
+        assert_eq!(other.is_down, strikes == StrikeEffect::Stun);
         // A player who lies on the floor does not walk.
-        assert_eq!(moved.y > 0.0, strikes != Strikes::Stun, "{moved}");
+        assert_eq!(moved.y > 0.0, strikes != StrikeEffect::Stun, "{moved}");
         assert_eq!(game.seen_by(ids[1]).unwrap().health().points, 6);
     }
 }
 
 #[test]
 fn a_stunned_player_is_spared_for_a_while() {
-    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Stun), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(StrikeEffect::Stun), 2);
     play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
     assert_eq!(game.seen_by(ids[1]).unwrap().stunned(), 119);
     play(&mut game, 100, &[(ids[0], &[Intent::Forward])]);
@@ -144,7 +144,7 @@ fn a_stunned_player_is_spared_for_a_while() {
 #[test]
 fn acts_are_judged_at_the_step_that_the_player_saw() {
     for (lag, hits) in [(0, false), (15, true), (40, true)] {
-        let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
+        let (mut game, ids) = with_players(level(&HALL, "", ""), rules(StrikeEffect::Push), 2);
         // The players are one cell apart, and the second one runs away.
         let long_ago = game.steps();
         play(&mut game, 15, &[(ids[1], &[Intent::Forward, Intent::Run])]);
@@ -155,7 +155,7 @@ fn acts_are_judged_at_the_step_that_the_player_saw() {
         game.step_all(&[strike]);
         assert_eq!(game.blows().count() == 1, hits, "{lag}");
     }
-    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(StrikeEffect::Push), 2);
     play(&mut game, 10, &[(ids[0], &[Intent::Forward])]);
     play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
     play(&mut game, 16, &[]);
@@ -290,8 +290,10 @@ fn players_hear_each_other_and_guards_chase_anyone_in_sight() {
 #[test]
 fn the_rules_decide_which_players_the_map_shows() {
     let rows = ["@.#..", "..+..", "..#.."];
-    for (sees, count) in [(Sees::Nobody, 0), (Sees::InSight, 1), (Sees::All, 2)] {
-        let rules = MultiplayerRules { sees, ..MultiplayerRules::default() };
+    for (shows_on_map, count) in
+        [(ShownPlayers::Nobody, 0), (ShownPlayers::InSight, 1), (ShownPlayers::All, 2)]
+    {
+        let rules = MultiplayerRules { shows_on_map, ..MultiplayerRules::default() };
         let (mut game, ids) = with_players(level(&rows, "'+' = { door = 'oak' }", ""), rules, 3);
         let member = game.members.as_mut().unwrap().member_mut(2).unwrap();
         let behind = Cell { column: 4, row: 1 };

@@ -27,7 +27,8 @@ fn event() -> impl Strategy<Value = Event> {
 }
 
 fn rules() -> impl Strategy<Value = MultiplayerRules> {
-    let strikes = prop::sample::select(&[Strikes::Nobody, Strikes::Push, Strikes::Stun][..]);
+    let strikes =
+        prop::sample::select(&[StrikeEffect::Nobody, StrikeEffect::Push, StrikeEffect::Stun][..]);
     (any::<bool>(), any::<bool>(), strikes).prop_map(|(collides, respawns, strikes)| {
         MultiplayerRules { collides, respawns, strikes, ..MultiplayerRules::default() }
     })

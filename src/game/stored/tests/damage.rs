@@ -15,7 +15,7 @@ fn stored(text: &str, seed: u64, steps: usize) -> (Game, Vec<u8>) {
 }
 
 /// Continues for `steps` steps if the bytes are a game, and queries the views of its players.
-fn play_on(start: &Game, bytes: &[u8], steps: usize) -> Result<(), Unrestorable> {
+fn play_on(start: &Game, bytes: &[u8], steps: usize) -> Result<(), RestoreError> {
     let mut game = start.clone().restored(bytes)?;
     let mut crowd = Crowd::new(Vec::new(), 4, SplitMix64::new(1));
     for _ in 0..steps {

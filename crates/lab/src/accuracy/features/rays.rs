@@ -61,7 +61,7 @@ fn rays(grid: &Grid, seed: u64) -> Vec<Ray> {
 }
 
 /// A place where a ray may end.
-struct Met {
+struct PossibleHit {
     cell: Cell,
     t: FixedPoint,
     /// `true` at the end of a wall, on the border of its cell. The ray may pass in the next cell.
@@ -72,13 +72,13 @@ struct Met {
 struct PossibleHits {
     /// All places up to the first place that is not an end. There are several if a ray through the
     /// end of one wall meets another wall.
-    places: Vec<Met>,
+    places: Vec<PossibleHit>,
     /// `true` if the ray may hit nothing.
     may_escape: bool,
 }
 
 impl PossibleHits {
-    fn new(mut places: Vec<Met>) -> Self {
+    fn new(mut places: Vec<PossibleHit>) -> Self {
         places.sort_by(|one, other| one.t.cmp(&other.t));
         let certain = places.iter().position(|met| !met.is_end);
         if let Some(certain) = certain {
@@ -145,7 +145,7 @@ fn fixed(vector: DVec2) -> [FixedPoint; 2] {
 }
 
 /// The place where a ray meets a line, by Cramer's rule.
-fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
+fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<PossibleHit> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let ([start_x, start_y], [extent_x, extent_y]) =
         (fixed(line.start(cell)), fixed(line.stretch()));
@@ -158,11 +158,11 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
     let along = &(&(&x * &dy) - &(&y * &dx)) / &determinant;
     let is_beside = along.is_negative() || along > FixedPoint::new(1.0);
     let is_end = along.is_zero() || along == FixedPoint::new(1.0);
-    (!t.is_negative() && !is_beside).then_some(Met { cell, t, is_end })
+    (!t.is_negative() && !is_beside).then_some(PossibleHit { cell, t, is_end })
 }
 
 /// The place where a ray meets a pillar, by the quadratic formula.
-fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
+fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<PossibleHit> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let [center_x, center_y] = fixed(cell.center());
     let (x, y, radius) = (&x - &center_x, &y - &center_y, FixedPoint::new(radius));
@@ -173,7 +173,7 @@ fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
     let is_met = !discriminant.is_negative() && !c.is_negative() && b.is_negative();
     is_met.then(|| {
         let t = &(&-&b - &discriminant.square_root()) / &a;
-        Met { cell, t, is_end: false }
+        PossibleHit { cell, t, is_end: false }
     })
 }
 
@@ -213,7 +213,7 @@ fn doors(seed: u64) -> Feature {
     compared("doors ajar", world, rays, &truths)
 }
 
-fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<Met> {
+fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<PossibleHit> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let (column, row) = (f64::from(cell.column), f64::from(cell.row));
     let (across, along, line, start) = match side {
@@ -227,10 +227,10 @@ fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<Met> 
     let place = &along.0 + &(&t * &along.1);
     let is_within =
         place >= FixedPoint::new(start) && place <= FixedPoint::new(start + (1.0 - part));
-    (!t.is_negative() && is_within).then_some(Met { cell, t, is_end: false })
+    (!t.is_negative() && is_within).then_some(PossibleHit { cell, t, is_end: false })
 }
 
-fn meet_wall(walls: &Grid, ray: &Ray) -> Option<Met> {
+fn meet_wall(walls: &Grid, ray: &Ray) -> Option<PossibleHit> {
     let truth = cast_at_walls(walls, ray)?;
     let (origin, direction, index) = match truth.side {
         Side::X => (ray.origin().x, ray.direction().x, truth.cell.column),
@@ -238,5 +238,5 @@ fn meet_wall(walls: &Grid, ray: &Ray) -> Option<Met> {
     };
     let line = f64::from(index) + if direction > 0.0 { 0.0 } else { 1.0 };
     let t = &(&FixedPoint::new(line) - &FixedPoint::new(origin)) / &FixedPoint::new(direction);
-    Some(Met { cell: truth.cell, t, is_end: false })
+    Some(PossibleHit { cell: truth.cell, t, is_end: false })
 }

@@ -35,11 +35,13 @@ fn results_survive_the_host_and_keep_their_own_time() {
     let mut after = waiting(&folder);
     assert_eq!(after.len(), 2);
     let mut away = HostStore::failing(StoreFailure::Away("gone".into()));
-    assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
+    assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(LateOutcome::NotNow)));
     assert_eq!(after.len(), 2);
     for text in ["Bob", "Ada"] {
         let late = after.record(0, &mut store, |_| None, at(5));
-        assert!(matches!(late, Some(Late::Recorded(account, _)) if account.name == name(text)));
+        assert!(
+            matches!(late, Some(LateOutcome::Recorded(account, _)) if account.name == name(text))
+        );
     }
     assert!(after.record(0, &mut store, |_| None, at(5)).is_none());
     let scores = cellar(&mut store);
@@ -70,9 +72,9 @@ fn a_daily_result_that_waited_counts_for_the_day_on_which_it_was_won() {
         waiting.add(result(1, day, &script)).unwrap();
     }
     let counts = waiting.record(0, &mut store, world, at(6));
-    assert!(matches!(counts, Some(Late::Recorded(..))), "{counts:?}");
+    assert!(matches!(counts, Some(LateOutcome::Recorded(..))), "{counts:?}");
     let late = waiting.record(0, &mut store, world, at(6));
-    assert!(matches!(late, Some(Late::Refuted(_, Unverified::OtherDay))), "{late:?}");
+    assert!(matches!(late, Some(LateOutcome::Refuted(_, Unverified::OtherDay))), "{late:?}");
     let board = LevelBoard::new(&level, Difficulty::Normal).unwrap();
     assert_eq!(store.level_scores(&board, 9).unwrap()[0].verified_at, at(3));
 }
@@ -86,15 +88,18 @@ fn refused_results_wait_a_week_and_invalid_ones_do_not_wait() {
     waiting.add(result(1, 0, "level cellar\n2 s forward\n")).unwrap();
     waiting.add(result(1, 0, WON)).unwrap();
     let nobody = waiting.record(0, &mut store, |_| None, at(6));
-    assert!(matches!(nobody, Some(Late::Refused(_))), "{nobody:?}");
+    assert!(matches!(nobody, Some(LateOutcome::Refused(_))), "{nobody:?}");
     let refuted = waiting.record(1, &mut store, |_| None, at(6));
-    assert!(matches!(refuted, Some(Late::Refuted(_, Unverified::NotWon))), "{refuted:?}");
+    assert!(matches!(refuted, Some(LateOutcome::Refuted(_, Unverified::NotWon))), "{refuted:?}");
     // It does not block the results behind it.
     let recorded = waiting.record(1, &mut store, |_| None, at(6));
-    assert!(matches!(recorded, Some(Late::Recorded(..))), "{recorded:?}");
+    assert!(matches!(recorded, Some(LateOutcome::Recorded(..))), "{recorded:?}");
     let mut full = HostStore::failing(StoreFailure::new("the disk is full"));
-    assert!(matches!(waiting.record(0, &mut full, |_| None, at(6)), Some(Late::Refused(_))));
-    assert!(matches!(waiting.record(0, &mut store, |_| None, at(8)), Some(Late::GivenUp(..))));
+    assert!(matches!(waiting.record(0, &mut full, |_| None, at(6)), Some(LateOutcome::Refused(_))));
+    assert!(matches!(
+        waiting.record(0, &mut store, |_| None, at(8)),
+        Some(LateOutcome::GivenUp(..))
+    ));
     assert!(waiting.is_empty());
 }
 
@@ -143,10 +148,13 @@ fn unwritten_results_wait_in_memory() {
     assert_eq!(results.len(), 1);
     // A full store takes nothing, however long it stays full.
     let mut full = HostStore::failing(StoreFailure::Full("no room".into()));
-    assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
+    assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(LateOutcome::NotNow)));
     fs::create_dir_all(&folder.0).unwrap();
     results.save().unwrap();
     assert_eq!(waiting(&folder).len(), 1);
-    assert!(matches!(results.record(0, &mut store, |_| None, at(99)), Some(Late::Recorded(..))));
+    assert!(matches!(
+        results.record(0, &mut store, |_| None, at(99)),
+        Some(LateOutcome::Recorded(..))
+    ));
     assert_eq!(cellar(&mut store)[0].verified_at, at(1));
 }

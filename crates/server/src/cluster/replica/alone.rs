@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{Alone, Replica, SECOND, STANDSTILL, steps_due};
+use super::{Alone, RENEWAL_INTERVAL, Replica, STANDSTILL_TIMEOUT, steps_due};
 use crate::cluster::bus::BusFault;
 use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
@@ -27,7 +27,7 @@ const MAX_ALONE: Duration = Duration::from_mins(10);
 impl Replica {
     /// Goes on alone, or leaves the room to other hosts, if the log has not answered for a while.
     pub(crate) fn lack_bus(&mut self, now: Instant) {
-        let is_standing_still = now.duration_since(self.times.moved) >= STANDSTILL;
+        let is_standing_still = now.duration_since(self.times.moved) >= STANDSTILL_TIMEOUT;
         if !is_standing_still || !self.has_lease(now) {
             return;
         }
@@ -52,7 +52,7 @@ impl Replica {
             if probe.await.unwrap_or(false) && self.append_alone().await.is_ok() {
                 return;
             }
-        } else if alone.probe.is_none() && now.duration_since(alone.probed) >= SECOND {
+        } else if alone.probe.is_none() && now.duration_since(alone.probed) >= RENEWAL_INTERVAL {
             let (context, id, number) = (self.context.clone(), self.id, self.state.number);
             let probe = async move { context.bus.read(id, number).await.is_ok() };
             (alone.probe, alone.probed) = (Some(tokio::spawn(probe)), now);

@@ -7,7 +7,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, BusAnswer, BusFault, HostRequest, Key};
-use super::world::{LOOK, StoredMessage, TIMEOUT, World, WorldState};
+use super::world::{CHECK_INTERVAL, StoredMessage, TIMEOUT, World, WorldState};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 
@@ -194,7 +194,7 @@ impl Bus for SimulatedBus {
                         world.pass(host).await;
                         let change = world.with(|inner| inner.changes.get(index).cloned());
                         let Some(change) = change.filter(|_| !world.link(host).is_cut) else {
-                            sleep(LOOK * 5).await;
+                            sleep(CHECK_INTERVAL * 5).await;
                             continue;
                         };
                         if changes.send(change).await.is_err() {

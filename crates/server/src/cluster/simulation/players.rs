@@ -5,7 +5,7 @@ use tokio::task::JoinHandle;
 use super::super::Entrant;
 use super::super::message::LogMessage;
 use super::world::World;
-use super::{ClusterRun, HOSTS, wish};
+use super::{ClusterRun, HOSTS, room_request};
 use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::rooms::directory::{Place, RoomRefusal};
@@ -114,7 +114,7 @@ impl ClusterRun {
             }
             let place = match room.filter(|_| !is_own) {
                 Some(room) => shared.enter(room, &entrant).await,
-                None => shared.open(&wish(), false, &entrant).await,
+                None => shared.open(&room_request(), false, &entrant).await,
             };
             place.map(|place| Arrived { place, host, is_return: false })
         }));

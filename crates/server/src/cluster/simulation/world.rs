@@ -19,7 +19,7 @@ use cellcaster::rng::SplitMix64;
 
 pub(crate) const TIMEOUT: Duration = Duration::from_secs(1);
 /// The time between two checks whether a fault is over.
-pub(crate) const LOOK: Duration = Duration::from_millis(10);
+pub(crate) const CHECK_INTERVAL: Duration = Duration::from_millis(10);
 
 /// The state that the hosts share, and the faults of their links.
 #[derive(Clone)]
@@ -102,7 +102,7 @@ impl World {
     /// The leases of a host, by the clock of the database.
     pub(crate) fn leases(&self, host: usize) -> Leases {
         let (store, host) = (self.worker(host), notice(host).name);
-        Leases { store, host, gathered: Duration::ZERO, renewals: Arc::default() }
+        Leases { store, host, batch_delay: Duration::ZERO, renewals: Arc::default() }
     }
 
     /// The visits of a host, by the same clock.
@@ -155,7 +155,7 @@ impl World {
         });
         sleep(Duration::from_millis(delay as u64)).await;
         while self.link(host).is_frozen {
-            sleep(LOOK).await;
+            sleep(CHECK_INTERVAL).await;
         }
     }
 

@@ -42,7 +42,7 @@ impl Hosts {
         let announces = tokio::spawn(async move {
             loop {
                 announcing.announce(0);
-                sleep(ANNOUNCED).await;
+                sleep(ANNOUNCEMENT_INTERVAL).await;
             }
         });
         let keeps = tokio::spawn(async move {
@@ -70,7 +70,7 @@ impl Hosts {
     fn count(&self) -> usize {
         locked(&self.database, |database| {
             database.pass();
-            database.store.visits(THERE).unwrap().len()
+            database.store.visits(HOST_TIMEOUT).unwrap().len()
         })
     }
 }
@@ -111,7 +111,7 @@ fn keys_and_addresses_are_limited_across_all_hosts() {
         let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let came = Instant::now();
         assert_eq!(hosts.begin(1, new_visit(1, 2)).await.unwrap_err(), TOO_MANY_KEYS);
-        assert!(came.elapsed() < ANNOUNCED * 2, "{:?}", came.elapsed());
+        assert!(came.elapsed() < ANNOUNCEMENT_INTERVAL * 2, "{:?}", came.elapsed());
         let _other = hosts.begin(1, new_visit(2, 1)).await.unwrap();
         let refusal = VisitRefusal::TooMany(Refusal::Address);
         assert_eq!(hosts.begin(1, new_visit(3, 1)).await.unwrap_err(), refusal);
@@ -131,8 +131,8 @@ fn a_returning_visitor_waits_until_the_killed_host_expires() {
         drop(visit);
         let came = Instant::now();
         let _visit = hosts.begin(1, new_visit(1, 1)).await.unwrap();
-        assert!(came.elapsed() < THERE + ANNOUNCED, "{:?}", came.elapsed());
-        assert!(came.elapsed() + ANNOUNCED >= THERE, "{:?}", came.elapsed());
+        assert!(came.elapsed() < HOST_TIMEOUT + ANNOUNCEMENT_INTERVAL, "{:?}", came.elapsed());
+        assert!(came.elapsed() + ANNOUNCEMENT_INTERVAL >= HOST_TIMEOUT, "{:?}", came.elapsed());
     });
 }
 
@@ -147,7 +147,7 @@ fn visits_that_end_during_an_outage_are_removed_later() {
         drop(visit);
         sleep(Duration::from_secs(20)).await;
         hosts.set_away(false);
-        sleep(ANNOUNCED * 2).await;
+        sleep(ANNOUNCEMENT_INTERVAL * 2).await;
         assert_eq!(hosts.count(), 2);
         hosts.begin(1, new_visit(1, 1)).await.unwrap();
         assert_eq!(hosts.begin(1, new_visit(2, 2)).await.unwrap_err(), TOO_MANY_KEYS);
@@ -174,7 +174,7 @@ fn a_stopped_host_has_no_visits() {
         assert_eq!(host.hosts().await.unwrap().len(), 2);
         host.leave().await;
         drop(visit);
-        sleep(ANNOUNCED * 2).await;
+        sleep(ANNOUNCEMENT_INTERVAL * 2).await;
         assert_eq!((hosts.count(), host.hosts().await.unwrap().len()), (0, 1));
         hosts.begin(1, new_visit(1, 1)).await.unwrap();
     });

@@ -35,8 +35,8 @@ impl Recording for Broken {
     }
 }
 
-fn wish(mode: Mode) -> RoomWish {
-    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+fn room_request(mode: Mode) -> RoomRequest {
+    RoomRequest { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
 /// A directory whose first room is a standing one. The rooms in `broken` panic as soon as somebody joins.
@@ -45,7 +45,7 @@ fn rooms(broken: &'static [u32]) -> Rooms {
         most: 4,
         most_watchers: 4,
         closes_after: Duration::ZERO,
-        standing: vec![wish(Mode::Roam)],
+        standing: vec![room_request(Mode::Roam)],
     };
     let recordings = Recordings::new(|id| {
         broken.contains(&id.0).then(|| -> Box<dyn Recording> { Box::new(Broken) })
@@ -86,7 +86,7 @@ fn a_panic_ends_only_its_own_room() {
     let text = run(async || {
         let rooms = rooms(&[2]);
         let mut ben = rooms.enter(RoomId(1), &name("Ben")).unwrap();
-        let mut ada = rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap();
+        let mut ada = rooms.open(&room_request(Mode::Tag), false, &name("Ada")).unwrap();
         let mut watcher = rooms.watch(RoomId(2)).unwrap();
         assert!(end_of(&mut ada).await.contains("error in this server"));
         assert!(end_of(&mut watcher).await.contains("error in this server"));
@@ -97,7 +97,10 @@ fn a_panic_ends_only_its_own_room() {
         let before = ben.view().unwrap().step;
         ben.changed().await;
         assert!(ben.view().unwrap().step > before);
-        assert_eq!(rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap().room(), RoomId(3));
+        assert_eq!(
+            rooms.open(&room_request(Mode::Tag), false, &name("Ada")).unwrap().room(),
+            RoomId(3)
+        );
     });
     let failed: Vec<&str> = text.lines().filter(|line| line.contains("failed")).collect();
     assert_eq!(failed.len(), 1, "{text}");
@@ -124,9 +127,9 @@ fn empty_rooms_are_closed_and_forgotten() {
         let rooms = rooms(&[]);
         for _ in 0..20 {
             let places: Vec<Place> = (0..3)
-                .map(|_| rooms.open(&wish(Mode::Tag), false, &name("Ada")).unwrap())
+                .map(|_| rooms.open(&room_request(Mode::Tag), false, &name("Ada")).unwrap())
                 .collect();
-            let full = rooms.open(&wish(Mode::Tag), false, &name("Ben")).err();
+            let full = rooms.open(&room_request(Mode::Tag), false, &name("Ben")).err();
             assert_eq!(full, Some(RoomRefusal::TooMany));
             drop(places);
             listed(&rooms, &[1]).await;
@@ -141,7 +144,7 @@ fn the_end_of_a_round_is_logged() {
         let rooms = rooms(&[]);
         let header = Header::new("museum", Mode::Hide, Difficulty::default(), 7);
         let mut room = Room::new(rooms.catalog(), header).unwrap();
-        let (id, ..) = rooms.add(&wish(Mode::Hide), false, None).unwrap();
+        let (id, ..) = rooms.add(&room_request(Mode::Hide), false, None).unwrap();
         for (member, member_name) in [(1, "Ada"), (2, "Ben")] {
             let command = Command::Join { color: PlayerColor::ALL[0], name: name(member_name) };
             room.apply(&Entry { step: room.step(), member: MemberId(member), command });

@@ -14,11 +14,13 @@ use serde::Serialize;
 
 use super::catalog::no_level;
 use super::member::Member;
-use super::{CHAT_COLUMNS, Catalog, Header, KeptPlace, MemberId, NAME_COLUMNS, Room, SAID, Said};
+use super::{
+    CHAT_COLUMNS, Catalog, ChatLine, Header, KeptPlace, MemberId, NAME_COLUMNS, Room, SAID,
+};
 use crate::accounts::printable;
 use crate::line::Line;
 use cellcaster::game::PlayerColor;
-use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
+use cellcaster::game::stored::{Reader, RestoreError, check, checksum, written};
 use cellcaster::rng;
 
 /// The name of the format, in the first line.
@@ -41,7 +43,7 @@ impl Room {
     /// # Errors
     /// A sentence, if the bytes are damaged, have another version, or need a level that is not in the catalog.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
-        let sentence = |error: Unrestorable| error.to_string();
+        let sentence = |error: RestoreError| error.to_string();
         let mut input = Reader::new(KIND, bytes, (0, 0)).map_err(sentence)?;
         let header: Header = input.read().map_err(sentence)?;
         check(header.is_possible(), "the header").map_err(sentence)?;
@@ -86,7 +88,7 @@ impl Room {
         (step, next_member, round, members, again, today, emotes)
     }
 
-    fn read(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
+    fn read(&mut self, input: &mut Reader) -> Result<(), RestoreError> {
         (self.said, self.said_count) = input.read()?;
         (self.step, self.next_member, self.round) = input.read()?;
         (self.members, self.again, self.today, self.emotes) = input.read()?;
@@ -97,12 +99,12 @@ impl Room {
     }
 
     /// Rejects a state in which a step could fail, or that contains text that no member can type.
-    fn check(&self) -> Result<(), Unrestorable> {
+    fn check(&self) -> Result<(), RestoreError> {
         self.round.check(self.header.mode, self.step)?;
         check(self.next_member <= MemberId::MAX.0 + 1, "the number of the next member")?;
         check(self.members.len() <= self.header.mode.most(), "the number of members")?;
         check(self.are_members_possible(), "a member")?;
-        let is_possible = |said: &Said| {
+        let is_possible = |said: &ChatLine| {
             let is_name = |(name, _): &(Line, PlayerColor)| name.fits(NAME_COLUMNS);
             said.number <= self.said_count
                 && said.by.as_ref().is_none_or(is_name)

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use cellcaster::game::{MultiplayerRules, STEPS_PER_SECOND, Sees, Strikes};
+use cellcaster::game::{MultiplayerRules, STEPS_PER_SECOND, ShownPlayers, StrikeEffect};
 use cellcaster::world::World;
 
 /// The number of steps per second.
@@ -102,11 +102,11 @@ impl Mode {
     pub(crate) fn multiplayer_rules(self) -> MultiplayerRules {
         let usual = MultiplayerRules::default();
         match self {
-            Self::Roam => MultiplayerRules { strikes: Strikes::Push, ..usual },
+            Self::Roam => MultiplayerRules { strikes: StrikeEffect::Push, ..usual },
             Self::Together | Self::Race => usual,
             Self::Alone => MultiplayerRules { respawns: false, ..usual },
-            Self::Tag => MultiplayerRules { sees: Sees::InSight, ..usual },
-            Self::Hide => MultiplayerRules { sees: Sees::Nobody, ..usual },
+            Self::Tag => MultiplayerRules { shows_on_map: ShownPlayers::InSight, ..usual },
+            Self::Hide => MultiplayerRules { shows_on_map: ShownPlayers::Nobody, ..usual },
         }
     }
 

@@ -23,7 +23,7 @@ const MAX_FIGURES: usize = 32;
 
 /// The latest moments of a round.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Recorder {
+pub(crate) struct MomentRecorder {
     moments: VecDeque<RecordedMoment>,
 }
 
@@ -35,7 +35,7 @@ struct RecordedMoment {
 
 /// The last seconds of a round.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Replay {
+pub(crate) struct RoundReplay {
     /// The name of the member through whose eyes it is shown.
     pub(crate) name: Line,
     moments: Box<[Moment]>,
@@ -48,7 +48,7 @@ pub(crate) struct Moment {
     pub(crate) figures: Vec<Figure>,
 }
 
-impl Recorder {
+impl MomentRecorder {
     /// Returns true if the moment after `step` is recorded.
     pub(crate) fn is_due(step: u64) -> bool {
         step.is_multiple_of(STEPS_A_MOMENT)
@@ -71,17 +71,17 @@ impl Recorder {
     }
 
     /// The replay through the eyes of `member`; `None` if they were not recorded.
-    pub(crate) fn replay(&mut self, member: MemberId, name: Line) -> Option<Replay> {
+    pub(crate) fn replay(&mut self, member: MemberId, name: Line) -> Option<RoundReplay> {
         let moments = std::mem::take(&mut self.moments).into_iter().filter_map(|moment| {
             let (_, camera) = *moment.cameras.iter().find(|it| it.0 == member)?;
             Some(Moment { camera, figures: moment.figures })
         });
         let moments: Box<[Moment]> = moments.collect();
-        (!moments.is_empty()).then_some(Replay { name, moments })
+        (!moments.is_empty()).then_some(RoundReplay { name, moments })
     }
 }
 
-impl Replay {
+impl RoundReplay {
     /// The moment to show `steps` steps after the end of the round. The replay repeats.
     pub(crate) fn moment(&self, steps: u64) -> &Moment {
         let count = self.moments.len() as u64;

@@ -16,7 +16,7 @@ use super::looks::FigureLook;
 use super::member::{Member, MemberId};
 use super::mode::{Mode, SECOND};
 use cellcaster::app::parts::of_steps;
-use cellcaster::game::stored::{Unrestorable, check};
+use cellcaster::game::stored::{RestoreError, check};
 use cellcaster::game::{Game, Outcome, PlayerId};
 use cellcaster::rng::SplitMix64;
 
@@ -128,7 +128,7 @@ impl Round {
     }
 
     /// Checks that the round has this `mode` and began no later than `step`.
-    pub(crate) fn check(&self, mode: Mode, step: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, mode: Mode, step: u64) -> Result<(), RestoreError> {
         check(self.mode == mode, "the mode")?;
         let is_possible = match (&self.play, self.mode) {
             (Play::Roam, Mode::Roam) => true,

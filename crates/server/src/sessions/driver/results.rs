@@ -13,7 +13,7 @@ use tokio::time::sleep;
 
 use super::{Clock, Shared};
 use crate::accounts::{
-    Account, AccountId, HostStore, Late, LevelBoard, LevelScore, StoreFailure, UnixTime,
+    Account, AccountId, HostStore, LateOutcome, LevelBoard, LevelScore, StoreFailure, UnixTime,
     VerifiedRun, WaitingResult, WaitingResults, verify_at,
 };
 use crate::line::Line;
@@ -33,7 +33,7 @@ const MAX_ROWS: usize = 100;
 
 /// Replays runs and records them, on the store's thread.
 #[derive(Clone, Debug)]
-pub(crate) struct Recorder {
+pub(crate) struct ResultRecorder {
     pub(crate) catalog: Arc<Catalog>,
     pub(crate) clock: Clock,
     pub(crate) metrics: Arc<Metrics>,
@@ -42,7 +42,7 @@ pub(crate) struct Recorder {
     pub(crate) waiting: Option<Arc<Mutex<WaitingResults>>>,
 }
 
-impl Recorder {
+impl ResultRecorder {
     /// Replays a run and records it for the account; returns a sentence for the player.
     pub(crate) fn record(
         &self,
@@ -195,13 +195,13 @@ enum Next {
     None,
 }
 
-impl Recorder {
+impl ResultRecorder {
     /// Tries to record the result after the first `skipped` ones.
     fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
             let late = waiting.record(skipped, store, |name| self.world(name), self.clock.now());
-            if matches!(late, None | Some(Late::NotNow)) {
+            if matches!(late, None | Some(LateOutcome::NotNow)) {
                 // The error was logged when the first of these results began to wait. Saving is tried again later.
                 _ = waiting.save();
             }
@@ -209,12 +209,12 @@ impl Recorder {
         });
         self.metrics.results_waiting.set(count as i64);
         match late {
-            None | Some(Late::NotNow) => return Next::None,
-            Some(Late::Refused(failure)) => {
+            None | Some(LateOutcome::NotNow) => return Next::None,
+            Some(LateOutcome::Refused(failure)) => {
                 self.failed(&failure);
                 return Next::Refused;
             }
-            Some(Late::Recorded(account, run)) => {
+            Some(LateOutcome::Recorded(account, run)) => {
                 let (level, steps) = (run.board().level(), run.tally().steps);
                 logging::result_verified(account.name.as_str(), level, steps, run.rank().name());
                 let level = self.catalog.title(level);
@@ -222,11 +222,13 @@ impl Recorder {
                     format!("your result in {level}, {}, has been recorded.", of_steps(steps));
                 self.visitors.say_to(&account.key, &line);
             }
-            Some(Late::Refuted(result, reason)) => {
+            Some(LateOutcome::Refuted(result, reason)) => {
                 self.metrics.results(false).inc();
                 logging::result_lost(&result.key, reason);
             }
-            Some(Late::GivenUp(result, failure)) => logging::result_lost(&result.key, failure),
+            Some(LateOutcome::GivenUp(result, failure)) => {
+                logging::result_lost(&result.key, failure)
+            }
         }
         Next::Recorded
     }

@@ -48,7 +48,7 @@ const TOO_OFTEN: &str = "Not so fast: wait a second.";
 const BUSY: &str = "The host is busy; try again.";
 
 /// A moderator's act against a player.
-struct Act {
+struct PendingModeration {
     moderator: Name,
     player: Name,
     kind: Moderation,
@@ -163,7 +163,7 @@ impl Driver {
         }
         let player = Name::kept(player.as_str());
         let reason = reason.map_or(String::new(), Line::to_string);
-        let act = Act { moderator, player, kind: act, reason };
+        let act = PendingModeration { moderator, player, kind: act, reason };
         let (shared, replies) = (Arc::clone(&self.shared), self.replies.clone());
         tokio::spawn(async move {
             let sentence = shared.moderate(act).await.unwrap_or_else(|sentence| sentence);
@@ -205,8 +205,8 @@ impl Shared {
     }
 
     /// Carries out a moderator's act, and returns a sentence for the moderator: as an error, if the act had no effect.
-    async fn moderate(&self, act: Act) -> Result<String, String> {
-        let Act { moderator, player, kind, reason } = act;
+    async fn moderate(&self, act: PendingModeration) -> Result<String, String> {
+        let PendingModeration { moderator, player, kind, reason } = act;
         let found = self.find(&player).await;
         let (by, name) = (moderator.to_string(), player.to_string());
         match kind {

@@ -36,7 +36,7 @@ use crate::rooms::room::{CHAT_COLUMNS, Command, NAME_COLUMNS, RoomView};
 use crate::rooms::sequencer::FinishedRun;
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
-    HostFacts, IdleLimits, Profile, Request, Session, SessionEvent, Way,
+    IdleLimits, Profile, RoomEntry, Session, SessionContext, SessionEvent, SessionRequest,
 };
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Heard, Notice, Onlookers, Presence};
@@ -152,7 +152,7 @@ impl Driver {
         if let Some(account) = &account {
             presence.set_name(account.name.as_str());
         }
-        let host = HostFacts {
+        let host = SessionContext {
             name: host_name(&config.name),
             message: Line::of(&config.message, MESSAGE_COLUMNS),
             notice: visitor.notice.and_then(|notice| Line::of(notice, MESSAGE_COLUMNS)),
@@ -404,35 +404,35 @@ impl Driver {
         }
     }
 
-    fn run_request(&mut self, ask: Request) {
+    fn run_request(&mut self, ask: SessionRequest) {
         match ask {
-            Request::Name(text) => self.choose_name(&text),
-            Request::Rooms => {
+            SessionRequest::Name(text) => self.choose_name(&text),
+            SessionRequest::Rooms => {
                 self.in_lobby = true;
                 let onlookers = self.onlookers.borrow_and_update().clone();
                 self.notify(SessionEvent::Onlookers(onlookers));
                 let event = self.rooms_event();
                 self.notify(event);
             }
-            Request::Go(way) => self.go(way),
-            Request::Code(code) => match self.room_with_code(&code) {
-                Ok(room) => self.go(Way::Enter(room)),
+            SessionRequest::Go(way) => self.go(way),
+            SessionRequest::Code(code) => match self.room_with_code(&code) {
+                Ok(room) => self.go(RoomEntry::Enter(room)),
                 Err(sentence) => self.notify(SessionEvent::Refused(sentence)),
             },
-            Request::Command(command) => self.act(command),
-            Request::Say(text) => self.say_in_lobby(&text),
-            Request::Tell { to, text } => self.tell(to, text),
-            Request::Players => self.list_players(),
-            Request::Report { player, reason, lines } => {
+            SessionRequest::Command(command) => self.act(command),
+            SessionRequest::Say(text) => self.say_in_lobby(&text),
+            SessionRequest::Tell { to, text } => self.tell(to, text),
+            SessionRequest::Players => self.list_players(),
+            SessionRequest::Report { player, reason, lines } => {
                 self.report(&player, reason.as_ref(), lines);
             }
-            Request::Moderate { player, act, reason } => {
+            SessionRequest::Moderate { player, act, reason } => {
                 self.moderate(&player, act, reason.as_ref());
             }
-            Request::Leave => self.leave(),
-            Request::Board { level, difficulty } => self.show_board(level, difficulty),
-            Request::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
-            Request::Save(settings) => self.save(settings),
+            SessionRequest::Leave => self.leave(),
+            SessionRequest::Board { level, difficulty } => self.show_board(level, difficulty),
+            SessionRequest::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
+            SessionRequest::Save(settings) => self.save(settings),
         }
     }
 
@@ -572,8 +572,8 @@ impl Driver {
 /// The visitor's place in a room.
 impl Driver {
     /// Enters or watches a room. Only a visitor with a name can become a member.
-    fn go(&mut self, way: Way) {
-        if !matches!(way, Way::Watch(_)) {
+    fn go(&mut self, way: RoomEntry) {
+        if !matches!(way, RoomEntry::Watch(_)) {
             self.leave();
         }
         let name = self.name.as_ref().map(login::line);
@@ -584,10 +584,10 @@ impl Driver {
             let replies = self.replies.clone();
             tokio::spawn(async move {
                 let place = match (&way, &entrant) {
-                    (Way::Watch(room), _) => rooms.watch(*room).await,
-                    (Way::Enter(room), Some(entrant)) => rooms.enter(*room, entrant).await,
-                    (Way::Open { wish, is_private }, Some(entrant)) => {
-                        rooms.open(wish, *is_private, entrant).await
+                    (RoomEntry::Watch(room), _) => rooms.watch(*room).await,
+                    (RoomEntry::Enter(room), Some(entrant)) => rooms.enter(*room, entrant).await,
+                    (RoomEntry::Open { request, is_private }, Some(entrant)) => {
+                        rooms.open(request, *is_private, entrant).await
                     }
                     (_, None) => Err(RoomRefusal::Gone),
                 };
@@ -598,9 +598,11 @@ impl Driver {
         }
         let rooms = &self.shared.rooms;
         let place = match (way, &name) {
-            (Way::Watch(room), _) => rooms.watch(room),
-            (Way::Enter(room), Some(name)) => rooms.enter(room, name),
-            (Way::Open { wish, is_private }, Some(name)) => rooms.open(&wish, is_private, name),
+            (RoomEntry::Watch(room), _) => rooms.watch(room),
+            (RoomEntry::Enter(room), Some(name)) => rooms.enter(room, name),
+            (RoomEntry::Open { request, is_private }, Some(name)) => {
+                rooms.open(&request, is_private, name)
+            }
             (_, None) => Err(RoomRefusal::Gone),
         };
         self.enter(place);

@@ -7,7 +7,7 @@ use std::time::Duration;
 use unicode_width::UnicodeWidthStr;
 
 use super::line_entry::LineEntry;
-use super::messages::{Moderation, Request};
+use super::messages::{Moderation, SessionRequest};
 use super::pages::Page;
 use super::ui::Ui;
 use crate::accounts::AccountSettings;
@@ -39,7 +39,7 @@ impl Ui {
     /// Opens the list of players.
     pub(crate) fn open_players(&mut self) {
         self.players.names = None;
-        self.ask(Request::Players);
+        self.ask(SessionRequest::Players);
         self.open(Page::Players);
     }
 
@@ -58,8 +58,8 @@ impl Ui {
         }
         match &self.stay {
             Some(stay) if stay.member.is_none() => self.advise(WATCHES.to_owned()),
-            Some(_) => self.ask(Request::Command(Command::Say(line))),
-            None => self.ask(Request::Say(line)),
+            Some(_) => self.ask(SessionRequest::Command(Command::Say(line))),
+            None => self.ask(SessionRequest::Say(line)),
         }
     }
 
@@ -79,13 +79,13 @@ impl Ui {
             "tell" => {
                 let line = name().zip(text()).ok_or("Write /tell NAME TEXT.")?;
                 let (to, text) = line;
-                self.ask(Request::Tell { to, text });
+                self.ask(SessionRequest::Tell { to, text });
             }
             "reply" => {
                 let text = Line::of(rest, CHAT_COLUMNS).ok_or("Write /reply TEXT.")?;
                 let to = self.talk.correspondent().cloned();
                 let to = to.ok_or("Nobody has written to you; write /tell NAME TEXT.")?;
-                self.ask(Request::Tell { to, text });
+                self.ask(SessionRequest::Tell { to, text });
             }
             "players" => self.open_players(),
             "ignore" => self.ignore(&name().ok_or("Write /ignore NAME.")?),
@@ -93,13 +93,13 @@ impl Ui {
             "report" => {
                 let player = name().ok_or("Write /report NAME, and the reason if you like.")?;
                 let lines = self.talk.lines_of(&player);
-                self.ask(Request::Report { player, reason: text(), lines });
+                self.ask(SessionRequest::Report { player, reason: text(), lines });
             }
             "mute" | "unmute" | "kick" => {
                 let (act, reason, usage) = act(verb, after);
                 let (player, act) = name().zip(act).ok_or(usage)?;
                 let reason = Line::of(reason, CHAT_COLUMNS);
-                self.ask(Request::Moderate { player, act, reason });
+                self.ask(SessionRequest::Moderate { player, act, reason });
             }
             _ => {
                 let more = if self.players.moderates { MODERATORS_COMMANDS } else { "" };

@@ -25,7 +25,7 @@ pub(crate) struct Pace {
 }
 
 /// The shortest interval between two frames.
-const PROMPT: Duration = Duration::from_millis(16);
+const MIN_FRAME_INTERVAL: Duration = Duration::from_millis(16);
 
 impl Pace {
     pub(crate) fn new(frame_time: Duration) -> Self {
@@ -47,7 +47,7 @@ impl Pace {
         let Some(drawn_at) = self.drawn_at else { return Duration::ZERO };
         if answers_key {
             let credit = self.paid_at.saturating_sub(self.frame_time);
-            credit.max(drawn_at + PROMPT.min(self.frame_time))
+            credit.max(drawn_at + MIN_FRAME_INTERVAL.min(self.frame_time))
         } else {
             self.paid_at.max(drawn_at + self.frame_time)
         }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::Request;
+use super::SessionRequest;
 use super::commands::columns_of;
 use super::pages::{Choice, LevelChoice, Page};
 use super::ui::Ui;
@@ -194,7 +194,7 @@ impl Ui {
     fn submit(&mut self) {
         if self.page() == Page::Code {
             if let Some(code) = self.entry.line() {
-                self.ask(Request::Code(code));
+                self.ask(SessionRequest::Code(code));
                 self.open(Page::Entering);
             }
             return;
@@ -212,7 +212,7 @@ impl Ui {
         }
         if !std::mem::replace(&mut self.awaits_name, true) {
             let name = name.as_ref().map_or("", Line::as_str).to_owned();
-            self.ask(Request::Name(name));
+            self.ask(SessionRequest::Name(name));
         }
     }
 }
@@ -289,7 +289,7 @@ impl Ui {
             return;
         };
         if stay.dies_for_good {
-            return self.ask(Request::Command(Command::Again));
+            return self.ask(SessionRequest::Command(Command::Again));
         }
         stay.intents.set([Intent::Retry].into_iter().collect());
         self.want();

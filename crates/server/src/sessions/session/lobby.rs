@@ -10,7 +10,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::messages::{BoardRow, Request};
+use super::messages::{BoardRow, SessionRequest};
 use super::pages::{LevelChoice, Page, RoomTarget};
 use super::ui::Ui;
 use crate::accounts::Day;
@@ -40,7 +40,7 @@ pub(crate) struct Lobby {
     /// The game time at which the last picture changes by itself.
     pub(crate) next_change: Option<f64>,
     /// The room in the last picture; `None` if the picture shows no room.
-    shown: Option<Shown>,
+    shown: Option<RoomPictureState>,
     drawn_at: Duration,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct LobbyBoard {
 
 /// The part of a room's state that the picture and its caption depend on.
 #[derive(Debug)]
-struct Shown {
+struct RoomPictureState {
     header: Arc<Header>,
     revision: u64,
     camera: Option<Camera>,
@@ -99,7 +99,7 @@ impl Lobby {
     /// Records that the lobby was drawn at `now`, with `room` as the snapshot.
     pub(crate) fn drawn(&mut self, room: Option<&RoomView>, view: FieldOfView, now: Duration) {
         let room = room.filter(|room| seen_through(room).is_some());
-        self.shown = room.map(|room| Shown {
+        self.shown = room.map(|room| RoomPictureState {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
             camera: camera(room, view),
@@ -164,7 +164,10 @@ impl Ui {
             Some(board) => *board = LobbyBoard { day, rows: Some(Arc::from([])) },
             None => {
                 self.lobby.board = Some(LobbyBoard { day, rows: None });
-                self.ask(Request::Board { level: day.level(), difficulty: Difficulty::Normal });
+                self.ask(SessionRequest::Board {
+                    level: day.level(),
+                    difficulty: Difficulty::Normal,
+                });
             }
         }
     }

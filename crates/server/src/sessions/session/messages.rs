@@ -9,7 +9,7 @@ use crate::line::Line;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, MemberId};
-use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use crate::visitors::Onlookers;
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
@@ -34,7 +34,7 @@ pub(crate) struct Profile {
 
 /// The facts about the host and the connection.
 #[derive(Clone, Debug)]
-pub(crate) struct HostFacts {
+pub(crate) struct SessionContext {
     /// The host's name.
     pub(crate) name: Line,
     /// The message of the day.
@@ -55,26 +55,26 @@ pub(crate) struct HostFacts {
 
 /// A way into a room.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Way {
+pub(crate) enum RoomEntry {
     /// Watch an existing room.
     Watch(RoomId),
     /// Become a member of an existing room.
     Enter(RoomId),
     /// Open a new room and become its member. Others enter a private room with its code only.
-    Open { wish: RoomWish, is_private: bool },
+    Open { request: RoomRequest, is_private: bool },
 }
 
 /// A request from a session to its driver.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Request {
+pub(crate) enum SessionRequest {
     /// Take this name. Answered by [`SessionEvent::Named`].
     Name(String),
     /// Send the rooms and the visitors, now and on every change, until the session enters a room. Answered by
     /// [`SessionEvent::Onlookers`] and [`SessionEvent::Rooms`].
     Rooms,
     /// Enter a room. Answered by [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
-    Go(Way),
-    /// Enter the private room with this code. Answered like [`Request::Go`].
+    Go(RoomEntry),
+    /// Enter the private room with this code. Answered like [`SessionRequest::Go`].
     Code(Line),
     /// Submit a command to the room, other than [`Command::Join`] or [`Command::Leave`].
     Command(Command),

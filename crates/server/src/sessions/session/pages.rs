@@ -9,12 +9,12 @@ use std::time::Duration;
 use super::commands::Players;
 use super::draw::COMPRESSION;
 use super::line_entry::LineEntry;
-use super::messages::{Moderation, Request, Way};
+use super::messages::{Moderation, RoomEntry, SessionRequest};
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
-use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use cellcaster::app::parts::{self, Action, Choice as _, Menu, PageKind, of_steps};
 use cellcaster::game::Intent;
 use cellcaster::terminal::Key;
@@ -229,7 +229,7 @@ impl Ui {
             Choice::Change(row) => self.change_setting(row, true),
             Choice::Back => self.close(),
             Choice::Emote(emote) => {
-                self.ask(Request::Command(Command::Emote(emote)));
+                self.ask(SessionRequest::Command(Command::Emote(emote)));
                 self.show(Page::Room);
             }
             Choice::Players => self.open_players(),
@@ -245,7 +245,7 @@ impl Ui {
                 }
             }
             Choice::Again => {
-                self.ask(Request::Command(Command::Again));
+                self.ask(SessionRequest::Command(Command::Again));
                 self.show(Page::Room);
             }
             Choice::LeaveRoom => self.leave_by_request(),
@@ -267,7 +267,7 @@ impl Ui {
                 self.renew_menu();
             }
             Choice::Moderate(act) => {
-                self.ask(Request::Moderate { player, act, reason: None });
+                self.ask(SessionRequest::Moderate { player, act, reason: None });
                 self.show_home();
             }
             _ => {}
@@ -283,15 +283,15 @@ impl Ui {
     fn enter_room(&mut self, watches: bool) {
         let Page::Card(target) = self.page() else { return };
         let way = match target {
-            RoomTarget::Existing(room) if watches => Way::Watch(room),
-            RoomTarget::Existing(room) => Way::Enter(room),
+            RoomTarget::Existing(room) if watches => RoomEntry::Watch(room),
+            RoomTarget::Existing(room) => RoomEntry::Enter(room),
             RoomTarget::New { mode, level, difficulty } => {
                 let Some(level) = self.chosen_level(level) else { return };
-                let wish = RoomWish { level, mode, difficulty };
-                Way::Open { wish, is_private: self.is_private }
+                let request = RoomRequest { level, mode, difficulty };
+                RoomEntry::Open { request, is_private: self.is_private }
             }
         };
-        self.ask(Request::Go(way));
+        self.ask(SessionRequest::Go(way));
         self.open(Page::Entering);
     }
 
@@ -305,7 +305,7 @@ impl Ui {
     pub(crate) fn ask_for_board(&mut self) {
         self.board.rows = None;
         if let Some((level, difficulty)) = self.asked_board() {
-            self.ask(Request::Board { level, difficulty });
+            self.ask(SessionRequest::Board { level, difficulty });
         }
     }
 
@@ -321,7 +321,7 @@ impl Ui {
 
     /// Leaves the room at the visitor's request.
     pub(crate) fn leave_by_request(&mut self) {
-        self.ask(Request::Leave);
+        self.ask(SessionRequest::Leave);
         self.leave_room(None);
     }
 
@@ -330,7 +330,7 @@ impl Ui {
         self.stay = None;
         self.lobby.begin();
         self.note = sentence;
-        self.ask(Request::Rooms);
+        self.ask(SessionRequest::Rooms);
         self.show(Page::Lobby);
     }
 }

@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
 use super::endings::IdleLimits;
-use super::messages::{HostFacts, Profile, SessionEvent};
+use super::messages::{Profile, SessionContext, SessionEvent};
 use super::ui::Ui;
 use crate::accounts::Day;
 use crate::config::Config;
@@ -34,7 +34,7 @@ impl ReplayedScreen {
             ignored: Vec::new(),
             configuration: Configuration::default(),
         };
-        let host = HostFacts {
+        let host = SessionContext {
             name,
             message: None,
             notice: None,

@@ -4,12 +4,12 @@
 //! choices are saved with the account, except for the map, which belongs to a stay in a room, and chat, which belongs
 //! to the session.
 
-use super::messages::Request;
+use super::messages::SessionRequest;
 use super::pages::Choice;
 use super::ui::{Ui, bindings_of};
 use crate::accounts::AccountSettings;
 use cellcaster::app::MapDisplay;
-use cellcaster::app::parts::{At, Choices, Menu, Preset, Setting, settings_menu};
+use cellcaster::app::parts::{Choices, FieldAt, Menu, Preset, Setting, settings_menu};
 use cellcaster::app::store::Preferences;
 
 /// The values that the page shows and changes.
@@ -32,10 +32,13 @@ impl AsMut<Preferences> for SessionChoices {
     }
 }
 
-const PRESET: Setting<SessionChoices> =
-    Setting { key: "preset", about: "Keys", value: &At(|it: &mut SessionChoices| &mut it.preset) };
+const PRESET: Setting<SessionChoices> = Setting {
+    key: "preset",
+    about: "Keys",
+    value: &FieldAt(|it: &mut SessionChoices| &mut it.preset),
+};
 const CHAT: Setting<SessionChoices> =
-    Setting { key: "chat", about: "Chat", value: &At(|it: &mut SessionChoices| &mut it.chat) };
+    Setting { key: "chat", about: "Chat", value: &FieldAt(|it: &mut SessionChoices| &mut it.chat) };
 
 /// The rows in the order of the page. The last one appears only in a room.
 const ROWS: [Setting<SessionChoices>; 14] = [
@@ -117,7 +120,7 @@ impl Ui {
 
     /// Saves the account's settings, including the ignored players.
     pub(crate) fn save_settings(&mut self) {
-        self.ask(Request::Save(AccountSettings {
+        self.ask(SessionRequest::Save(AccountSettings {
             preferences: self.identity.preferences,
             configuration: self.identity.configuration.to_string(),
             ignored: self.ignored.names().to_vec(),

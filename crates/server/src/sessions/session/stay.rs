@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::ceremony::{Ceremony, Edge, Pass, edge, finishers};
 use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
-use super::messages::Request;
+use super::messages::SessionRequest;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
@@ -47,12 +47,12 @@ pub(crate) struct Stay {
     /// The members who could be watched in the last picture.
     members: Vec<MemberId>,
     /// The state shown in the last picture; `None` before the first.
-    shown: Option<Shown>,
+    shown: Option<PictureState>,
 }
 
 /// The part of a room's state that a picture depends on.
 #[derive(Debug)]
-struct Shown {
+struct PictureState {
     header: Arc<Header>,
     revision: u64,
     camera: Camera,
@@ -94,8 +94,8 @@ impl Stay {
     }
 
     /// Updates the stay from `room` before it is drawn; returns a request for data that the picture needs.
-    pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
-        let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
+    pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<SessionRequest> {
+        let is_same_round = |shown: &PictureState| Arc::ptr_eq(&shown.header, &room.header);
         let begins = !self.shown.as_ref().is_some_and(is_same_round);
         if begins && self.shown.is_some() {
             self.map.begin_level();
@@ -226,7 +226,7 @@ impl Stay {
 
     /// Records that `room` was drawn.
     pub(crate) fn drawn(&mut self, room: &RoomView, view: FieldOfView, shows_ghosts: bool) {
-        self.shown = Some(Shown {
+        self.shown = Some(PictureState {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
             camera: self.camera(room, view),
@@ -262,13 +262,13 @@ pub(crate) struct SeenGhost<'g> {
 
 impl Ghosts {
     /// Resets the ghosts at the start of a round; returns the request for the ghosts of its level.
-    pub(crate) fn begin(&mut self, room: &RoomView) -> Option<Request> {
+    pub(crate) fn begin(&mut self, room: &RoomView) -> Option<SessionRequest> {
         *self = Self::default();
         let header = &room.header;
         header.mode.has_ghosts().then(|| {
             let (level, difficulty) = (header.level.clone(), header.difficulty);
             self.level = Some((level.clone(), difficulty));
-            Request::Ghosts { level, difficulty }
+            SessionRequest::Ghosts { level, difficulty }
         })
     }
 

@@ -16,13 +16,13 @@ use super::draw::overhead;
 use super::ignored::Ignored;
 use crate::accounts::Name;
 use crate::line::Line;
-use crate::rooms::room::Said;
+use crate::rooms::room::ChatLine;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::PlayerColor;
 use cellcaster::tui::canvas::Canvas;
 
 /// How long a line is shown.
-const SHOWN: Duration = Duration::from_secs(8);
+const SHOWN_FOR: Duration = Duration::from_secs(8);
 /// The maximum number of lines shown.
 const MAX_LINES: usize = 5;
 /// The number of earlier lines that a new arrival sees.
@@ -64,7 +64,7 @@ impl Talk {
     }
 
     /// Adds the new lines in `said` whose speaker is not ignored.
-    pub(crate) fn hear(&mut self, said: &[Said], ignored: &Ignored, now: Duration) {
+    pub(crate) fn hear(&mut self, said: &[ChatLine], ignored: &Ignored, now: Duration) {
         let Some(last) = said.last().map(|said| said.number) else { return };
         let known = self.known.unwrap_or(last.saturating_sub(EARLIER));
         self.known = Some(last);
@@ -122,7 +122,7 @@ impl Talk {
     }
 
     /// Returns true if `said` contains new lines.
-    pub(crate) fn is_behind(&self, said: &[Said]) -> bool {
+    pub(crate) fn is_behind(&self, said: &[ChatLine]) -> bool {
         said.last().is_some_and(|said| self.known != Some(said.number))
     }
 
@@ -160,7 +160,7 @@ impl Talk {
         is_of_host: bool,
         now: Duration,
     ) {
-        self.remarks.push_back(Remark { by, text, until: now + SHOWN, is_of_host });
+        self.remarks.push_back(Remark { by, text, until: now + SHOWN_FOR, is_of_host });
         if self.remarks.len() > MAX_LINES {
             self.remarks.pop_front();
         }
@@ -241,8 +241,8 @@ fn rows_of(text: &str, columns: usize) -> Vec<&str> {
 mod tests {
     use super::*;
 
-    fn said(numbers: std::ops::RangeInclusive<u64>) -> Vec<Said> {
-        numbers.map(|number| Said { number, by: None, text: format!("{number}") }).collect()
+    fn said(numbers: std::ops::RangeInclusive<u64>) -> Vec<ChatLine> {
+        numbers.map(|number| ChatLine { number, by: None, text: format!("{number}") }).collect()
     }
 
     fn shown(talk: &Talk) -> Vec<&str> {

@@ -14,7 +14,7 @@ mod talk;
 
 use super::*;
 use crate::rooms::room::{MemberId, Mode};
-use crate::simulation::{ENTER, ESCAPE, HALL, ROOM, Rig, Speaks, Wish, catalog, line};
+use crate::simulation::{ENTER, ESCAPE, HALL, ROOM, Rig, RigOptions, Speaks, catalog, line};
 use cellcaster::terminal::CellWriter;
 use cellcaster::world::FieldOfView;
 

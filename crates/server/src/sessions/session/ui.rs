@@ -8,7 +8,7 @@ use super::endings::{Draining, Idle, IdleAction};
 use super::ignored::Ignored;
 use super::line_entry::LineEntry;
 use super::lobby::Lobby;
-use super::messages::{BoardRow, HostFacts, Profile, Request, SessionEvent};
+use super::messages::{BoardRow, Profile, SessionContext, SessionEvent, SessionRequest};
 use super::pages::{Choice, LevelChoice, Page};
 use super::stay::Stay;
 use super::talk::Talk;
@@ -31,8 +31,8 @@ const MAX_REQUESTS: usize = 64;
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(crate) struct Ui {
     pub(crate) identity: Profile,
-    pub(crate) host: HostFacts,
-    pub(crate) requests: Vec<Request>,
+    pub(crate) host: SessionContext,
+    pub(crate) requests: Vec<SessionRequest>,
     pub(crate) bindings: Bindings,
     pub(crate) controls: Controls,
     pub(crate) pointer: Pointer,
@@ -90,7 +90,7 @@ pub(crate) struct Board {
 impl Ui {
     pub(crate) fn new(
         identity: Profile,
-        host: HostFacts,
+        host: SessionContext,
         has_ascii_only: bool,
         now: Duration,
     ) -> Self {
@@ -142,7 +142,7 @@ impl Ui {
     }
 
     /// Queues a request to the driver.
-    pub(crate) fn ask(&mut self, request: Request) {
+    pub(crate) fn ask(&mut self, request: SessionRequest) {
         if self.requests.len() < MAX_REQUESTS {
             self.requests.push(request);
         }
@@ -242,7 +242,7 @@ impl Ui {
         stay.intents.set(intents);
         if let Some(intents) = stay.intents.take(self.now) {
             let seen = stay.frames.seen(self.answered);
-            self.ask(Request::Command(Command::Intents { seen, intents }));
+            self.ask(SessionRequest::Command(Command::Intents { seen, intents }));
         }
     }
 
@@ -276,7 +276,7 @@ impl Ui {
         self.idle.restart(self.now);
         let sentence = format!("You pressed no key for {minutes} minutes.");
         if self.stay.as_ref().is_some_and(|stay| stay.member.is_some()) {
-            self.ask(Request::Leave);
+            self.ask(SessionRequest::Leave);
             self.leave_room(Some(sentence));
         } else {
             self.farewell = Some(sentence);
@@ -358,7 +358,7 @@ impl Ui {
     pub(crate) fn enter_lobby(&mut self) {
         self.note = None;
         self.lobby.begin();
-        self.ask(Request::Rooms);
+        self.ask(SessionRequest::Rooms);
         self.show(Page::Lobby);
     }
 

@@ -8,8 +8,8 @@ use tokio::time::Instant;
 use super::{BETWEEN_KEYS, Bystander, STEADY, SeedRun, hall};
 use crate::sessions::session::Session;
 use crate::simulation::emulator::Emulator;
+use crate::simulation::logs::{assert_same, replayed};
 use crate::simulation::looks::looks;
-use crate::simulation::tapes::{assert_same, replayed};
 use crate::simulation::{ROOM, Speaks, catalog};
 
 /// The longest time between two frames of the steady member: three frames at thirty per second.
@@ -44,8 +44,8 @@ impl SeedRun {
     /// Asserts that replaying the recordings of all open rooms reproduces their states.
     pub(crate) fn assert_replays(&self) {
         let levels = Arc::new(catalog(&hall()));
-        for room in self.rig.tapes.rooms() {
-            let text = self.rig.tapes.text(room);
+        for room in self.rig.logs.rooms() {
+            let text = self.rig.logs.text(room);
             assert!(!text.contains(|it: char| it != '\n' && it.is_control()), "{text:?}");
             if let Some(view) = self.rig.rooms().view(room) {
                 assert_same(&view, &replayed(&text, &levels, view.step));

@@ -243,7 +243,7 @@ fn checkpoints_of_other_versions_or_unknown_levels_are_refused() {
     assert!(bytes.starts_with(line.as_bytes()));
     let newer = line.replace(&format!("rules {RULES_VERSION}"), "rules 999");
     let newer = [newer.as_bytes(), &bytes[line.len()..]].concat();
-    let sentence = Unrestorable::OtherVersion.to_string();
+    let sentence = RestoreError::OtherVersion.to_string();
     assert_eq!(refused(&catalog, &newer), sentence);
     let none = Arc::new(Catalog::default());
     assert_eq!(refused(&none, &bytes), "there is no level called hall");

@@ -28,7 +28,7 @@ const HEAD_MARKED: f64 = 0.95;
 const HEAD_DOWN: f64 = 0.3;
 
 /// A label above a head.
-struct Overhead {
+struct HeadLabel {
     position: DVec2,
     /// The height of the head, in cells.
     head: f64,
@@ -53,15 +53,15 @@ pub(crate) fn draw(
     let projection = Projection::new(&camera, size, aspect);
     let distance = |position: DVec2| position.distance(camera.position());
     let others = player.others().filter(|it| it.is_in_sight && distance(it.position) <= NEAR);
-    let others = others.filter_map(|other| Overhead::of_member(&other, room, ignored));
+    let others = others.filter_map(|other| HeadLabel::of_member(&other, room, ignored));
     let is_seen = |figure: &Figure| {
         distance(figure.position) <= NEAR && player.sees_figure(figure.position, figure.base)
     };
-    let ghosts = ghosts.iter().filter(|ghost| is_seen(&ghost.figure)).map(Overhead::of_ghost);
-    let mut all: Vec<Overhead> = others.chain(ghosts).collect();
+    let ghosts = ghosts.iter().filter(|ghost| is_seen(&ghost.figure)).map(HeadLabel::of_ghost);
+    let mut all: Vec<HeadLabel> = others.chain(ghosts).collect();
     // Sorted from far to near, so that the nearest is drawn last.
     all.sort_by(|one, other| distance(other.position).total_cmp(&distance(one.position)));
-    for Overhead { position, head, text, color } in all {
+    for HeadLabel { position, head, text, color } in all {
         let place = projection.place(position);
         if place.depth > 0.1 {
             let row = projection.row_at(head, place.depth) / f64::from(rows) - 1.0;
@@ -72,7 +72,7 @@ pub(crate) fn draw(
     }
 }
 
-impl Overhead {
+impl HeadLabel {
     fn of_member(other: &OtherPlayer, room: &RoomView, ignored: &Ignored) -> Option<Self> {
         let member = room.member_of(other.id)?;
         let head = match member.look {

@@ -14,7 +14,7 @@ use cellcaster::terminal::Fidelity;
 /// The frames of a walk through the museum.
 fn walk(fidelity: Fidelity) -> Vec<Vec<u8>> {
     let catalog = Catalog::builtin();
-    let mut rig = Rig::with(Wish { catalog, level: "museum", ..Wish::new(Mode::Roam) });
+    let mut rig = Rig::with(RigOptions { catalog, level: "museum", ..RigOptions::new(Mode::Roam) });
     rig.live.replace(Config { player_bytes_per_second: 0, ..Config::default() });
     let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
     rig.session(one, move |session, _| session.protocol.set_fidelity(Some(fidelity)));

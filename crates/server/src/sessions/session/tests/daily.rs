@@ -41,7 +41,7 @@ fn host(seconds: u64) -> Rig {
         catalog.add(level, map::parse(CORRIDOR, level, &map::NoFiles).unwrap());
     }
     let time = UnixTime::new(MIDNIGHT - seconds);
-    Rig::with(Wish { catalog, time, ..Wish::new(Mode::Roam) })
+    Rig::with(RigOptions { catalog, time, ..RigOptions::new(Mode::Roam) })
 }
 
 /// Connects a player with an account to the lobby.
@@ -131,7 +131,7 @@ fn a_room_plays_the_next_day_after_its_round() {
     rig.pump(12_000);
     assert_eq!(level(&rig, 2), SECOND);
     // A room that somebody enters on a later day goes on likewise.
-    let text = rig.tapes.text(RoomId(2));
+    let text = rig.logs.text(RoomId(2));
     assert!(text.contains(" day 1 2001-09-10\n") && text.contains("level daily-2001-09-10\n"));
     let room = rig.rooms().view(RoomId(2)).unwrap();
     let again = replayed(&text, rig.rooms().catalog(), room.step);

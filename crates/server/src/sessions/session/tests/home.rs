@@ -102,7 +102,7 @@ fn a_run_steered_by_mouse_is_recorded_with_its_turns() {
     point(&mut rig, one, 30);
     point(&mut rig, one, 40);
     rig.pump(300);
-    let text = rig.tapes.text(RoomId(ROOM.0 + 1));
+    let text = rig.logs.text(RoomId(ROOM.0 + 1));
     let rounds = parse_log(&text).unwrap();
     let (header, entries) = &rounds[0];
     let mut room = Room::new(&Arc::new(catalog(HALL)), header.clone()).unwrap();
@@ -121,7 +121,8 @@ fn the_bell_rings_for_hurt_players_who_enabled_it() {
         .replace("@............", "@^^^^^^^^^^^^")
         .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
     let rings = [false, true].map(|bell| {
-        let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
+        let mut rig =
+            Rig::with(RigOptions { catalog: catalog(&spikes), ..RigOptions::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
         rig.session(one, move |session, _| session.ui.identity.preferences.bell = bell);
         for _ in 0..3 {

@@ -65,9 +65,9 @@ fn actions_carry_the_step_that_was_seen() {
         rig.send(other, "\x1b[97;1:1u");
         rig.send(other, "\x1b[119;1:1u");
         rig.send(one, "\x1b[119;1:1u");
-        let before = rig.tapes.text(ROOM).len();
+        let before = rig.logs.text(ROOM).len();
         rig.pump(1_500);
-        let log = rig.tapes.text(ROOM);
+        let log = rig.logs.text(ROOM);
         let lags: Vec<u64> = log[before..].lines().filter_map(lag).collect();
         let expected = milliseconds * 60 / 1_000;
         let late = lags.last().unwrap();

@@ -106,7 +106,7 @@ grid = '''
 
 /// A race between Mara and Jon, who has this window. Mara starts to run when the play begins.
 fn race(size: (u16, u16), depth: ColorDepth) -> (Rig, [usize; 2]) {
-    let mut rig = Rig::with(Wish { catalog: catalog(SHORT), ..Wish::new(Mode::Race) });
+    let mut rig = Rig::with(RigOptions { catalog: catalog(SHORT), ..RigOptions::new(Mode::Race) });
     let mara = rig.member("Mara", (80, 24), Speaks::Kitty);
     let jon = rig.visitor_with("Jon", size, Speaks::Kitty, depth);
     (0..3).for_each(|_| rig.press(jon, ENTER));

@@ -197,7 +197,8 @@ fn dead_players_go_on_or_start_again() {
         .replace("@............", "@^^^^^^^^^^^^")
         .replace("[things]", "[things]\n\"^\" = { spikes = 1.0 }");
     for (mode, effect) in [(Mode::Together, "Enter goes on"), (Mode::Alone, "Enter begins again")] {
-        let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
+        let mut rig =
+            Rig::with(RigOptions { catalog: catalog(&spikes), ..RigOptions::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
         let way: &[&str] = match mode {
             // Single-player mode, in the first level.
@@ -251,7 +252,7 @@ fn a_finisher_sees_place_and_time_and_watches_the_others() {
     let map = HALL
         .replace("............>#", ".............#")
         .replace("@............#", "@.......>....#");
-    let mut rig = Rig::with(Wish { catalog: catalog(&map), ..Wish::new(Mode::Race) });
+    let mut rig = Rig::with(RigOptions { catalog: catalog(&map), ..RigOptions::new(Mode::Race) });
     let names = ["Mara", "Jon", "Kim"];
     let [one, other, third] = names.map(|name| rig.member(name, (100, 24), Speaks::Kitty));
     let watcher = rig.visitor("Ada", (100, 24), Speaks::Kitty);
@@ -315,7 +316,7 @@ fn members_see_each_other_on_arrival() {
 #[test]
 fn the_map_covers_at_most_a_fifth_of_a_narrow_window() {
     let catalog = crate::rooms::room::Catalog::builtin();
-    let mut rig = Rig::with(Wish { catalog, level: "museum", ..Wish::new(Mode::Roam) });
+    let mut rig = Rig::with(RigOptions { catalog, level: "museum", ..RigOptions::new(Mode::Roam) });
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     let text = rig.text(one);
     let (_, frame) = text.lines().next().and_then(|row| row.split_once("+map")).expect(&text);

@@ -12,39 +12,39 @@ use crate::rooms::summary::RoomId;
 
 /// The recordings of all rooms of a host. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Tapes(Arc<Mutex<BTreeMap<RoomId, String>>>);
+pub(crate) struct RoomLogs(Arc<Mutex<BTreeMap<RoomId, String>>>);
 
-impl Tapes {
-    /// Recordings that store into these tapes.
+impl RoomLogs {
+    /// Recordings that store into these logs.
     pub(crate) fn recordings(&self) -> Recordings {
-        let tapes = self.clone();
-        Recordings::new(move |room| Some(Box::new(Tape { room, tapes: tapes.clone() })))
+        let logs = self.clone();
+        Recordings::new(move |room| Some(Box::new(RoomLog { room, logs: logs.clone() })))
     }
 
     /// The recording of a room.
     pub(crate) fn text(&self, room: RoomId) -> String {
-        locked(&self.0, |tapes| tapes.get(&room).cloned()).unwrap_or_default()
+        locked(&self.0, |logs| logs.get(&room).cloned()).unwrap_or_default()
     }
 
     /// The recorded rooms.
     pub(crate) fn rooms(&self) -> Vec<RoomId> {
-        locked(&self.0, |tapes| tapes.keys().copied().collect())
+        locked(&self.0, |logs| logs.keys().copied().collect())
     }
 }
 
 /// The recording of a room.
-struct Tape {
+struct RoomLog {
     room: RoomId,
-    tapes: Tapes,
+    logs: RoomLogs,
 }
 
-impl Tape {
+impl RoomLog {
     fn write(&self, text: &str) {
-        locked(&self.tapes.0, |tapes| *tapes.entry(self.room).or_default() += text);
+        locked(&self.logs.0, |logs| *logs.entry(self.room).or_default() += text);
     }
 }
 
-impl Recording for Tape {
+impl Recording for RoomLog {
     fn begin(&mut self, header: &Header) -> io::Result<()> {
         self.write(&header.to_string());
         Ok(())
