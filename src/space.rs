@@ -1,7 +1,7 @@
 //! The 3-D caster: spheres, planes and boxes, and one ray for each pixel.
 //!
 //! This renderer shares only the [`Frame`](crate::render::Frame) with the grid's renderer. It draws
-//! a [`Scene`] as seen by a [`Camera`]. The conventions are those of grids with a third axis: x
+//! a [`Scene`] as seen by a [`Camera`]. The conventions are the same as for grids, with a third axis: x
 //! points east, y south and z up, and lengths are in cells. Looking up turns the camera. This costs
 //! no more than a level view, because rays are not grouped in columns.
 //!

@@ -50,9 +50,9 @@
 //! # assert_eq!(text.parse::<CellGrid>().unwrap().to_string(), text);
 //! ```
 //!
-//! A letter stands where a colour begins, and is that of the colour's family. A small letter is the colour that the
-//! list `colours` gives for it: the colour of most cells in the family. A capital is the next colour at the end of its
-//! row. The file of a program with few colours has hardly any colours at the ends of rows. Sections in which all is
+//! The letter of a colour's family marks the place where the colour begins. A small letter is the colour that the list
+//! `colours` gives for it: the colour of most cells in the family. A capital is the next colour at the end of its row.
+//! The file of a program with few colours has hardly any colours at the ends of rows. Sections in which everything is
 //! default are absent.
 //!
 //! The format is made for diffs. The letter of a colour depends on nothing but the colour, and a row contains all that
@@ -131,7 +131,7 @@ impl CellGrid {
         Self(buffer)
     }
 
-    /// What `draw` draws in a terminal of this size.
+    /// The cells that `draw` draws in a terminal of this size.
     pub fn drawn(columns: u16, rows: u16, draw: impl FnOnce(&mut Frame<'_>)) -> Self {
         let Ok(mut terminal) = Terminal::new(TestBackend::new(columns, rows));
         let Ok(_) = terminal.draw(draw);

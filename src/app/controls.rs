@@ -204,7 +204,7 @@ impl Bindings {
         self
     }
 
-    /// Removes the bindings of all actions but those that `is_kept` accepts.
+    /// Keeps the bindings of the actions that `is_kept` accepts, and removes all others.
     pub(crate) fn only(mut self, is_kept: impl Fn(Action) -> bool) -> Self {
         self.keys.retain(|&(_, action)| is_kept(action));
         self

@@ -117,8 +117,7 @@ impl Levels {
         Self::staged(stage(first), (first.saturating_add(1)..).map(stage))
     }
 
-    /// The levels in `stages`, the first of which has this number. Without stages, a single empty
-    /// level.
+    /// The levels in `stages`, numbered from `number`. Without stages, a single empty level.
     pub(crate) fn of_stages(
         mut stages: impl Iterator<Item = Stage> + 'static,
         number: LevelNumber,

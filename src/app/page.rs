@@ -12,8 +12,8 @@
 //! - A result page appears while the player presses game keys. Only Enter and the arrows act on it,
 //!   and only after the keys that were held have been released.
 //!
-//! A menu is a panel with text and a list of entries, one of which is selected. Every panel that
-//! asks for a choice is a menu, and the same keys work in all of them: the arrows or the walking
+//! A menu is a panel with text and a list of entries. One entry is selected. Every panel that asks
+//! for a choice is a menu, and the same keys work in all of them: the arrows or the walking
 //! keys select, Enter or Space chooses, a digit chooses the entry with that number, Escape or
 //! Backspace goes back. On a result page, only Enter and the arrows act, and the selection stops at
 //! both ends. A list that is higher than the window scrolls, and the text above it is cut first,
@@ -408,8 +408,8 @@ impl<C: Copy> Menu<C> {
         self.selected = if forward { (selected + 1).min(last) } else { selected.saturating_sub(1) };
     }
 
-    /// The index of the entry that `key` chooses: the selected one, or the one whose number
-    /// (counted from 1) is the digit.
+    /// The index of the entry that `key` chooses: the selected entry, or for a digit the entry with
+    /// that number, counted from 1.
     fn chosen_by(&self, key: Key) -> Option<usize> {
         match key {
             Key::Enter | Key::Char(' ') => Some(self.selected),

@@ -98,7 +98,7 @@ enum TextCommand {
     Leave,
 }
 
-/// The commands with their words, the first of which the help shows, and what they do.
+/// The commands: their words, and what they do. The help shows the first word.
 const COMMANDS: [(&[&str], TextCommand, &str); 25] = [
     (
         &["forward", "f"],

@@ -23,10 +23,10 @@ Examples:
   cellcaster snapshot my.toml --format grid | cellcaster compare before.grid -
   cellcaster compare before.grid after.json --tolerance 2.3 --png difference.png")]
 pub(crate) struct Compare {
-    /// What is wanted: a file with a grid, or "-" for standard input
+    /// The expected grid: a file, or "-" for standard input
     #[arg(value_hint = ValueHint::FilePath)]
     wanted: OsString,
-    /// What there is
+    /// The actual grid, in the same way
     #[arg(value_hint = ValueHint::FilePath)]
     got: OsString,
     /// The colour difference ΔE that is permitted in each cell; most people notice 2.3 or more

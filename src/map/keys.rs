@@ -154,7 +154,7 @@ impl CharacterTable {
         alone.map(|&(key, _)| key).collect()
     }
 
-    /// The keys of which `key` needs one; empty for any other key.
+    /// The keys that `key` can be used with, if it needs another key; otherwise empty.
     pub(crate) fn owners(self, key: &str) -> &'static [&'static str] {
         self.keys().iter().find(|(known, _)| *known == key).map_or(&[], |&(_, owners)| owners)
     }

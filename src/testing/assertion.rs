@@ -82,7 +82,7 @@ impl Golden {
     /// Compares `grid` with the file.
     ///
     /// # Errors
-    /// What differs.
+    /// The differences, if the tolerance does not permit them.
     fn compare(&self, grid: &CellGrid, tolerance: Tolerance) -> Result<(), Failure<'_>> {
         let failure = |message: String, wanted: Option<(&CellGrid, _)>| {
             let pictures = self.write_pictures(grid, wanted);
@@ -106,7 +106,7 @@ impl Golden {
         Err(failure(message, Some((&wanted, comparison))))
     }
 
-    /// Writes pictures of the grid that was drawn, and of the one that was wanted. Returns their paths.
+    /// Writes pictures of the actual and the expected grid. Returns their paths.
     fn write_pictures(
         &self,
         got: &CellGrid,

@@ -257,7 +257,7 @@ impl<'a> LineReader<'a> {
         found.then_some(()).ok_or_else(|| self.fault("should be a ruler"))
     }
 
-    /// What stands between the bars of the row with this number, and what is listed after them.
+    /// The text between the bars of the row with this number, and the list after them.
     fn row(&mut self, number: usize) -> Result<(&'a str, Vec<&'a str>), GridError> {
         let parts = self.line().and_then(|line| {
             let (label, rest) = line.split_once('|')?;

@@ -62,7 +62,7 @@ pub enum AdminRequest {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
-    /// The visitors with this name, or one that looks like it.
+    /// The visitors with this name or a similar-looking one.
     Name(String),
     /// The visitors with the key of this fingerprint.
     Key(String),
@@ -91,7 +91,7 @@ pub enum AdminReply {
         /// Remarks on the reply, such as that a host did not answer.
         remarks: Vec<String>,
     },
-    /// The reason why the request was refused.
+    /// The reason for a refusal.
     Fault(String),
 }
 

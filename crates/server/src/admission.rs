@@ -10,12 +10,12 @@
 //!   over its addresses. A newcomer who is alone in a network is displaced only if there are as many networks as
 //!   places.
 //! - **Penalties.** A failed connection costs its network (/24, /64) tokens of a bucket. The bucket refills with
-//!   time and with each successful login. If it runs low, connections from the network are refused at random, but
-//!   never all of them, because the people behind one address share the bucket with any attacker there. Rejected for
+//!   time and with each successful login. If it runs low, the server refuses connections from the network at random,
+//!   but never all of them, because the people behind one address share the bucket with any attacker there. Rejected for
 //!   that reason: blocking an address outright, as OpenSSH's `PerSourcePenalties` does.
 //!
 //! Rejected: early random drop, as in OpenSSH's `MaxStartups` (`sshd_config(5)`), with a share of 40 connections for
-//! each network. With 140 silent connections from eight /24 networks, 231 of 238 newcomers were refused. Also
+//! each network. With 140 silent connections from eight /24 networks, it turned away 231 of 238 newcomers. Also
 //! rejected: displacing from the busiest /24 or /64 first, and from wider networks on a tie. A flood from one /16
 //! with a /24 for each connection would displace every household with two connections.
 
@@ -54,7 +54,7 @@ pub struct Limits {
     pub per_key: u32,
     /// The most unauthenticated connections at a time, in addition to `connections`; 0 counts as 1.
     pub startups: u32,
-    /// The number of a network's failures after which nearly all of its connections are refused.
+    /// The number of failures after which the server refuses nearly all connections of a network.
     pub failures: u32,
     /// The time after which one failure is forgotten.
     pub forget: Duration,
@@ -70,7 +70,7 @@ const WIDTHS: [[u8; 2]; 3] = [[16, 48], [24, 56], [32, 64]];
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ConnectionId(u64);
 
-/// An admitted connection, and the one that it displaces.
+/// An admitted connection, and the connection that it displaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Admitted {
     /// The new connection.
@@ -79,7 +79,7 @@ pub struct Admitted {
     pub displaced: Option<ConnectionId>,
 }
 
-/// The reason why a connection is refused.
+/// The reason for a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Refusal {
     /// Too many visitors are logged in.
@@ -367,8 +367,8 @@ struct Failures {
 const MAX_NETWORKS: usize = 1 << 14;
 /// Failures up to this share of the bucket have no effect.
 const FREE_SHARE: f64 = 0.5;
-/// The share of connections that is refused from a network with an empty bucket. A person who tries again a few
-/// times gets in.
+/// The share of refused connections from a network with an empty bucket. A person who tries again a few times gets
+/// in.
 const REFUSED_SHARE: f64 = 0.9;
 
 impl Penalties {

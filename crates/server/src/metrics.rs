@@ -109,8 +109,8 @@ const CHECK_RESULTS: [&str; 2] = ["different", "equal"];
 const VERDICTS: [&str; 2] = ["refused", "verified"];
 
 impl Metrics {
-    /// Connections that were refused for `reason`, including connections that were displaced or refused after they
-    /// were accepted.
+    /// Refused connections by `reason`, including connections that the server displaced or refused after it had
+    /// accepted them.
     pub fn refused(&self, reason: Refusal) -> Counter {
         self.refused.get_or_create_owned(&[("reason", reason.name())])
     }

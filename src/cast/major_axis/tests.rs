@@ -6,7 +6,7 @@ use super::*;
 use crate::cast::Walk;
 use crate::world::World;
 
-/// Positions and directions, many of which meet corners and run along lines.
+/// Positions and directions. Many of these rays meet corners and run along lines.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         -1.0..14.0_f64,

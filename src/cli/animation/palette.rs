@@ -15,7 +15,7 @@ pub(crate) struct IndexedPalette {
 }
 
 impl IndexedPalette {
-    /// A palette for `colors` with at most `most` entries, of which there can be 256. It is exact for up to `most`
+    /// A palette for `colors` with at most `most` entries; `most` is at most 256. The palette is exact for up to `most`
     /// different colours.
     pub(crate) fn of(colors: impl Iterator<Item = Rgb>, most: usize) -> Self {
         let mut counts = BTreeMap::new();

@@ -50,7 +50,7 @@ pub(crate) struct Object {
     pub(crate) properties: Properties,
     /// The number of the tile that it shows; 0 for none.
     pub(crate) tile: u32,
-    /// The corners, of which the second is beyond the object.
+    /// The first corner, and the opposite corner, which is just outside the object.
     pub(crate) corners: [[f64; 2]; 2],
     /// The points of a polyline or a polygon; empty for any other object.
     pub(crate) points: Vec<[f64; 2]>,
@@ -287,7 +287,7 @@ fn tiles(layer: &Value, count: usize) -> Result<Vec<u32>, String> {
     Ok(tiles)
 }
 
-/// The content of `bytes`, of which at most four bytes more than `size` are unpacked.
+/// The unpacked content of `bytes`, up to four bytes more than `size`.
 fn unpacked(bytes: &[u8], compression: &str, size: usize) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     let limit = size as u64 + 4;

@@ -22,7 +22,7 @@ use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// The cells of a map that a player has seen, for a [`Minimap`](super::Minimap).
 ///
-/// A value belongs to one level. A world of another size counts as another level, of which nothing has been seen.
+/// A value belongs to one level. A world of another size counts as another level, which has not been seen yet.
 ///
 /// ```
 /// use cellcaster::tui::{Explored, Minimap};

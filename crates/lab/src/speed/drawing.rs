@@ -18,8 +18,8 @@ struct Scene {
     floors: &'static [ClassicFloor],
 }
 
-/// The sizes of the pictures: in terminals from 80×24 to 320×100 cells, and one that several threads
-/// draw.
+/// The sizes of the pictures: in terminals from 80×24 to 320×100 cells, and a size for several
+/// threads.
 const SIZES: [FrameSize; 6] =
     [size(80, 48), size(120, 80), size(160, 90), size(200, 120), size(320, 200), size(1920, 1080)];
 

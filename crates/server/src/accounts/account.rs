@@ -52,15 +52,15 @@ pub struct AccountSettings {
     /// The choices in the game.
     pub preferences: Preferences,
     /// Keys, glyphs, colours and other settings, as the text of a configuration file. The store does
-    /// not read it. A text of more than [`Self::MAX_BYTES`] bytes is refused.
+    /// not read it, but refuses a text of more than [`Self::MAX_BYTES`] bytes.
     pub configuration: String,
     /// The players whose talk is not shown, at most [`Self::MAX_IGNORED`].
     pub ignored: Vec<Name>,
 }
 
 impl UnixTime {
-    /// The time that many seconds after the beginning of 1970. A time later than a database can store
-    /// becomes the latest one that it can.
+    /// The time that many seconds after the beginning of 1970, but at most the latest time that a
+    /// database can store.
     pub const fn new(seconds: u64) -> Self {
         const LAST: u64 = i64::MAX as u64;
         Self(if seconds < LAST { seconds } else { LAST })

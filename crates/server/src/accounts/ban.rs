@@ -38,7 +38,7 @@ pub enum BanScope {
 pub enum BanTarget {
     /// The account of a key.
     Key(AccountKey),
-    /// Everybody with this name, or one that looks like it.
+    /// Everybody with this name or a similar-looking one.
     Name(Name),
     /// Everybody with an address in this range.
     Addresses(AddressPrefix),

@@ -21,7 +21,7 @@ pub enum StoreFailure {
 /// The reason why an account was not created or renamed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AccountRefusal {
-    /// Another account has this name, or one that looks like it.
+    /// Another account has this name or a similar-looking one.
     #[error("This name, or one that looks like it, is taken.")]
     NameTaken,
     /// The name is banned.

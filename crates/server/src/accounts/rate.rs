@@ -1,7 +1,7 @@
 //! The limit on the accounts that a network may create: the generic cell rate algorithm (ITU-T I.371).
 //!
-//! For each network, one time is stored: when it has its whole allowance again. Each account moves that time later,
-//! and an account that would move it too far is refused. A time in the past means the same as none.
+//! The store keeps one time for each network: when it has its whole allowance again. Each account moves that time
+//! later, and the store refuses an account that would move it too far. A time in the past means the same as none.
 //!
 //! Rejected: a list of the accounts of the last hour. It grows with the rate, and its limit has an edge.
 

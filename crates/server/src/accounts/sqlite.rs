@@ -331,7 +331,7 @@ pub(crate) fn run<T, E: From<StoreFailure>>(
     if isolation == Isolation::None {
         return act(connection);
     }
-    // A transaction that begins with a read could not wait for another one that writes.
+    // A transaction that begins with a read could not wait for a writing transaction.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate);
     let transaction = transaction.map_err(StoreFailure::from)?;
     let result = act(&*transaction)?;

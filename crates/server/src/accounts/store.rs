@@ -194,8 +194,8 @@ impl HostStore {
         self.database.once(|it| it.row(&sql, values)?.as_ref().map(account).transpose())
     }
 
-    /// Creates the account of a key, with a name. A new account counts against the rate of its `origin`, if there is
-    /// one, unless it is refused for another reason.
+    /// Creates the account of a key, with a name. A created account counts against the rate of its `origin`, if there
+    /// is one.
     ///
     /// # Errors
     /// A [`AccountRefusal`]: for example, the name is taken or banned, or the network creates too many accounts.

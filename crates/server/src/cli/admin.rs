@@ -274,7 +274,7 @@ fn unmute(
     Ok(format!("{ended} may talk again\n"))
 }
 
-/// Ends the bans of some targets, and names those that had one; `None` if there are none.
+/// Ends the bans of some targets, and names the targets with a ban; `None` if there are none.
 fn allow(
     store: &mut HostStore,
     scope: BanScope,

@@ -49,8 +49,8 @@ pub(crate) trait Bus: Send + Sync {
     /// A number that was never returned before, on any host.
     fn next_number(&self) -> BusAnswer<'_, u32>;
 
-    /// Replaces the value that this host last read or put. If another host has put a value since, this call is refused,
-    /// but the next one is not.
+    /// Replaces the value that this host last read or put. If another host has put a value since, this call fails, but
+    /// the next one does not.
     fn put(&self, key: Key, value: Vec<u8>) -> BusAnswer<'_, ()>;
 
     /// Stores a value if there is none.

@@ -195,7 +195,7 @@ impl SharedRooms {
     async fn note_place(&self, key: AccountKey, id: RoomId, member: MemberId) {
         let bus = &self.0.context.bus;
         let text = format!("{id} {member}");
-        // The first call is refused if another host has put the last entry. Without an entry, the player cannot return.
+        // The first call fails if another host has put the last entry. Without an entry, the player cannot return.
         for _ in 0..2 {
             if bus.put(Key::Place(key), text.clone().into_bytes()).await != Err(BusFault::Refused) {
                 return;

@@ -56,10 +56,10 @@ impl SharedRoom {
     /// Restores the room from its own checkpoint, with another head.
     ///
     /// # Errors
-    /// The reason why the checkpoint is refused.
+    /// If the checkpoint is invalid.
     ///
     /// # Panics
-    /// If a checkpoint of the restored room is refused.
+    /// If a checkpoint of the restored room is invalid.
     pub fn restored(self, head: &[u8]) -> Result<Self, String> {
         let bytes = self.state.checkpoint();
         let mut input = reader(&bytes).expect("it has the versions");

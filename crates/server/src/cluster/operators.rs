@@ -175,7 +175,7 @@ impl SharedRooms {
         }
     }
 
-    /// The answer to another host, if its request is one that this host answers.
+    /// The answer to another host; `None` for a request that this host does not answer.
     fn answer_to(
         &self,
         bytes: &[u8],

@@ -839,7 +839,7 @@ impl Replica {
                 // that is broken or was not removed, because other hosts may go on with it.
                 is_gone = self.close().await.is_ok() && !is_broken && !self.record.stands;
             } else {
-                // The first call is refused if the predecessor put the last checkpoint.
+                // The first call fails if the predecessor put the last checkpoint.
                 for _ in 0..2 {
                     if self.keep_checkpoint().await.is_ok() {
                         break;

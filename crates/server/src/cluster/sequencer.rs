@@ -11,7 +11,8 @@
 //! - A member who was not claimed for [`CLAIM_TIMEOUT`] since the request almost certainly has no host; the log does not show
 //!   yet that the host is gone. If there is a host nevertheless, it sees that the token is not its own, and lets the
 //!   member go.
-//! - A member who is claimed has a host, and the request is refused: nobody takes the place of a member who plays.
+//! - A member who is claimed has a host. The sequencer refuses the request, because nobody takes the place of a member
+//!   who plays.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;

@@ -130,8 +130,8 @@ proptest! {
     }
 }
 
-/// The log lines of one second with `connections` from `networks`. Every third connection is refused.
-/// The others are accepted and leave early.
+/// The log lines of one second with `connections` from `networks`. The server refuses every third
+/// connection. The others leave early.
 fn lines(connections: u32, networks: u32) -> Vec<serde_json::Value> {
     let text = logged(LogFormat::Json, "info", |_| {
         let mut throttle = Throttle::default();

@@ -68,7 +68,7 @@ pub(crate) struct Room {
     step: u64,
     /// The members who want to restart the round.
     again: BTreeSet<MemberId>,
-    /// The latest day of which the room was told in this round.
+    /// The latest day that the room has heard of in this round.
     today: Option<Day>,
     emotes: Vec<(MemberId, Emote, u64)>,
     said: VecDeque<ChatLine>,

@@ -432,7 +432,7 @@ pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER
 const CHAT_BURST: f64 = 4.0;
 /// The maximum number of queued changes of intents per member.
 const MAX_INTENTS: usize = 8;
-/// The maximum number of queued arrivals and departures, all of which take effect in the next step.
+/// The maximum number of queued arrivals and departures. All of them take effect in the next step.
 const MAX_MOVES: usize = 64;
 
 /// The commands of a room's members that the sequencer has not taken yet.

@@ -320,7 +320,7 @@ impl Session {
         ui.stay.is_none().then(in_lobby).flatten()
     }
 
-    /// The rooms of which a lobby shows one, the preferred one first. Outside of the lobby there are none.
+    /// The rooms that the lobby may show, the preferred one first; empty outside of the lobby.
     pub(crate) fn lively_rooms(&self) -> Vec<RoomId> {
         self.ui.lively_rooms()
     }

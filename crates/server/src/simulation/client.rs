@@ -55,11 +55,11 @@ pub(crate) fn guest(name: &str, (columns, rows): (u16, u16)) -> Visitor {
 struct Terminal {
     emulator: Emulator,
     conditions: Conditions,
-    arrivals: Vec<Arrival>,
+    arrivals: Vec<ByteArrival>,
 }
 
 /// The time of an arrival, and the total number of bytes received by then.
-type Arrival = (Instant, usize);
+type ByteArrival = (Instant, usize);
 
 impl SimulatedClient {
     /// Connects to a host. Must be called within a runtime.

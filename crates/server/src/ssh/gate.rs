@@ -7,7 +7,7 @@
 //! status 255. The server does no cryptography for it.
 //!
 //! In a flood, an explanation must not cost more than closing the connection. Only a few clients get one: at
-//! most [`MAX`] within [`EXPLANATION_TIMEOUT`], of which at most [`MAX_PER_NETWORK`] in one network. This also limits the
+//! most [`MAX`] within [`EXPLANATION_TIMEOUT`], and at most [`MAX_PER_NETWORK`] in one network. This also limits the
 //! number of tasks and sockets, because no explanation lasts longer than [`EXPLANATION_TIMEOUT`]. All other connections
 //! are closed silently.
 //!
@@ -127,7 +127,7 @@ impl Gate {
     /// Admits a connection.
     ///
     /// # Errors
-    /// The connection is refused. The error contains the sentence for its client, or `None` to close it silently.
+    /// If the gate refuses the connection: the sentence for its client, or `None` to close it silently.
     pub(crate) fn admit(&self, peer: SocketAddr) -> Result<AdmittedConnection, Option<String>> {
         let (limits, now, address) = (self.config.get().admission, self.begun.elapsed(), peer.ip());
         locked(&self.state, |state| {
@@ -176,7 +176,7 @@ impl Gate {
     /// Counts a connection as authenticated, with `key` or as a guest.
     ///
     /// # Errors
-    /// The reason why the connection is refused after all.
+    /// The reason, if the gate refuses the connection after all.
     pub(crate) fn log_in(
         &self,
         visit: ConnectionId,

@@ -52,7 +52,7 @@ pub struct Link {
 pub struct Departure {
     /// The exit status of the visitor's `ssh`.
     pub status: u8,
-    /// The limit that the visitor exceeded, if they were refused.
+    /// The limit that the visitor exceeded, if the server refused them.
     pub refusal: Option<Refusal>,
 }
 

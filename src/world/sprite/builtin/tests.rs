@@ -160,7 +160,7 @@ fn picture(sprite: &Sprite, frame: GuardFrame, facing: usize) -> &Texture {
     &sprite.pictures()[usize::from(frame.index()) * 8 + facing]
 }
 
-/// Sets each pixel of which the figure covers more than half.
+/// Sets each pixel if the figure covers more than half of it.
 fn silhouette(sprite: &Sprite, picture: &Texture) -> Silhouette {
     let texels_in_pixel = f64::from(picture.height()) / (sprite.height.cells() * PIXELS_IN_CELL);
     let mut covered = [[0.0; SIDE]; SIDE];

@@ -98,7 +98,7 @@ fn files(folder: &Folder) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
-/// Asserts that a store is refused as damaged, and that nothing in its folder changes.
+/// Asserts that opening a store fails because it is damaged, and that nothing in its folder changes.
 fn assert_refused(folder: &Folder) {
     let before = files(folder);
     let sentence = HostStore::open(&folder.0).unwrap_err().to_string();

@@ -36,7 +36,7 @@ fn begin(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Visi
     }
 }
 
-/// Asserts that a visit is refused, and returns the age of the information behind the refusal.
+/// Asserts a visit's refusal, and returns the age of the information behind it.
 fn refused(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Duration {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         Err(ago) => ago,

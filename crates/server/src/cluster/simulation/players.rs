@@ -89,7 +89,7 @@ impl ClusterRun {
                         Command::Intents { seen: 0, intents }
                     }
                 };
-                // Commands that come too often are refused.
+                // The room refuses commands that come too often.
                 _ = place.act(command);
             }
             None => {}

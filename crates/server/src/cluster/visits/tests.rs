@@ -115,7 +115,7 @@ fn keys_and_addresses_are_limited_across_all_hosts() {
         let _other = hosts.begin(1, new_visit(2, 1)).await.unwrap();
         let refusal = VisitRefusal::TooMany(Refusal::Address);
         assert_eq!(hosts.begin(1, new_visit(3, 1)).await.unwrap_err(), refusal);
-        // A visitor who is refused by one limit counts against none.
+        // If one limit turns a visitor away, the visit counts against no limit.
         assert_eq!(hosts.count(), 4);
         drop(visit);
         hosts.begin(1, new_visit(1, 1)).await.unwrap();

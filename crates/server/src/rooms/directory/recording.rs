@@ -507,7 +507,7 @@ mod tests {
         assert_eq!(place.names(), ["room-7-1.log", "room-7.log"]);
     }
 
-    /// Plays in the hall for some steps: two members, the first of which walks while the second speaks.
+    /// Plays in the hall for some steps: one member walks while another speaks.
     fn play(recording: RecordedRoom, steps: u64) {
         let (mara, jon) = (MemberId(1), MemberId(2));
         let line = |text| Line::of(text, CHAT_COLUMNS).unwrap();

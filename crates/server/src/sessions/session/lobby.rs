@@ -129,7 +129,7 @@ pub(crate) fn picture_time(frame_time: Duration) -> Duration {
     (frame_time * FRAMES_PER_PICTURE).max(Duration::from_secs(1) / PICTURES_PER_SECOND)
 }
 
-/// The member through whose eyes the picture shows `room`: the first one who still plays and sees.
+/// The member through whose eyes the picture shows `room`: the first member who still plays and sees.
 pub(crate) fn seen_through(room: &RoomView) -> Option<(&MemberView, PlayerView<'_>)> {
     let seeing = || room.members.iter().filter(|member| !member.is_blind);
     let seen = |member| -> Option<(&MemberView, PlayerView<'_>)> {
