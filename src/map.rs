@@ -197,7 +197,7 @@ impl Level {
         match self {
             Self::Grid(world) => Ok(*world),
             Self::Space(_) => {
-                let message = format!("{name} is a map of bodies, and has no grid");
+                let message = format!("{name} is a map of bodies and has no grid");
                 Err(Faults::of_whole_file(name, &message, "name a map with a grid"))
             }
         }

@@ -1,4 +1,4 @@
-//! Maps of Tiled: a `.tmx` or a `.tmj`. Its tilesets are the map itself, its pictures a PNG file.
+//! Tiled maps: a `.tmx` or a `.tmj`. Its tilesets are the map itself, its pictures a PNG file.
 //!
 //! A map is read or rejected within bounded memory. If it is read, its text is a map file of the same
 //! level, and the way back to Tiled changes nothing.

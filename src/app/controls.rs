@@ -100,8 +100,8 @@ impl Action {
         ("look-up", "look up", Self::Want(Intent::LookUp), &[Key::PageUp]),
         ("look-down", "look down", Self::Want(Intent::LookDown), &[Key::PageDown]),
         ("look-ahead", "look ahead", Self::Want(Intent::LookAhead), &[Key::Home]),
-        ("toggle-run", "run, on and off", Self::ToggleRun, &[Key::Char('r')]),
-        ("toggle-duck", "duck, on and off", Self::ToggleDuck, &[Key::Char('x')]),
+        ("toggle-run", "run on or off", Self::ToggleRun, &[Key::Char('r')]),
+        ("toggle-duck", "duck on or off", Self::ToggleDuck, &[Key::Char('x')]),
         ("mouse", "turn by mouse", Self::ToggleMouse, &[Key::Char('v')]),
         ("minimap", "map", Self::ToggleMinimap, &[Key::Char('m'), Key::Tab]),
         // The digits follow the layout of a number pad.

@@ -91,9 +91,9 @@ impl App {
 
     fn tell_why_not(&mut self) {
         let (text, short) = if self.history.is_none() || self.is_descent() {
-            ("Nothing is taken back here", "Not here")
+            ("Time cannot be taken back here", "Not here")
         } else if self.difficulty == Difficulty::Hard {
-            ("Nothing is taken back on hard", "Not on hard")
+            ("Time cannot be taken back on hard", "Not on hard")
         } else if self.log.is_empty() {
             ("There is nothing to take back yet", "Nothing yet")
         } else {

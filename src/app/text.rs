@@ -100,11 +100,7 @@ enum TextCommand {
 
 /// The commands: their words, and what they do. The help shows the first word.
 const COMMANDS: [(&[&str], TextCommand, &str); 25] = [
-    (
-        &["forward", "f"],
-        TextCommand::Walk(Intent::Forward),
-        "walk, by 1 cell or as many as you say: forward 3",
-    ),
+    (&["forward", "f"], TextCommand::Walk(Intent::Forward), "walk 1 cell, or more: forward 3"),
     (&["back", "b"], TextCommand::Walk(Intent::Back), "walk backwards"),
     (
         &["sideleft", "sl"],
@@ -119,7 +115,7 @@ const COMMANDS: [(&[&str], TextCommand, &str); 25] = [
     (
         &["left", "l"],
         TextCommand::Turn(-90.0),
-        "turn left, by 90 degrees or as many as you say: left 45",
+        "turn left by 90 degrees, or by another angle: left 45",
     ),
     (&["right", "r"], TextCommand::Turn(90.0), "turn right"),
     (&["around", "u"], TextCommand::Turn(180.0), "turn around"),
@@ -140,19 +136,19 @@ const COMMANDS: [(&[&str], TextCommand, &str); 25] = [
     (&["shoot"], TextCommand::Act(Intent::Shoot), "shoot a dart ahead"),
     (&["smoke"], TextCommand::Act(Intent::Smoke), "throw a flask of smoke"),
     (&["lamp"], TextCommand::Act(Intent::Lamp), "light the lamp, or put it out"),
-    (&["wait", "w"], TextCommand::Wait, "let 1 second pass, or as many as you say: wait 5"),
+    (&["wait", "w"], TextCommand::Wait, "wait 1 second, or longer: wait 5"),
     (
         &["takeback"],
         TextCommand::TakeBack,
         "take back the last 10 seconds, as the difficulty allows",
     ),
-    (&["look", ""], TextCommand::Look, "say what is near; so does an empty line"),
-    (&["status", "s"], TextCommand::Status, "say your health, what you carry and the time"),
+    (&["look", ""], TextCommand::Look, "describe what is near; an empty line does the same"),
+    (&["status", "s"], TextCommand::Status, "report your health, tools and time"),
     (&["menu", "m"], TextCommand::Menu, "open the menu: settings, restart, leave"),
 ];
 /// The commands that work everywhere.
 const ANYWHERE: [(&[&str], TextCommand, &str); 2] = [
-    (&["help", "h", "?"], TextCommand::Help, "say the commands"),
+    (&["help", "h", "?"], TextCommand::Help, "list the commands"),
     (&["quit", "q"], TextCommand::Leave, "leave"),
 ];
 
@@ -208,7 +204,7 @@ impl<W: Write> TextMode<W> {
             None if plays => {
                 let word: String =
                     word.chars().take(MAX_QUOTED).filter(|it| !it.is_control()).collect();
-                writeln!(self.output, "\"{word}\" is no command. Type help for the commands.")
+                writeln!(self.output, "\"{word}\" is not a command. Type help for a list.")
             }
             None => self.choose(&word),
         }

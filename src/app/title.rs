@@ -153,7 +153,7 @@ impl App {
                 .line("Done. Detach (prefix d), attach again, and press a key.")
                 .line("For good, add to ~/.tmux.conf:")
                 .line(remedy),
-            TmuxOrder::Failed => menu.line("tmux did not take the command; see docs/terminals.md."),
+            TmuxOrder::Failed => menu.line("tmux rejected the command; see docs/terminals.md."),
         };
         menu.entry("Back", MenuChoice::Back)
     }

@@ -37,10 +37,10 @@ use crate::tui::pixels::{self, CellSize, into_io};
 /// A part of a replay, and the window in which it is drawn.
 #[derive(Args, Clone, Debug)]
 pub struct Excerpt {
-    /// The time at which it begins, in seconds or as 1:05.5 [default: the start]
+    /// The start time, in seconds or as 1:05.5 [default: the start]
     #[arg(long, value_name = "TIME", value_parser = time)]
     from: Option<f64>,
-    /// The time at which it ends [default: the end]
+    /// The end time [default: the end]
     #[arg(long, value_name = "TIME", value_parser = time)]
     to: Option<f64>,
     /// The size of the window in cells, with sides up to 1000 and up to 200000 cells

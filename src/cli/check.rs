@@ -14,7 +14,7 @@ use crate::map::Level;
 /// Report every fault in maps
 ///
 /// Reports every fault in every map, with its position and what to write instead. The exit status is 0 if all maps are
-/// valid, otherwise 2. A remark about a level without an exit, or with an exit out of reach, leaves it at 0.
+/// valid, otherwise 2. A level without a reachable exit is valid, but gets a remark.
 #[derive(Args, Debug)]
 #[command(
     after_long_help = "Examples:\n  cellcaster check maps/*.toml\n  cellcaster check --deny remarks my.toml"
@@ -23,7 +23,7 @@ pub(crate) struct Check {
     /// Map files, or "-" for standard input
     #[arg(value_name = "MAP", required = true, value_hint = ValueHint::FilePath)]
     maps: Vec<OsString>,
-    /// Exit with status 2 after a remark too
+    /// Treat remarks as faults
     #[arg(long, value_name = "KIND", value_enum)]
     deny: Option<Denied>,
 }

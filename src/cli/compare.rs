@@ -14,8 +14,9 @@ use crate::testing::CellGrid;
 
 /// Report the cells in which two grids differ
 ///
-/// Reads grids, as "cellcaster snapshot --format grid" or json writes them. Prints how many cells differ, where, and the
-/// worst. The exit status is 0 if no cell differs, 1 if one does, and 2 for a file that holds no grid.
+/// Reads grids that "cellcaster snapshot" wrote with --format grid or json. Prints the number of cells that differ,
+/// their positions, and the largest difference. The exit status is 0 if the grids are the same, 1 if they differ, and 2
+/// if a file contains no grid.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -26,13 +27,13 @@ pub(crate) struct Compare {
     /// The expected grid: a file, or "-" for standard input
     #[arg(value_hint = ValueHint::FilePath)]
     wanted: OsString,
-    /// The actual grid, in the same way
+    /// The actual grid: a file, or "-" for standard input
     #[arg(value_hint = ValueHint::FilePath)]
     got: OsString,
-    /// The colour difference ΔE that is permitted in each cell; most people notice 2.3 or more
+    /// The colour difference ΔE that each cell may have; most people notice 2.3 or more
     #[arg(long, value_name = "E", default_value = "0", value_parser = tolerance)]
     tolerance: f64,
-    /// Draw GOT darkly in this PNG, with the cells that differ in yellow to red
+    /// Write a PNG of GOT, darkened, with the cells that differ in yellow to red
     #[arg(long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     png: Option<PathBuf>,
 }

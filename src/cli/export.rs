@@ -1,4 +1,4 @@
-//! `cellcaster export`: a map file as a map of Tiled.
+//! `cellcaster export`: a map file as a Tiled map.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -13,10 +13,10 @@ use super::{Error, level};
 use crate::fault::printable_path;
 use crate::map::{Folder, tiled};
 
-/// Write a map as a map of Tiled
+/// Convert a map to a Tiled map
 ///
 /// Writes three files: the map, the tileset with a tile for each tile and thing of the legend (.tiles.png), and the
-/// classes for Tiled's editor of object types (.types.json). import gives the same level back.
+/// classes for Tiled's editor of object types (.types.json). import restores the same level.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -29,15 +29,15 @@ pub(crate) struct Export {
     /// The format of the map
     #[arg(long, value_enum, default_value_t)]
     format: ExportFormat,
-    /// The map of Tiled [default: the name of MAP, in this folder]
+    /// The Tiled map [default: the name of MAP, in this folder]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// Overwrite a map of Tiled
+    /// Overwrite a Tiled map
     #[arg(long)]
     force: bool,
 }
 
-/// The format of a map of Tiled.
+/// The format of a Tiled map.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 enum ExportFormat {
     #[default]

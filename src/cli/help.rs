@@ -89,18 +89,18 @@ pub(crate) fn more(play_examples: &str, commands: &Command) -> String {
 const ABOUT: &str = "\
 A raycaster game for the terminal, and a renderer for scripts.
 
-You are a thief. Take the treasure that a level asks for, keep out of sight and hearing of its guards, \
+You are a thief. Take the treasure that a level asks for, stay out of its guards' sight and hearing, \
 and reach the exit, which the map shows as a green square. A level ends with its time, treasure, \
 alarms and a rank, and your best results are kept.
 
-Without MAP the title screen offers the saved games, a new game at one of three difficulties, the levels \
+Without MAP, the title screen offers saved games, a new game at one of three difficulties, the levels \
 with your best results, the daily run, endless games, the maps in this folder, settings and help. With \
-MAP, --generate or --endless the game begins at once, unless that level has a saved game: then it asks \
-first. --daily asks before the try that counts.
+MAP, --generate or --endless, the game begins at once, but asks first if that level has a saved game. \
+--daily asks before the try that counts.
 ";
 
 const MAP: &str = "
-MAP is a map file, a map of Tiled (.tmx or .tmj), \"-\" for standard input, or a built-in level; \
+MAP is a map file, a Tiled map (.tmx or .tmj), \"-\" for standard input, or a built-in level; \
 --generate maze, cave or office makes one in its place. An option may also stand before the command. The built-in levels are ";
 
 pub(crate) const WHERE_TO_READ_ON: &str = "\
@@ -118,8 +118,8 @@ program or on the PATH.
 
 const EXIT_STATUS: &str = "
 Exit status: 0 for success; 2 for a mistake in the arguments, a map or a script;
-1 for an error of the system, if replay --verify does not reach an exit, or if
-compare finds a difference.";
+1 for a system error, if replay --verify does not reach an exit, or if compare
+finds a difference.";
 
 fn page(program: Command) -> io::Result<Vec<u8>> {
     // The text after the options would repeat other sections of the page.

@@ -1,4 +1,4 @@
-//! `cellcaster import`: a map of Tiled as a map file.
+//! `cellcaster import`: a Tiled map as a map file.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,17 +12,17 @@ use super::output_file::{OutputFile, print, unwritable};
 use crate::fault::printable_path;
 use crate::map::{Folder, tiled};
 
-/// Write a map of Tiled as a map file
+/// Convert a Tiled map to a map file
 ///
 /// Reads .tmx and .tmj; docs/tiled.md says what layers, tiles and objects mean. Parts of tilesets become PNG files
-/// beside the map file. play, check and snapshot take a map of Tiled as it is.
+/// beside the map file. play, check and snapshot accept a Tiled map directly.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
   cellcaster import level.tmx
   cellcaster import level.tmj --output level.toml")]
 pub(crate) struct Import {
-    /// The map of Tiled
+    /// The Tiled map
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     map: PathBuf,
     /// The map file [default: standard output]
@@ -30,12 +30,12 @@ pub(crate) struct Import {
     output: Option<PathBuf>,
 }
 
-/// Writes the map file, after the map of Tiled was read without faults.
+/// Writes the map file, after the Tiled map was read without faults.
 pub(crate) fn run(options: &Import) -> Result<(), Error> {
     if !tiled::is_tiled(&options.map) {
         let name = printable_path(&options.map);
         return Err(Error::mistake(format!(
-            "{name} is not a map of Tiled, which ends in .tmx or .tmj"
+            "{name} is not a Tiled map: its name must end in .tmx or .tmj"
         )));
     }
     let import = tiled::load(&options.map, &Folder::of(&options.map))?;
@@ -58,7 +58,7 @@ pub(crate) fn write_pictures(
             Ok(_) => {
                 let path = printable_path(&path);
                 return Err(Error::mistake(format!(
-                    "{path} is another picture than the map's {name}: rename it, or write the map to \
+                    "{path} differs from the map's picture {name}: rename it, or write the map to \
                      another folder"
                 )));
             }

@@ -27,7 +27,7 @@ pub(crate) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
     match level {
         Level::Grid(world) => Ok(*world),
         Level::Space(_) => {
-            let message = "is a map of bodies, and this command needs one with a grid";
+            let message = "is a map of bodies, but this command needs a map with a grid";
             Err(Error::mistake(format!("{name} {message}")))
         }
     }
@@ -63,12 +63,12 @@ pub(crate) fn text(argument: &OsStr) -> Result<(String, String), Error> {
     }
     let path = Path::new(argument);
     if tiled::is_tiled(path) {
-        return Err(Error::mistake(format!("{} is a map of Tiled already", path.display())));
+        return Err(Error::mistake(format!("{} is already a Tiled map", path.display())));
     }
     Ok((map::text_of_file(path)?, path.display().to_string()))
 }
 
-/// The level in the file at `path`, a map file or a map of Tiled, with textures from `files`.
+/// The level in the file at `path`, a map file or a Tiled map, with textures from `files`.
 pub(crate) fn load_file(path: &Path, files: &dyn TextureFiles) -> Result<Level, Faults> {
     if tiled::is_tiled(path) {
         return tiled::load(path, files).map(|import| import.level);

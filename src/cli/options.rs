@@ -44,7 +44,7 @@ pub(crate) const COMMANDS: [&str; 14] = [
 /// The level of a command: a map, or a generated level.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LevelOptions {
-    /// A map file, a map of Tiled, "-" for standard input, or a built-in level (see "cellcaster levels")
+    /// A map file, a Tiled map, "-" for standard input, or a built-in level (see "cellcaster levels")
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) map: Option<OsString>,
     /// Generate a level in place of MAP

@@ -139,7 +139,7 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
                 choices => one_of(choices),
             };
             if value.is_empty() {
-                format!("{name} takes {choices}, but nothing follows it")
+                format!("{name} needs a value: {choices}")
             } else {
                 format!("{name} takes {choices}, not \"{value}\"")
             }

@@ -206,7 +206,7 @@ pub(crate) fn about_the_terminal(error: terminal::Error) -> Error {
     let came_by_ssh = env::var_os("SSH_CONNECTION").is_some();
     if error.is_mistake() && came_by_ssh && !io::stdin().is_terminal() {
         return Error::mistake(
-            "playing needs a terminal, which ssh gives to a command only with -t: \
+            "playing needs a terminal, which ssh provides only with -t: \
              ssh -t HOST cellcaster",
         );
     }

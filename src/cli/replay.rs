@@ -30,7 +30,7 @@ use crate::world::World;
 /// A script has lines such as "2.5 s forward run" or "12 steps turn-left open". "stand" does nothing, a name in square
 /// brackets begins a section, and # begins a comment. Lines at the top may name the game: "level cellar", "difficulty
 /// hard" and "seed 7"; a level may also be a map file, or "floor 1" of an endless game, which continues with the next
-/// floors. MAP takes precedence. play --record writes such a script, and share makes a moving picture of it.
+/// floors. MAP takes precedence. play --record writes such a script, and share makes an animation of it.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -85,7 +85,7 @@ pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Erro
     if script.steps() > MAX_PLAYBACK_STEPS {
         let hours = MAX_PLAYBACK_STEPS / (60 * 60 * u64::from(STEPS_PER_SECOND));
         return Err(Error::mistake(format!(
-            "{} lasts longer than {hours} hours, which is the most that can be watched: \"share\" \
+            "{} lasts longer than {hours} hours, the maximum for watching: \"share\" \
              shows a part of it",
             options.script.display()
         )));

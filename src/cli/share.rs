@@ -25,10 +25,10 @@ use crate::app::{MAX_PLAYBACK_STEPS, Replay, Settings};
 use crate::game::Script;
 use crate::terminal::{CellWriter, Fidelity};
 
-/// Make a moving picture of a part of a script
+/// Make an animation of part of a script
 ///
-/// Browsers and chats show gif and png, with 8x16 pixels for each cell and 256 colours; png is smaller. A cast is for
-/// asciinema. replay shows the times for --from and --to.
+/// Browsers and chat programs show gif and png, with 8x16 pixels for each cell and 256 colours; png is smaller. A cast
+/// is for asciinema. replay shows the times for --from and --to.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -42,7 +42,7 @@ pub(crate) struct ShareCommand {
     /// The output file [default: standard output]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// The output format [default: the ending of the output file]
+    /// The output format [default: from the name of the output file]
     #[arg(long, value_enum)]
     format: Option<ShareFormat>,
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub(crate) struct ShareCommand {
     place: LevelOptions,
 }
 
-/// A format of moving pictures.
+/// The format of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ShareFormat {
     Gif,
@@ -67,7 +67,7 @@ enum ShareFormat {
 /// The maximum size of a file.
 const MAX_BYTES: usize = 64 << 20;
 
-/// Writes the moving picture, and says how large it is.
+/// Writes the animation, and prints its size.
 pub(crate) fn run(options: &ShareCommand) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         return Err(Error::mistake(
@@ -99,7 +99,9 @@ fn format(options: &ShareCommand) -> Result<ShareFormat, Error> {
     let ending = ending.and_then(|ending| ending.to_str());
     let of_file = ending.and_then(|ending| ShareFormat::from_str(ending, true).ok());
     let format = options.format.or(of_file).ok_or_else(|| {
-        Error::mistake("name the format: --format gif, png or cast, or an --output that ends so")
+        Error::mistake(
+            "choose a format: --format gif, png or cast, or an --output with that ending",
+        )
     })?;
     let rate = options.excerpt.frames_per_second.get();
     if format == ShareFormat::Gif && rate > MAX_GIF_RATE {

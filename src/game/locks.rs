@@ -81,7 +81,7 @@ impl Game {
     /// The message for a door that does not open.
     fn refusal(&self, door: Door) -> String {
         if door.switch.is_some() {
-            return "This door opens elsewhere.".to_owned();
+            return "This door is opened elsewhere.".to_owned();
         }
         let name = door.key.map_or("right", |key| self.world.key_name(key));
         format!("This door needs the {name} key.")

@@ -354,9 +354,9 @@ impl Header {
 
 fn no_value(word: &str, value: &str, place: Range<usize>) -> Fault {
     let message = match word {
-        LEVEL => "a level's name has no control characters".to_owned(),
+        LEVEL => "a level's name must not contain control characters".to_owned(),
         DIFFICULTY => format!("there is no difficulty {}", quoted(value)),
-        TAKEN_BACK => "time is taken back once or more often".to_owned(),
+        TAKEN_BACK => "a script with taken-back needs a count of at least 1".to_owned(),
         _ => "a seed is a whole number from 0 to 18446744073709551615".to_owned(),
     };
     let names = Difficulty::ALL.map(Difficulty::name);

@@ -78,7 +78,7 @@ impl fmt::Display for RestoreError {
             Self::Cut => f.write_str("the state ends too early"),
             Self::Longer => f.write_str("the state has bytes after its end"),
             Self::TooLong => write!(f, "the state is longer than {MAX_BYTES} bytes"),
-            Self::Damaged(what) => write!(f, "the state is damaged: {what} is out of its range"),
+            Self::Damaged(what) => write!(f, "the state is damaged: {what} is out of range"),
         }
     }
 }

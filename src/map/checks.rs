@@ -125,7 +125,7 @@ fn wrong_start(plan: Plan<'_>) -> Option<Fault> {
         }
         // An earlier fault may be the reason.
         ([], None) => legend.is_clear().then(|| {
-            Fault::new(drawing.key_place.clone(), "the player starts nowhere in the grid")
+            Fault::new(drawing.key_place.clone(), "the grid has no start")
                 .help("under [things] write \"@\" = { start = 0 }, and draw one @ in the grid")
         }),
     }
@@ -187,7 +187,7 @@ fn wrong_patrols(plan: Plan<'_>) -> Vec<Fault> {
             [_, second] => {
                 let message = format!("the waypoint {character:?} is drawn more than once");
                 let fault = Fault::new(second.clone(), message).label("this is the second");
-                Some(fault.help("draw each waypoint once, with a character of its own"))
+                Some(fault.help("draw each waypoint once, and give each its own character"))
             }
             _ => None,
         });
@@ -202,7 +202,7 @@ fn unconnected_switches(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     let stuck: Vec<_> = plan.driven().filter(|it| !setting.contains(it.text)).collect();
     let idle = idle.into_iter().enumerate().map(move |(index, switch)| {
         let name = quoted(switch.text);
-        let message = format!("nothing in the grid moves with the switch {name}");
+        let message = format!("the switch {name} moves nothing in the grid");
         let example = format!(
             "draw a door, a wall or a floor that moves with it, such as \
              {{ door = \"metal\", switch = {name} }}"

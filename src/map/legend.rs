@@ -227,7 +227,7 @@ fn unsuitable(
     if let Some(place) = tile.mechanism.clone() {
         let message = "only a floor can be water, a plate, or move to another height";
         let fault = Fault::new(place, message).label("this tile is not a floor");
-        return Some(fault.help("draw the two with characters of their own"));
+        return Some(fault.help("give each its own character"));
     }
     match meaning {
         Meaning::Wall(_) | Meaning::Mirror(..) if tile.has_extent() => Some(several_at_once(entry)),
@@ -244,7 +244,7 @@ fn unsuitable(
 
 fn several_at_once(entry: &Entry<'_, '_>) -> Fault {
     Fault::new(entry.key_place.clone(), format!("{:?} has more than one meaning", entry.key))
-        .help("draw each with a character of its own")
+        .help("give each its own character")
 }
 
 /// Reads one property of a tile or a thing, which may be its meaning.

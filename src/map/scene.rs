@@ -133,7 +133,7 @@ pub(crate) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
             "grid" | "tiles" | "things" => faults.push(
                 Fault::new(entry.key_place, "a map has either a grid or bodies")
                     .label("this map has bodies")
-                    .help("make two maps of it"),
+                    .help("split it into two maps"),
             ),
             key => match KINDS.iter().find(|kind| kind.key == key) {
                 Some(kind) => kind.read_all(&entry, &mut scene.bodies, &mut pairs),
@@ -292,7 +292,7 @@ impl BodyKind {
 fn one_too_many(place: Range<usize>, count: usize, pairs: usize) -> Option<Fault> {
     if count == MAX_BODIES {
         let fault = Fault::new(place, format!("a map has {MAX_BODIES} bodies at most"));
-        let help = "leave some out, or make two maps of it";
+        let help = "leave some out, or split it into two maps";
         return Some(fault.label("this is one too many").help(help));
     }
     (pairs > MAX_PAIRS).then(|| {

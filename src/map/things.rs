@@ -150,7 +150,7 @@ fn too_many_lamps(symbol: &Symbol<'_>) -> Fault {
     );
     Fault::new(symbol.place.clone(), message)
         .label("with these, they light more")
-        .help("draw fewer lamps, or let them reach less far")
+        .help("draw fewer lamps, or give them a shorter reach")
 }
 
 /// The guards in the plan, row by row from the north, and within a row from the west.

@@ -1,13 +1,13 @@
 //! Maps of the editor Tiled (mapeditor.org): read as levels, and written from map files.
 //!
-//! A map of Tiled is translated into the text of a map file, which the reader of map files reads.
+//! A Tiled map is translated into the text of a map file, which the reader of map files reads.
 //! So a level is checked in one place. A fault in the text is reported with its origin: a layer and
 //! a cell, a tile or an object.
 //!
 //! - [`document`] reads the text of `.tmx` and `.tmj`, and of tilesets, into one tree.
 //! - [`model`] finds layers, tiles and objects in the tree.
 //! - [`level`] translates them, with the characters of [`legend`], into [`text`].
-//! - [`mod@export`] writes a map of Tiled from a map file. Reading it again gives the same world.
+//! - [`mod@export`] writes a Tiled map from a map file. Reading it again gives the same world.
 //!
 //! Rejected: the crate `tiled`. It does not read `.tmj`, unpacks a file of 400 kB into 1.7 GB, and
 //! overflows the stack at 100,000 nested groups. Rejected too: layers compressed by zstd, for which
@@ -37,10 +37,10 @@ use crate::fault::Faults;
 pub use export::{ExportedMap, export};
 use model::{SheetRegion, TiledError, TiledMap};
 
-/// The largest file of Tiled, in bytes.
+/// The largest Tiled file, in bytes.
 const MAX_BYTES: usize = 16 << 20;
 
-/// A level from a map of Tiled, as a map file.
+/// A level from a Tiled map, as a map file.
 #[derive(Debug)]
 pub struct ImportedLevel {
     /// The level.
@@ -51,13 +51,13 @@ pub struct ImportedLevel {
     pub pictures: BTreeMap<String, Vec<u8>>,
 }
 
-/// Returns whether the file at `path` is a map of Tiled, by its name.
+/// Returns whether the file at `path` is a Tiled map, by its name.
 pub fn is_tiled(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default();
     ["tmx", "tmj"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// Reads the map of Tiled at `path`, with tilesets and pictures from `files`.
+/// Reads the Tiled map at `path`, with tilesets and pictures from `files`.
 ///
 /// # Errors
 /// All faults of the map, or the reason why the file cannot be read.
@@ -65,14 +65,14 @@ pub fn load(path: &Path, files: &dyn TextureFiles) -> Result<ImportedLevel, Faul
     import(&text_of_file(path)?, &path.display().to_string(), files)
 }
 
-/// Reads `text`, a map of Tiled that faults call `name`, as [`load`] does.
+/// Reads `text`, a Tiled map that faults call `name`, as [`load`] does.
 ///
 /// # Errors
 /// All faults of the map.
 pub fn import(text: &str, name: &str, files: &dyn TextureFiles) -> Result<ImportedLevel, Faults> {
     if text.len() > MAX_BYTES {
         let limit = MAX_BYTES >> 20;
-        let message = format!("{name} is larger than {limit} MiB, the maximum for a map of Tiled");
+        let message = format!("{name} is larger than {limit} MiB, the maximum for a Tiled map");
         return Err(Faults::of_whole_file(name, &message, ""));
     }
     let root = document::parse(text, name)?;

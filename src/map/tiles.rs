@@ -344,7 +344,7 @@ fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
     if matches!(tile.ceiling, Ceiling::Covered(_)) && end.cells >= ceiling {
         let fault = fault("a ceiling must be above its floor");
         let fault = fault.label(format!("the ceiling is at {ceiling} here"));
-        return Some(fault.help("raise ceiling_height, or move the floor less far"));
+        return Some(fault.help("raise ceiling_height, or move the floor by less"));
     }
     None
 }

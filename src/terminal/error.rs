@@ -14,7 +14,7 @@ pub struct Error(#[from] TerminalErrorKind);
 pub(crate) enum TerminalErrorKind {
     #[cfg(unix)]
     #[error(
-        "{stream} is not a terminal, which playing needs; `cellcaster snapshot` draws a frame without one"
+        "playing needs a terminal, but {stream} is not one; `cellcaster snapshot` draws a frame without one"
     )]
     NotATerminal {
         /// The name of the stream, such as "standard input".
@@ -27,12 +27,12 @@ pub(crate) enum TerminalErrorKind {
     UnsupportedPlatform,
     /// The terminal cannot move its cursor, according to this value of `TERM`.
     #[error(
-        "TERM is {term:?}, a terminal that cannot move its cursor, which playing needs; set it to what \
-         you have, such as TERM=xterm-256color, or draw a frame with `cellcaster snapshot`"
+        "playing needs a terminal that can move its cursor, but TERM is {term:?}: set TERM to your \
+         terminal's name, such as TERM=xterm-256color, or draw a frame with `cellcaster snapshot`"
     )]
     Teletype { term: &'static str },
     /// This process already has a session.
-    #[error("this program has already taken the terminal, and has not released it yet")]
+    #[error("this program already uses the terminal")]
     AlreadyTaken,
     /// A panic in another thread has ended the session.
     #[error("the terminal was restored when another part of the program failed")]

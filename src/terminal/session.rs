@@ -81,7 +81,7 @@ impl Session {
                 return Ok(Some(event));
             }
             if self.awaits_readiness {
-                self.probe().map_err(Error::while_doing("asking whether the terminal is there"))?;
+                self.probe().map_err(Error::while_doing("checking the terminal"))?;
                 if self.is_ready() {
                     return Ok(Some(Event::Ready));
                 }
@@ -209,7 +209,7 @@ impl Session {
         };
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
         session.protocol.begin(guard.now());
-        session.send().map_err(Error::while_doing("asking the terminal what it can do"))?;
+        session.send().map_err(Error::while_doing("querying the terminal"))?;
         session.ask_tmux();
         Ok(session)
     }

@@ -67,7 +67,7 @@ impl Golden {
         let is_plain = |c: char| c.is_alphanumeric() || "_-.".contains(c);
         assert!(
             !name.is_empty() && name.chars().all(is_plain),
-            "{name:?} is not a name of a grid, which has letters, digits, \"_\", \"-\" and \".\""
+            "{name:?} is not a valid name for a grid: use letters, digits, \"_\", \"-\" and \".\""
         );
         // A source file is named from the root of its workspace, which may be above the package.
         let roots = Path::new(manifest).ancestors().map(|root| root.join(source));
@@ -163,7 +163,7 @@ impl fmt::Display for Failure<'_> {
             }
             Err(error) => writeln!(f, "its pictures cannot be written: {error}")?,
         }
-        write!(f, "to accept what was drawn, run the test with {UPDATE}=1")
+        write!(f, "to accept the new grid, run the test with {UPDATE}=1")
     }
 }
 
@@ -210,14 +210,14 @@ mod tests {
         the grid "hello" differs from FOLDER/grids/hello.grid:
         the file does not exist
         see FOLDER/pictures/hello.got.png
-        to accept what was drawn, run the test with CELLCASTER_UPDATE_GRIDS=1
+        to accept the new grid, run the test with CELLCASTER_UPDATE_GRIDS=1
         "#);
         golden.write(&hello(200)).unwrap();
         assert_eq!(compare(200, exact), None);
         insta::assert_snapshot!(compare(210, exact).unwrap(), @r#"
         the grid "hello" differs from FOLDER/grids/hello.grid:
         5 of 16 cells differ, in columns 0-4 and row 0
-        the worst: column 0, row 0: "H" #d20000 on Reset in place of "H" #c80000 on Reset, ΔE 3.9
+        the largest difference: column 0, row 0: "H" #d20000 on Reset in place of "H" #c80000 on Reset, ΔE 3.9
           column 0, row 0: "H" #d20000 on Reset in place of "H" #c80000 on Reset, ΔE 3.9
           column 1, row 0: "e" #d20000 on Reset in place of "e" #c80000 on Reset, ΔE 3.9
           column 2, row 0: "l" #d20000 on Reset in place of "l" #c80000 on Reset, ΔE 3.9
@@ -226,7 +226,7 @@ mod tests {
         see FOLDER/pictures/hello.got.png
         see FOLDER/pictures/hello.wanted.png
         see FOLDER/pictures/hello.difference.png
-        to accept what was drawn, run the test with CELLCASTER_UPDATE_GRIDS=1
+        to accept the new grid, run the test with CELLCASTER_UPDATE_GRIDS=1
         "#);
         for picture in ["wanted", "got", "difference"] {
             let bytes = fs::read(folder.join(format!("pictures/hello.{picture}.png"))).unwrap();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "is not a name of a grid")]
+    #[should_panic(expected = "is not a valid name for a grid")]
     fn a_name_is_not_a_path() {
         _ = Golden::beside(env!("CARGO_MANIFEST_DIR"), file!(), "tests", "../hello");
     }

@@ -153,7 +153,7 @@ impl Comparison {
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(worst) = self.worst() else {
-            return write!(f, "none of {} cells differs", self.cells);
+            return write!(f, "all {} cells match", self.cells);
         };
         let places = self.differences.iter().map(|it| Rect::new(it.column, it.row, 1, 1));
         let area = places.reduce(Rect::union).unwrap_or_default();
@@ -166,7 +166,7 @@ impl fmt::Display for Comparison {
             range("column", area.left(), area.right()),
             range("row", area.top(), area.bottom()),
         )?;
-        write!(f, "the worst: {worst}")
+        write!(f, "the largest difference: {worst}")
     }
 }
 

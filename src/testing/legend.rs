@@ -76,8 +76,9 @@ impl ColorLegend {
         for letter in columns.chars() {
             if letter.is_ascii_uppercase() {
                 let text = listed.next().ok_or("has more capitals than colours")?;
-                color =
-                    Some(color_of(text).ok_or_else(|| format!("has {text}, which is no colour"))?);
+                color = Some(
+                    color_of(text).ok_or_else(|| format!("has {text}, which is not a colour"))?,
+                );
             } else if letter != ' ' {
                 let listed = self.colors.get(&letter).copied();
                 color = Some(listed.ok_or_else(|| format!("has a {letter}, which has no colour"))?);

@@ -237,10 +237,10 @@ fn a_recording_replaces_no_file_and_needs_a_known_extension() {
     assert_eq!(told("cast", &[]), told("walk.txt", &[]).replace("walk.txt", "cast"));
     // Without a terminal, the game leaves no file that would prevent the next recording.
     for name in ["new.cast", "new.script"] {
-        assert!(told(name, &[]).contains("is not a terminal"));
+        assert!(told(name, &[]).contains("playing needs a terminal"));
         assert!(!folder.join(name).exists(), "{name} was left behind");
     }
-    assert!(told("taken.cast", &["--force"]).contains("is not a terminal"));
+    assert!(told("taken.cast", &["--force"]).contains("playing needs a terminal"));
 }
 
 #[test]
@@ -251,5 +251,5 @@ fn without_a_terminal_over_ssh_the_error_names_the_option() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    insta::assert_snapshot!(String::from_utf8_lossy(&output.stderr), @"cellcaster: playing needs a terminal, which ssh gives to a command only with -t: ssh -t HOST cellcaster");
+    insta::assert_snapshot!(String::from_utf8_lossy(&output.stderr), @"cellcaster: playing needs a terminal, which ssh provides only with -t: ssh -t HOST cellcaster");
 }

@@ -40,7 +40,7 @@ fn compare(arguments: &[&str]) -> (Option<i32>, String) {
 #[test]
 fn a_grid_equals_the_json_of_the_same_picture() {
     let [grid, json, _] = files(&folder("equal"));
-    assert_eq!(compare(&[&grid, &json]), (Some(0), "none of 1200 cells differs\n".to_owned()));
+    assert_eq!(compare(&[&grid, &json]), (Some(0), "all 1200 cells match\n".to_owned()));
     let output = run_with_input(&["compare", &json, "-"], &fs::read(grid).unwrap());
     assert_eq!(output.status.code(), Some(0));
 }
@@ -54,7 +54,7 @@ fn a_difference_is_counted_located_and_drawn() {
     assert_eq!(status, Some(1));
     insta::assert_snapshot!(report, @r#"
     773 of 1200 cells differ, in columns 0-59 and rows 0-14
-    the worst: column 0, row 9: "▀" #1b383c on #19353a in place of "▀" #4b432c on #51a340, ΔE 72.7
+    the largest difference: column 0, row 9: "▀" #1b383c on #19353a in place of "▀" #4b432c on #51a340, ΔE 72.7
     "#);
     assert!(fs::read(png).unwrap().starts_with(b"\x89PNG"));
     let (status, with_tolerance) = compare(&[&grid, &ahead, "--tolerance", "20"]);

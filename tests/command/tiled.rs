@@ -51,7 +51,7 @@ fn tiles_of_a_sheet_become_pictures_beside_the_map_file() {
 
     fs::write(folder.join("yard-16-0.png"), "another").unwrap();
     let complaint = complaint_about(&["import", "tests/tiled/yard.tmx", "--output", name(&map)]);
-    assert!(complaint.contains("another picture than the map's yard-16-0.png"), "{complaint}");
+    assert!(complaint.contains("differs from the map's picture yard-16-0.png"), "{complaint}");
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn mistakes_say_what_to_do() {
     let complaint = complaint_about(&["import", "tests/bad_tiled/class_unknown.tmx"]);
     assert!(complaint.contains("class_unknown.tmx: object 4 on layer \"things\""), "{complaint}");
     let complaint = complaint_about(&["import", "maps/cellar.toml"]);
-    assert!(complaint.contains("is not a map of Tiled"), "{complaint}");
+    assert!(complaint.contains("is not a Tiled map"), "{complaint}");
     let complaint = complaint_about(&["export", "maps/gallery/spheres.toml"]);
     assert!(complaint.contains("is a map of bodies"), "{complaint}");
 }

@@ -152,7 +152,7 @@ fn the_number_of_cells_lit_by_lamps_is_limited() {
     109 | "l" = { sprite = "lamp", light = 1, reach = 32 }
         | ^^^ with these, they light more
         |
-        = help: draw fewer lamps, or let them reach less far
+        = help: draw fewer lamps, or give them a shorter reach
     "#);
     let near = r#"{ sprite = "lamp", light = 1, reach = 1 }"#;
     assert!(read(&lamps(990, near), SMALL_MAP).is_ok());

@@ -84,7 +84,7 @@ fn every_bad_map_of_tiled_is_refused_with_a_report() -> Outcome {
     Ok(())
 }
 
-/// A map of Tiled with this side and this content.
+/// A Tiled map with this side and this content.
 fn tmx(side: u32, content: &str) -> String {
     format!(
         "<map orientation='orthogonal' width='{side}' height='{side}' tilewidth='8' \

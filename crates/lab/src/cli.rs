@@ -29,13 +29,13 @@ enum Command {
     Wire(wire::Wire),
     #[cfg(target_os = "linux")]
     Load(load::Load),
-    /// Run the game's command of this name, with a caster to compare
+    /// Run the game's command of this name with any of the lab's casters
     #[command(disable_help_flag = true)]
     Cast(Forwarded),
-    /// Run the game's command of this name, with a caster to compare
+    /// Run the game's command of this name with any of the lab's casters
     #[command(disable_help_flag = true)]
     Snapshot(Forwarded),
-    /// Run the game's command of this name, with a caster to compare
+    /// Run the game's command of this name with any of the lab's casters
     #[command(disable_help_flag = true)]
     Play(Forwarded),
 }

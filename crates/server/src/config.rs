@@ -509,7 +509,7 @@ const TEXTS: [Setting<Config>; 8] = [
     },
     Setting {
         key: "log",
-        about: "the level of the log, and the levels of single topics; a level is off, error, warn, info, debug \
+        about: "the log level, and levels for single topics; a level is off, error, warn, info, debug \
                 or trace, and a topic is host, connections, rooms, results or admin",
         value: &Text { at: |it| &mut it.log, read: log, write: |log| format!("\"{log}\"") },
     },
@@ -536,24 +536,24 @@ const TEXTS: [Setting<Config>; 8] = [
 const NUMBERS: [Setting<Config>; 28] = [
     Setting {
         key: "connections",
-        about: "the limit of visitors who have logged in",
+        about: "the maximum number of visitors who have logged in",
         value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.connections)),
     },
     Setting {
         key: "connections-per-address",
-        about: "the limit of connections from one IPv4 address or IPv6 /64; behind a proxy that is not in\n\
+        about: "the maximum number of connections from one IPv4 address or IPv6 /64; behind a proxy that is not in\n\
                 proxies, all visitors have the same address",
         value: &Number(1..=100_000, NumberField::U32(|it| &mut it.admission.per_address)),
     },
     Setting {
         key: "connections-per-key",
-        about: "the limit of connections with one public key",
+        about: "the maximum number of connections with one public key",
         value: &Number(1..=1000, NumberField::U32(|it| &mut it.admission.per_key)),
     },
     Setting {
         key: "startups",
-        about: "the limit of further connections that have not logged in yet; one more displaces\n\
-                the oldest of the busiest network",
+        about: "the maximum number of further connections that have not logged in yet; one more\n\
+                displaces the oldest of the busiest network",
         value: &Number(1..=10_000, NumberField::U32(|it| &mut it.admission.startups)),
     },
     Setting {
@@ -589,12 +589,12 @@ const NUMBERS: [Setting<Config>; 28] = [
     },
     Setting {
         key: "login-bytes",
-        about: "the limit of bytes from a client before its login",
+        about: "the maximum number of bytes from a client before its login",
         value: &Number(8192..=16 << 20, NumberField::U32(|it| &mut it.login_bytes)),
     },
     Setting {
         key: "bytes-per-second",
-        about: "the limit of bytes from a client in a second after its login; further bytes wait",
+        about: "the maximum number of bytes per second from a client after its login; further bytes wait",
         value: &Number(1024..=1 << 30, NumberField::U32(|it| &mut it.bytes_per_second)),
     },
     Setting {
@@ -624,17 +624,17 @@ const NUMBERS: [Setting<Config>; 28] = [
     },
     Setting {
         key: "rooms",
-        about: "the limit of open rooms",
+        about: "the maximum number of open rooms",
         value: &Number(2..=10_000, NumberField::U32(|it| &mut it.rooms)),
     },
     Setting {
         key: "watchers",
-        about: "the limit of visitors who watch one room",
+        about: "the maximum number of visitors who watch one room",
         value: &Number(0..=10_000, NumberField::U32(|it| &mut it.watchers)),
     },
     Setting {
         key: "web-watchers",
-        about: "the limits of browsers that watch rooms, in total and from one IPv4 address or IPv6 /64",
+        about: "the maximum number of browsers that watch rooms, in total and from one IPv4 address or IPv6 /64",
         value: &Number(1..=10_000, NumberField::U32(|it| &mut it.web_watchers)),
     },
     Setting {
@@ -655,17 +655,17 @@ const NUMBERS: [Setting<Config>; 28] = [
     },
     Setting {
         key: "idle-lobby-minutes",
-        about: "the time after which a visitor elsewhere who presses no key is disconnected, as above",
+        about: "the same for a visitor elsewhere, who is then disconnected",
         value: &Number(2..=1440, NumberField::Minutes(|it| &mut it.idle_lobby)),
     },
     Setting {
         key: "frames-per-second",
-        about: "the limit of frames for each visitor in a second; fewer if the processor is busy",
+        about: "the maximum frame rate for each visitor; it falls if the processor is busy",
         value: &Number(5..=60, NumberField::U32(|it| &mut it.frames_per_second)),
     },
     Setting {
         key: "player-bytes-per-second",
-        about: "the limit of bytes to each visitor in a second, after compression; pictures that move are\n\
+        about: "the maximum number of bytes per second to each visitor, after compression; moving pictures are\n\
                 coarser or fewer, and pictures at rest become exact; 0 for no limit",
         value: &Number(0..=1 << 30, NumberField::U32(|it| &mut it.player_bytes_per_second)),
     },

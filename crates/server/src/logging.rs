@@ -34,10 +34,10 @@ use crate::visitors::SessionId;
 /// The format of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
 pub enum LogFormat {
-    /// For people: time, level, topic, event, fields.
+    /// For people: time, level, topic, event and fields.
     #[default]
     Text,
-    /// For programs: an object of JSON.
+    /// For programs: a JSON object.
     Json,
 }
 

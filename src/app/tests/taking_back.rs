@@ -98,7 +98,7 @@ fn the_difficulty_limits_how_often_time_is_taken_back() {
         let said = match difficulty {
             Difficulty::Easy => "Ten seconds taken back",
             Difficulty::Normal => "Time was taken back three times, which is the maximum",
-            Difficulty::Hard => "Nothing is taken back on hard",
+            Difficulty::Hard => "Time cannot be taken back on hard",
         };
         let shown = text(&mut rig.app, 140, 24);
         assert!(shown.contains(said), "{shown}");
@@ -139,7 +139,7 @@ fn nothing_is_taken_back_in_a_descent_or_before_the_first_step() {
     take_back(&mut rig);
     assert_eq!((steps(&rig), rig.app.log.taken_back), (before, 0));
     let shown = text(&mut rig.app, 120, 24);
-    assert!(shown.contains("Nothing is taken back here"), "{shown}");
+    assert!(shown.contains("Time cannot be taken back here"), "{shown}");
     let mut rig = playing("cellar", Difficulty::Easy, None);
     rig.app.log = RunLog::default();
     take_back(&mut rig);

@@ -78,7 +78,7 @@ fn a_failure_is_reported_in_one_sentence() {
     rig.choose(OFFER);
     rig.choose("Tell tmux");
     rig.app.tmux_told(false);
-    assert!(shows(&mut rig, "tmux did not take the command; see docs/terminals.md."));
+    assert!(shows(&mut rig, "tmux rejected the command; see docs/terminals.md."));
 }
 
 #[test]

@@ -185,7 +185,9 @@ impl Observation {
             (before, now) if before == now => {}
             (_, Alarm::Raised) => add("Alarm: a guard follows you.".to_owned(), true),
             (Alarm::Calm, Alarm::Wary) => add("A guard has noticed something.".to_owned(), true),
-            (_, Alarm::Wary) => add("The guards have lost you and search.".to_owned(), false),
+            (_, Alarm::Wary) => {
+                add("The guards have lost you and are searching.".to_owned(), false)
+            }
             (_, Alarm::Calm) => add("The guards are calm.".to_owned(), false),
         }
         let is_new = |heard: &&Heard| {

@@ -71,7 +71,7 @@ fn an_occupied_plate_is_on_and_opens_its_door() {
     stage.walk_to(4).play(60, &[]);
     assert_eq!(open(&stage), 0.0);
     stage.play(60, &[Intent::Forward]);
-    assert_eq!(stage.message(), "This door opens elsewhere.");
+    assert_eq!(stage.message(), "This door is opened elsewhere.");
     assert_eq!(stage.cell().column, 5);
 }
 

@@ -263,7 +263,7 @@ impl<'a> TileText<'a> {
         match (&self.water, &self.plate, &self.moves_to, &self.crumbles) {
             (Some(water), Some(_), ..) => Some(
                 fault(water, "a floor is water or a plate, not both")
-                    .help("draw each with a character of its own"),
+                    .help("give each its own character"),
             ),
             (.., Some(moves_to), Some(_)) => Some(
                 fault(&moves_to.place, "a floor moves with a switch or crumbles, not both")

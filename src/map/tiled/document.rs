@@ -1,4 +1,4 @@
-//! The text of a file of Tiled as one tree, in the form of Tiled's JSON format. An XML file becomes
+//! The text of a Tiled file as one tree, in the form of Tiled's JSON format. An XML file becomes
 //! the tree that the same file would be as JSON, except that its numbers are still text.
 
 use std::ops::Range;
@@ -26,8 +26,7 @@ pub(crate) fn parse(text: &str, name: &str) -> Result<Value, Faults> {
     };
     parsed.map_err(|(at, reason)| {
         let at = text.floor_char_boundary(at.min(text.len()));
-        let fault =
-            Fault::new(Range { start: at, end: at }, format!("this is not {format} of Tiled"));
+        let fault = Fault::new(Range { start: at, end: at }, format!("this is not valid {format}"));
         let help = "save the map with Tiled, as .tmx or .tmj";
         Faults::new(name, text, vec![fault.label(reason).help(help)])
     })
@@ -64,7 +63,7 @@ fn xml(text: &str) -> Result<Value, Malformed> {
         match reader.read_event().map_err(|error| malformed(&error))? {
             Event::Start(tag) => {
                 if open.len() >= MAX_DEPTH {
-                    return Err(malformed(&"elements are nested too deep"));
+                    return Err(malformed(&"elements are nested too deeply"));
                 }
                 open.push(Element::of(&tag).map_err(|error| malformed(&error))?);
             }

@@ -1,4 +1,4 @@
-//! A map of Tiled from a map file: each tile and each thing of the legend is a tile of one tileset,
+//! A Tiled map from a map file: each tile and each thing of the legend is a tile of one tileset,
 //! with its keys as properties.
 
 use std::cell::RefCell;
@@ -25,7 +25,7 @@ const SIDE: u32 = 32;
 /// The number of tiles in a row of the tileset.
 const COLUMNS: usize = 8;
 
-/// A map of Tiled.
+/// A Tiled map.
 #[derive(Debug)]
 pub struct ExportedMap {
     /// The text of the map, in Tiled's JSON format.
@@ -45,7 +45,7 @@ struct LegendEntry<'d> {
     keys: &'d DeTable<'d>,
 }
 
-/// Writes the map file `text`, which faults call `name`, as a map of Tiled whose tiles are in the
+/// Writes the map file `text`, which faults call `name`, as a Tiled map whose tiles are in the
 /// file `tiles`. Textures come from `files`.
 ///
 /// # Errors
@@ -58,7 +58,7 @@ pub fn export(
 ) -> Result<ExportedMap, Faults> {
     let files = RecordedFiles { files, read: RefCell::default() };
     if let Level::Space(_) = map::parse_level(text, name, &files)? {
-        let message = format!("{name} is a map of bodies, and Tiled has only grids");
+        let message = format!("{name} is a map of bodies, but Tiled only has grids");
         return Err(Faults::of_whole_file(name, &message, "name a map with a grid"));
     }
     let document = document::parse(text, &FaultList::default());

@@ -1,4 +1,4 @@
-//! The tiles and the things of a map of Tiled, as the text of a map file.
+//! The tiles and the things of a Tiled map, as the text of a map file.
 //!
 //! Each cell has the tiles of all layers and the objects that cover it, from the bottom to the top.
 //! Cells with the same ones share a character, and so do things with the same keys on the same
@@ -387,7 +387,7 @@ impl<'m> Translator<'m> {
             let Some(line) = lines.iter_mut().find(|line| line.object.id == id) else {
                 let fault = Fault::at(
                     &*thing.origin,
-                    format!("its patrol is object {id}, which is no line"),
+                    format!("its patrol is object {id}, which is not a line"),
                 );
                 self.faults
                     .borrow_mut()
@@ -499,18 +499,14 @@ impl<'m> Translator<'m> {
         if used.len() > MAX_STACKS {
             let message =
                 format!("the cells have more than {MAX_STACKS} different combinations of tiles");
-            self.fault(MAP, message, "let more cells be alike");
+            self.fault(MAP, message, "use fewer combinations");
             return Translation::default();
         }
         let mut items_left = MAX_ITEMS;
         let mut tiles: Vec<(u32, Definition)> = Vec::new();
         for stack in used.into_iter().filter(|stack| *stack != 0) {
             let Some(tile) = self.tile_of(stack, &mut items_left) else {
-                self.fault(
-                    MAP,
-                    "too many layers and objects lie over each other",
-                    "merge some of them",
-                );
+                self.fault(MAP, "too many layers and objects overlap", "merge some of them");
                 return Translation::default();
             };
             tiles.push((stack, tile));
@@ -534,7 +530,7 @@ impl<'m> Translator<'m> {
             self.fault(
                 MAP,
                 "the map has more kinds of tile and thing than there are characters",
-                "let more things be alike",
+                "use fewer kinds",
             );
         }
         let character = |(cell, stack): (usize, &u32)| {
@@ -609,7 +605,7 @@ impl<'m> Translator<'m> {
         let has_start = self.things.values().any(|thing| thing.definition.has(&["start"]));
         if !has_start && self.faults.borrow().is_empty() {
             let help = "put an object of the class start on a layer of objects";
-            self.fault(MAP, "the player starts nowhere", help);
+            self.fault(MAP, "the map has no start", help);
         }
     }
 

@@ -1,4 +1,4 @@
-//! A map of Tiled: its layers with the tiles and the objects on them, and its tilesets.
+//! A Tiled map: its layers with the tiles and the objects on them, and its tilesets.
 //!
 //! Layers in groups are as good as layers outside. Flips of tiles are left out.
 
@@ -279,7 +279,7 @@ fn tiles(layer: &Value, count: usize) -> Result<Vec<u32>, String> {
     };
     let mut tiles = tiles.ok_or("are not all numbers")?;
     if tiles.len() != count {
-        return Err(format!("are not as many as the map has cells, {count}"));
+        return Err(format!("do not match the map's {count} cells"));
     }
     for gid in &mut tiles {
         *gid &= !FLIPS;
@@ -296,10 +296,10 @@ fn unpacked(bytes: &[u8], compression: &str, size: usize) -> Result<Vec<u8>, Str
         "zlib" => ZlibDecoder::new(bytes).take(limit).read_to_end(&mut content),
         "gzip" => GzDecoder::new(bytes).take(limit).read_to_end(&mut content),
         other => {
-            return Err(format!("are compressed by {}, which is not read here", quoted(other)));
+            return Err(format!("are compressed with {}, which is not supported", quoted(other)));
         }
     };
-    read.map_err(|_| "are not completely compressed".to_owned())?;
+    read.map_err(|_| "are truncated".to_owned())?;
     Ok(content)
 }
 

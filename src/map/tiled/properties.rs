@@ -1,4 +1,4 @@
-//! Custom properties of Tiled, which are keys of a map file.
+//! Custom properties in Tiled, which are keys of a map file.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -62,7 +62,7 @@ impl Properties {
 }
 
 impl Property {
-    /// Reads the property `name` with a type of Tiled; `None` if it has no value.
+    /// Reads the property `name` with a type of Tiled's; `None` if it has no value.
     fn read(
         name: &str,
         kind: &str,
@@ -87,7 +87,7 @@ impl Property {
                 Ok(0) | Err(_) => return Ok(None),
                 Ok(id) => Self::Object(id),
             },
-            // A colour of Tiled begins with its opacity.
+            // A colour in Tiled begins with its opacity.
             "color" => match (written.len(), written.get(3..)) {
                 (0, _) => return Ok(None),
                 (9, Some(color)) => Self::Text(format!("#{color}")),

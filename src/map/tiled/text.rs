@@ -1,4 +1,4 @@
-//! The text of a map file, and the place in the map of Tiled from which each byte was made.
+//! The text of a map file, and the place in the Tiled map from which each byte was made.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -100,7 +100,7 @@ pub(crate) struct Store {
     pub(crate) store: Option<StoreLocation>,
 }
 
-/// List, kick, mute and ban the visitors of a host, or show them a line
+/// List, kick, mute and ban a host's visitors, or send them a message
 ///
 /// The commands for bans and mutes also work while no server runs, because the store contains both. Name a player by
 /// name, --key or --address; banning or muting a name also bans or mutes the key of its account. A running server
@@ -144,7 +144,7 @@ pub(crate) enum AdminAction {
     Ban {
         #[command(flatten)]
         player: PlayerSelector,
-        /// The duration, such as 30m or 7d [default: for ever]
+        /// The duration, such as 30m or 7d [default: forever]
         #[arg(long = "for", value_name = "TIME", value_parser = time)]
         time: Option<Duration>,
         /// The reason, which the player sees
@@ -158,14 +158,14 @@ pub(crate) enum AdminAction {
     },
     /// List the bans in force
     Bans(ListOptions),
-    /// Mute a player, who can go on playing; a guest who is online is muted by address
+    /// Mute a player, who can still play; an online guest is muted by address
     Mute {
         #[command(flatten)]
         player: PlayerSelector,
         /// The id of one session, from "cellcaster-server admin who"
         #[arg(long, value_name = "ID", value_parser = session, group = "target")]
         session: Option<SessionId>,
-        /// The duration, such as 30m or 7d [default: for ever]
+        /// The duration, such as 30m or 7d [default: forever]
         #[arg(long = "for", value_name = "TIME", value_parser = time)]
         time: Option<Duration>,
         /// The reason, which the player sees
@@ -179,9 +179,9 @@ pub(crate) enum AdminAction {
     },
     /// List the mutes in force
     Mutes(ListOptions),
-    /// Show a line to all visitors
+    /// Send a message to all visitors
     Say {
-        /// The text of the line
+        /// The message
         text: String,
     },
     /// End the server, as SIGTERM does
@@ -259,10 +259,10 @@ pub(crate) enum ListFormat {
 /// With --png, also draw what a member saw, in half blocks and 24-bit colours.
 #[derive(Args, Debug)]
 pub(crate) struct Replay {
-    /// The recording, a file of --record-room
+    /// A recording that --record-room wrote
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// The map file or the folder of maps, if rounds were in the host's own maps
+    /// The map file or the folder of maps, if rounds used the host's own maps
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) maps: Option<PathBuf>,
     /// Write what a member saw as an animated PNG

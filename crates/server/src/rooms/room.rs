@@ -436,7 +436,7 @@ impl Room {
         }
         self.next_member = self.next_member.max(id.0.saturating_add(1));
         self.seat(&Seat { id, color, points: 0, name: name.clone(), kept: None });
-        self.announce(format!("{name} comes in."));
+        self.announce(format!("{name} has joined."));
     }
 
     fn seat(&mut self, seat: &Seat) {

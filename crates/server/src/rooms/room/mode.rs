@@ -62,7 +62,7 @@ impl Mode {
     /// A description in one line.
     pub(crate) const fn about(self) -> &'static str {
         match self {
-            Self::Roam => "Walk about and talk. Nobody is in danger.",
+            Self::Roam => "Walk around and talk. Nobody is in danger.",
             Self::Together => "Sneak past the guards together. The level ends when all are out.",
             Self::Alone => "Play a level alone. Your best result is listed on the board.",
             Self::Race => "The first at the exit wins. A ghost shows the best run.",

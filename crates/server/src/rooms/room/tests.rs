@@ -63,7 +63,7 @@ fn members_walk_independently() {
     advance(&mut room, 1);
     assert_eq!(room.view().members.len(), 1);
     let said: Vec<String> = room.view().said.iter().map(|it| it.text.clone()).collect();
-    assert_eq!(said, ["Mara comes in.", "Jon comes in.", "Mara leaves."]);
+    assert_eq!(said, ["Mara has joined.", "Jon has joined.", "Mara leaves."]);
 }
 
 #[test]

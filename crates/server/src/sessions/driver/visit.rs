@@ -692,7 +692,7 @@ impl Driver {
         if self.can_return() {
             "This server has ended. Connect again to continue where you were."
         } else {
-            "The server has ended. Come again!"
+            "The server has ended. Come back soon!"
         }
     }
 

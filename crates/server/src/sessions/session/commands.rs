@@ -125,7 +125,7 @@ impl Ui {
             return self.advise(format!("You do not ignore {player}."));
         }
         self.save_settings();
-        self.advise(format!("You read {player} again."));
+        self.advise(format!("You no longer ignore {player}."));
     }
 }
 

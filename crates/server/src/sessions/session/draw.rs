@@ -36,8 +36,8 @@ const ROOM_KEYS: [&str; 5] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emote,",
     "Tab lists the members, or watches the next; 7 lists the players here.",
     "In the lobby: / talks. /tell NAME TEXT writes to a player anywhere.",
-    "The daily level is new at midnight in UTC; results count on its day.",
-    "Who is \"it\" or seeks glows. A red edge: it is you.",
+    "The daily level changes at midnight UTC; results count on its day.",
+    "\"It\" and seekers glow. A red edge: you are one.",
 ];
 /// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";

@@ -473,7 +473,7 @@ impl Ui {
     fn daily_menu(&self) -> Menu<Choice> {
         let best = self.best_of_today().into_iter();
         let menu = Menu::new(self.host.today.title())
-            .line("The same level for everybody, until midnight in UTC.")
+            .line("The same level for everybody, until midnight UTC.")
             .lines(best.map(|(name, time)| format!("{name} {time}").trim_end().to_owned()));
         let level = self.host.today.level();
         let rooms = self.rooms_by_life().into_iter().filter(|room| room.level == level);
@@ -584,7 +584,7 @@ impl Ui {
         let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
         let menu = Menu::new("room").line("The room goes on meanwhile.");
         let code = self.stay.as_ref().and_then(|stay| stay.code);
-        let menu = menu.lines(code.map(|code| format!("Others come in with the code {code}.")));
+        let menu = menu.lines(code.map(|code| format!("Others can join with the code {code}.")));
         let menu = menu.entry("Go on", Choice::Back);
         let menu = if is_member { menu.entry("Restart the round", Choice::Again) } else { menu };
         menu.entry("Settings", Choice::Open(Page::Settings))

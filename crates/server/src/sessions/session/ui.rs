@@ -274,7 +274,7 @@ impl Ui {
     fn put_out(&mut self) {
         let minutes = self.idle_limit().as_secs().div_ceil(60);
         self.idle.restart(self.now);
-        let sentence = format!("You pressed no key for {minutes} minutes.");
+        let sentence = format!("You have not pressed a key for {minutes} minutes.");
         if self.stay.as_ref().is_some_and(|stay| stay.member.is_some()) {
             self.ask(SessionRequest::Leave);
             self.leave_room(Some(sentence));

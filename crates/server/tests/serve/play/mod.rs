@@ -28,7 +28,7 @@ pub(crate) fn enter_room(player: &Player, name: &str) {
     player.send("\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for(&format!("{name} comes in."));
+    player.wait_for(&format!("{name} has joined."));
 }
 
 #[test]

@@ -15,7 +15,7 @@ fn press(player: &Player, name: &str, keys: &[(&str, &str)]) {
 
 /// Opens a private room; returns its code.
 pub(crate) fn open_private(player: &Player, name: &str) -> String {
-    let comes_in = format!("{name} comes in.");
+    let comes_in = format!("{name} has joined.");
     let to_room = [
         ("Open a room", "3"),
         ("Hide and seek", "2"),
@@ -35,7 +35,7 @@ pub(crate) fn open_private(player: &Player, name: &str) -> String {
 pub(crate) fn enter_by_code(player: &Player, name: &str, code: &str) {
     press(player, name, &[("Enter a code", "7"), ("type the code", &code.to_lowercase())]);
     player.send("\r");
-    player.wait_for(&format!("{name} comes in."));
+    player.wait_for(&format!("{name} has joined."));
 }
 
 #[test]
