@@ -1,4 +1,4 @@
-//! `cellcaster share`: a part of a script as a moving picture for a page or a chat, or as an asciicast.
+//! `cellcaster share`: part of a script as an animation or an asciicast.
 //!
 //! The file is made in memory, so it is complete or absent, and its size is known: at most [`MAX_BYTES`].
 
@@ -118,7 +118,7 @@ fn format(options: &ShareCommand) -> Result<ShareFormat, Error> {
     Ok(format)
 }
 
-/// The bytes of the moving picture, and its number of frames.
+/// The bytes of the animation, and its number of frames.
 fn made(
     options: &ShareCommand,
     format: ShareFormat,

@@ -5,7 +5,7 @@
 //! control sequence or a string. The division uses the forms of ECMA-48 but not their meanings. It always finds the
 //! start of the next unit, and never waits for bytes that would complete an unknown one.
 //!
-//! Rejected: dividing the stream with a key parser. Existing parsers keep a buffer for ever after a complete report
+//! Rejected: dividing the stream with a key parser. Existing parsers keep a buffer forever after a complete report
 //! that they do not recognize.
 
 use std::time::Duration;

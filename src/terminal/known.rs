@@ -61,7 +61,7 @@ impl SessionOptions {
     /// a terminal that is unknown or has no window.
     ///
     /// A multiplexer is not asked for key releases. The multiplexers that support them lose some, and a key whose
-    /// release is lost is held for ever. A multiplexer is not asked for pixels either, because it has none of its own.
+    /// release is lost is held forever. A multiplexer is not asked for pixels either, because it has none of its own.
     ///
     /// Apple's Terminal is not asked for pixels, because it prints the last character of that query (DECRQM). A
     /// terminal with an unknown `TERM` is not asked for its version, because some terminals would print that query.

@@ -65,7 +65,7 @@ impl Session {
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
     }
 
-    /// Waits for an event, for at most `timeout`, or for ever without one. Returns `None` if no event has
+    /// Waits for an event, for at most `timeout`, or forever without one. Returns `None` if no event has
     /// arrived.
     ///
     /// # Errors

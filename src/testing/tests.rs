@@ -36,7 +36,7 @@ fn everything() -> CellGrid {
     buffer.into()
 }
 
-/// A grid of the first version can be read for ever, and is written as it was.
+/// A grid of the first version can be read forever, and is written as it was.
 #[test]
 fn the_format_is_unchanged() {
     assert_grid!(everything(), "everything");

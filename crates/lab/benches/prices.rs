@@ -1,11 +1,12 @@
 //! The price list: the time of a frame of each map of the gallery, as a multiple of the flat map's
 //! time.
 //!
-//! `cargo bench -p cellcaster-lab --bench prices` writes the table of `docs/prices.md`. All maps
-//! take turns and are compared within a turn, and the result of a turn is its median frame. A busy
-//! machine slows all maps equally, or interrupts only a few of the frames. The table shows the
-//! median turn, with the quartiles in brackets.
+//! `cargo bench -p cellcaster-lab --bench prices` prints the table, and with `-- --update PAGE`
+//! writes it into a page. All maps take turns and are compared within a turn, and the result of a
+//! turn is its median frame. A busy machine slows all maps equally, or interrupts only a few of the
+//! frames. The table shows the median turn, with the quartiles in brackets.
 
+use std::fs;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -32,8 +33,9 @@ struct Row {
 }
 
 fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
     // A test of the bench needs only one turn.
-    let turns = if std::env::args().any(|argument| argument == "--test") { 1 } else { TURNS };
+    let turns = if arguments.iter().any(|argument| argument == "--test") { 1 } else { TURNS };
     let scenes = scenes();
     let names = ["flat, before"].into_iter().chain(scenes.iter().map(|scene| scene.name.as_str()));
     let mut rows: Vec<Row> =
@@ -51,7 +53,21 @@ fn main() {
         }
         flat_nanoseconds[index] = quartiles(flat_times)[1];
     }
-    print(rows, flat_nanoseconds);
+    let table = table(rows, flat_nanoseconds);
+    match arguments.iter().position(|argument| argument == "--update") {
+        Some(place) => update(arguments.get(place + 1).expect("--update needs a page"), &table),
+        None => print!("{table}"),
+    }
+}
+
+/// Replaces the table in the page at `path`, which is relative to the folder of the package.
+fn update(path: &str, table: &str) {
+    const BEGIN: &str = "<!-- prices -->";
+    let page = fs::read_to_string(path).expect("the page can be read");
+    let parts = page.split_once(BEGIN).zip(page.split_once("<!-- end -->"));
+    let ((before, _), (_, after)) = parts.expect("the page has a place for the table");
+    let page = format!("{before}{BEGIN}\n\n{table}\n<!-- end -->{after}");
+    fs::write(path, page).expect("the page can be written");
 }
 
 /// The times, in nanoseconds, of a frame of the flat scene by the baseline, and of a frame of each
@@ -90,16 +106,16 @@ fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     [0.25, 0.5, 0.75].map(|share| values[(share * last as f64).round() as usize])
 }
 
-fn print(rows: Vec<Row>, flat_nanoseconds: [f64; 2]) {
+fn table(rows: Vec<Row>, flat_nanoseconds: [f64; 2]) -> String {
     let [small, large] = sizes().map(name_of);
-    println!("| map | {small} | {large} |\n|---|---|---|");
+    let mut table = format!("| map | {small} | {large} |\n|---|---|---|\n");
     for Row { name, ratios } in rows {
         let [small, large] = ratios.map(|ratios| {
             let [lower, median, upper] = quartiles(ratios);
             format!("{median:.2} ({lower:.2}–{upper:.2})")
         });
-        println!("| {name} | {small} | {large} |");
+        table += &format!("| {name} | {small} | {large} |\n");
     }
     let [small, large] = flat_nanoseconds.map(|nanoseconds| nanoseconds / 1000.0);
-    println!("| *flat, microseconds a frame* | {small:.1} | {large:.1} |");
+    table + &format!("| *flat, microseconds a frame* | {small:.1} | {large:.1} |\n")
 }

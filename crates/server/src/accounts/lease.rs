@@ -100,7 +100,7 @@ impl HostStore {
         self.change_lease(sql, lease)
     }
 
-    /// Ends the lease of a room that is closed for ever, and forgets its epochs. Returns true if there was one to
+    /// Ends the lease of a room that is closed forever, and forgets its epochs. Returns true if there was one to
     /// end.
     ///
     /// # Errors

@@ -9,7 +9,7 @@
 //! - **A refusal says how fresh it is**, because the visits in the way may belong to a host that was just killed.
 //! - **The clock is the store's**, as with [leases](super::Lease).
 //!
-//! Rejected: a counter for each visitor. The counts of a killed host would stay for ever. Also rejected: a time for
+//! Rejected: a counter for each visitor. The counts of a killed host would stay forever. Also rejected: a time for
 //! each visit that the host renews. A host with a thousand visitors would write a thousand rows each time.
 
 use std::time::Duration;

@@ -11,7 +11,7 @@
 //!   of the rules decides by itself.
 //! - **File and memory are bounded.** The file is replaced atomically. If a part of it cannot be read, the old
 //!   file is put aside.
-//! - **No result waits for ever:** if the store answers but refuses a result, the result is given up after
+//! - **No result waits forever:** if the store answers but refuses a result, the result is given up after
 //!   [`MAX_AGE`].
 //!
 //! Rejected: a queue only in memory. A database is often restarted together with its hosts.

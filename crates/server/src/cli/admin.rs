@@ -246,7 +246,7 @@ fn forbid(
     }
     let names: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
     let time =
-        time.map_or("for ever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
+        time.map_or("forever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
     Ok(format!("{} {time}", names.join(" and ")))
 }
 

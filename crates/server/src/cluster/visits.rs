@@ -10,7 +10,7 @@
 //!   in the database later.
 //!
 //! Rejected: a new visit in place of an earlier one. Two clients that reconnect automatically would end each other's
-//! visits for ever.
+//! visits forever.
 
 #[cfg(test)]
 mod tests;

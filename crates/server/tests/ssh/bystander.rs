@@ -99,12 +99,12 @@ const TO_THE_LOBBY: &[(&str, &str)] = &[("Enter saves it", "\r"), ("Open a room"
 const TO_SETTINGS: &[(&str, &str)] =
     &[("Enter saves it", "\r"), ("Open a room", "7"), ("Mouse turns", "")];
 const TO_A_ROOM: &[(&str, &str)] =
-    &[("Enter saves it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("comes in.", "")];
+    &[("Enter saves it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("has joined.", "")];
 const TO_THE_CHAT: &[(&str, &str)] = &[
     ("Enter saves it", "\r"),
     ("Open a room", "\r"),
     ("Go in", "\r"),
-    ("comes in.", "\r"),
+    ("has joined.", "\r"),
     ("say", ""),
 ];
 const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
@@ -116,7 +116,7 @@ const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
     ("Mouse turns", "\x7f"),
     ("Open a room", "1"),
     ("Go in", "\r"),
-    ("comes in.", ""),
+    ("has joined.", ""),
 ];
 
 /// Accepts any server key.

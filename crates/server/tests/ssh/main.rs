@@ -103,7 +103,7 @@ impl Guest<Host> {
             player.wait_for(page);
             player.send("\r");
         }
-        player.wait_for("comes in.");
+        player.wait_for("has joined.");
         Self { player, proxy, server, _alone: alone }
     }
 }

@@ -118,7 +118,7 @@ fn bans_work_while_no_server_runs() {
     assert_eq!(written(&folder, &["bans", "--format", "json"]), "[]\n");
     // A ban on a name includes the key of its account.
     let said = written(&folder, &["ban", "ADA", "--reason", "'; DROP TABLE bans; --"]);
-    assert_eq!(said, format!("banned ADA and {key} for ever; no server runs\n"));
+    assert_eq!(said, format!("banned ADA and {key} forever; no server runs\n"));
     written(&folder, &["ban", "--key", &AccountKey::new([2; 32]).to_string(), "--for", "30m"]);
     let bans = written(&folder, &["bans"]);
     assert_eq!(bans.lines().count(), 4, "{bans}");

@@ -67,7 +67,7 @@ fn go_in(player: &Player) {
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
 }
 
 /// Walks to the exit until `sentence` appears, which states the outcome of the result.

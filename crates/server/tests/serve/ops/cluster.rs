@@ -144,7 +144,7 @@ fn players_on_three_hosts_see_each_other_and_rooms_stay_equal() {
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
     see_each_other_walk(&mara, &jon);
     let kim = hosts.player(2, "Kim");
-    mara.wait_for("Kim comes in.");
+    mara.wait_for("Kim has joined.");
     says(&kim, &jon, "here I am");
     let seconds = env::var("CLUSTER_SECONDS").ok().and_then(|it| it.parse().ok()).unwrap_or(5);
     let players = [&mara, &jon, &kim];
@@ -163,7 +163,7 @@ fn a_room_survives_its_killed_host() {
     let hosts = Hosts::start(3);
     let _mara = hosts.player(0, "Mara");
     let (jon, kim) = (hosts.player(1, "Jon"), hosts.player(2, "Kim"));
-    jon.wait_for("Kim comes in.");
+    jon.wait_for("Kim has joined.");
     assert!(hosts.running[0].0.log().contains("this host has taken over a room"));
     hosts.running[0].0.signal(Signal::KILL);
     let time = goes_on(&jon, "anybody there");
@@ -179,7 +179,7 @@ fn a_room_survives_its_killed_host() {
 fn rooms_wait_without_nats_and_go_on_without_the_database() {
     let mut hosts = Hosts::start(2);
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     hosts.nats.kill();
     for player in [&mara, &jon] {
         player.wait_for("the game waits");
@@ -204,7 +204,7 @@ fn rooms_wait_without_nats_and_go_on_without_the_database() {
 fn a_room_with_one_host_goes_on_without_nats() {
     let mut hosts = Hosts::start(2);
     let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(0, "Jon"));
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     hosts.nats.kill();
     for player in [&mara, &jon] {
         player.wait_for("the game goes on here");

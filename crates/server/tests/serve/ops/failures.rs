@@ -187,7 +187,7 @@ fn win(player: &Player) -> Told {
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
     let sentences =
         ["You are number 1.", "will be recorded", "waits until", "can't save your", "your best."];
     wait_until("the result", || {

@@ -115,7 +115,7 @@ fn a_run_in_a_host_map_ranks_and_its_recording_replays() {
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
     wait_until("the room", || running.admin_says(&["rooms"]).contains("moss"));
     wait_until("the result", || {
         player.send("w");
@@ -176,7 +176,7 @@ fn standing_rooms_follow_the_configuration() {
     player.wait_for("Mara's");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
 
     let config = running.folder.join("serve.toml");
     let tag = "[[room]]\nmode = \"tag\"\n";

@@ -25,7 +25,7 @@ fn win(player: &Player, name: &str, sentence: &str) {
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
     wait_until(sentence, || {
         player.send("w");
         player.text().contains(sentence)
@@ -104,7 +104,7 @@ fn a_result_waits_until_a_full_disk_has_room() {
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
-    player.wait_for("comes in.");
+    player.wait_for("has joined.");
     disk.fill();
     wait_until("the result", || {
         player.send("w");

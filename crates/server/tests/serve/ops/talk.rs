@@ -111,7 +111,7 @@ fn guests_are_muted_by_address() {
     let running = Running::start("", "text");
     let jon = running.visitor();
     enter_lobby(&jon, "Jon");
-    assert_eq!(running.admin_says(&["mute", "JON"]), "muted 127.0.0.1/32 for ever\n");
+    assert_eq!(running.admin_says(&["mute", "JON"]), "muted 127.0.0.1/32 forever\n");
     let mutes = running.admin_says(&["mutes"]);
     assert!(mutes.starts_with("muted ") && mutes.contains("127.0.0.1/32"), "{mutes}");
     // Each login reads the mutes.

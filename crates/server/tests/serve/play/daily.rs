@@ -33,11 +33,11 @@ fn two_players_race_in_the_daily_level_of_today() {
         jon.wait_for(shown);
         jon.send(key);
     }
-    jon.wait_for("Jon comes in.");
+    jon.wait_for("Jon has joined.");
     jon.wait_for(&today);
     for (shown, key) in [(today.as_str(), "d"), ("until midnight", "1"), ("Here: Jon.", "\r")] {
         kim.wait_for(shown);
         kim.send(key);
     }
-    jon.wait_for("Kim comes in.");
+    jon.wait_for("Kim has joined.");
 }

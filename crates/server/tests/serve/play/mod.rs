@@ -37,7 +37,7 @@ fn two_players_meet_talk_and_part() {
     let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     jon.send("\r");
     jon.send("behind you\x1b[31m");
     jon.send("\r");
@@ -64,9 +64,9 @@ fn players_see_each_other_walk() {
 
 /// Two players have come in and look in the same direction; each must see the other walk.
 pub(crate) fn see_each_other_walk(mara: &Player, jon: &Player) {
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     // Chat lines are shown for some seconds.
-    let says = |emulator: &Emulator| emulator.text().contains("comes in.");
+    let says = |emulator: &Emulator| emulator.text().contains("has joined.");
     mara.wait_until("forgot what was said", |emulator| !says(emulator));
     // Jon walks until Mara sees him: his name is above his head.
     jon.send(HOLD_FORWARD);
@@ -94,7 +94,7 @@ fn a_cut_link_frees_its_player_within_fifteen_seconds() {
     let jon = server::player_at(relay.port, &[]);
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     let cut = Instant::now();
     relay.cut();
     mara.wait_for("Jon leaves.");
@@ -107,7 +107,7 @@ fn an_unresponsive_client_is_gone_within_fifteen_seconds() {
     let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     let cut = Instant::now();
     jon.signal(Signal::STOP);
     mara.wait_for("Jon leaves.");

@@ -44,5 +44,5 @@ fn a_friend_enters_a_private_room_by_its_code() {
     let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
     let code = open_private(&mara, "Mara");
     enter_by_code(&jon, "Jon", &code);
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
 }

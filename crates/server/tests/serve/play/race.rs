@@ -28,6 +28,6 @@ fn the_best_run_of_the_board_walks_along_in_a_race() {
         jon.wait_for(shown);
         jon.send(key);
     }
-    jon.wait_for("Jon comes in.");
+    jon.wait_for("Jon has joined.");
     jon.wait_for("Mara's best");
 }

@@ -101,7 +101,11 @@ fn an_idle_visitor_is_warned_and_disconnected() {
     assert!(!rig.text(one).contains("Still there?"));
     rig.pump(300_000);
     assert_eq!(rig.page(one), Page::Lobby);
-    assert!(rig.text(one).contains("You pressed no key for 5 minutes."), "{}", rig.text(one));
+    assert!(
+        rig.text(one).contains("You have not pressed a key for 5 minutes."),
+        "{}",
+        rig.text(one)
+    );
     assert_eq!(rig.view().members.len(), 0);
     rig.pump(14 * 60_000);
     assert!(rig.text(one).contains("this session ends"), "{}", rig.text(one));
@@ -121,7 +125,11 @@ fn the_operator_sets_how_long_a_visitor_may_be_idle() {
     assert!(!rig.text(one).contains("Still there?"), "{}", rig.text(one));
     assert!(rig.is_over(early), "a session keeps the limits that it begins with");
     rig.pump(61_000);
-    assert!(rig.text(one).contains("You pressed no key for 30 minutes."), "{}", rig.text(one));
+    assert!(
+        rig.text(one).contains("You have not pressed a key for 30 minutes."),
+        "{}",
+        rig.text(one)
+    );
     rig.pump(2 * 60_000);
     assert!(rig.is_over(one));
 }

@@ -17,7 +17,7 @@ fn a_cut_off_host_is_replaced_and_catches_up_later() {
     let mara = hosts.running[0].0.player(Some(&user_key(&folder())));
     enter_room(&mara, "Mara");
     let jon = hosts.player(1, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     says(&mara, &jon, "before the cut");
 
     network.cut();
@@ -41,7 +41,7 @@ fn a_short_network_outage_only_pauses_the_room() {
     let hosts = Hosts::start_behind(&network);
     let mara = hosts.player(0, "Mara");
     let jon = hosts.player(1, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     network.cut();
     thread::sleep(Duration::from_secs(1));
     network.mend();

@@ -36,7 +36,7 @@ fn hosts_list_rooms_of_their_maps_and_report_differences() {
     mara.send("\x1b[F\r");
     mara.wait_for("Go in");
     mara.send("\r");
-    mara.wait_for("Mara comes in.");
+    mara.wait_for("Mara has joined.");
     let [jon, kim] = [(one, "Jon"), (other, "Kim")].map(|(host, name)| {
         let player = host.visitor();
         player.wait_for("Enter saves it");

@@ -38,7 +38,7 @@ fn a_host_records_the_rooms_of_its_players() {
     let mara = hosts.running[0].0.player(Some(&user_key(&folder())));
     enter_room(&mara, "Mara");
     let jon = hosts.player(1, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     says(&jon, &mara, "behind you");
     drop(jon);
     mara.wait_for("Jon leaves.");

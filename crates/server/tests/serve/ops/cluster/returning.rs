@@ -34,7 +34,7 @@ fn walker(hosts: &Hosts, host: usize) -> (Player, PathBuf) {
 fn picture(player: &Player) -> Vec<Look> {
     let is_quiet = |emulator: &Emulator| {
         let text = emulator.text();
-        ["comes in.", "is away.", "is back.", "leaves.", "Welcome"]
+        ["has joined.", "is away.", "is back.", "leaves.", "Welcome"]
             .iter()
             .all(|it| !text.contains(it))
     };
@@ -58,7 +58,7 @@ fn a_player_returns_to_their_place_after_a_drain() {
     let mut hosts = Hosts::start(2);
     let (mara, key) = walker(&hosts, 0);
     let jon = hosts.player(1, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     let before = picture(&mara);
 
     hosts.running[0].0.signal(Signal::TERM);
@@ -88,7 +88,7 @@ fn players_of_a_stopped_host_return_and_guests_are_gone() {
     let (mut mara, key) = walker(&hosts, 0);
     let _guest = hosts.player(0, "Kim");
     let jon = hosts.player(1, "Jon");
-    mara.wait_for("Jon comes in.");
+    mara.wait_for("Jon has joined.");
     hosts.running[0].0.signal(Signal::TERM);
     assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
     mara.wait_for_end();
