@@ -280,17 +280,6 @@ impl Player {
         let times: Vec<_> = [begin].into_iter().chain(within).chain([end]).collect();
         times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
     }
-
-    /// The largest number of bytes in flight when a frame is sent, from `begin` on. Counts bytes
-    /// before compression.
-    pub(crate) fn most_in_flight(&self, begin: Duration) -> usize {
-        let in_flight = |time| {
-            let is_there =
-                |shown: &&Shown| shown.sent_at <= time && shown.at.is_none_or(|at| at > time);
-            self.shown.iter().filter(is_there).map(|shown| shown.bytes).sum()
-        };
-        self.shown_since(begin).iter().map(|shown| in_flight(shown.sent_at)).max().unwrap_or(0)
-    }
 }
 
 /// Frames of a player in motion.
