@@ -6,6 +6,7 @@
 //! turn is its median frame. A busy machine slows all maps equally, or interrupts only a few of the
 //! frames. The table shows the median turn, with the quartiles in brackets.
 
+use std::fmt::Write;
 use std::fs;
 use std::hint::black_box;
 use std::time::Instant;
@@ -114,7 +115,7 @@ fn table(rows: Vec<Row>, flat_nanoseconds: [f64; 2]) -> String {
             let [lower, median, upper] = quartiles(ratios);
             format!("{median:.2} ({lower:.2}–{upper:.2})")
         });
-        table += &format!("| {name} | {small} | {large} |\n");
+        writeln!(table, "| {name} | {small} | {large} |").expect("a text can be written");
     }
     let [small, large] = flat_nanoseconds.map(|nanoseconds| nanoseconds / 1000.0);
     table + &format!("| *flat, microseconds a frame* | {small:.1} | {large:.1} |\n")

@@ -186,7 +186,7 @@ impl Observation {
             (_, Alarm::Raised) => add("Alarm: a guard follows you.".to_owned(), true),
             (Alarm::Calm, Alarm::Wary) => add("A guard has noticed something.".to_owned(), true),
             (_, Alarm::Wary) => {
-                add("The guards have lost you and are searching.".to_owned(), false)
+                add("The guards have lost you and are searching.".to_owned(), false);
             }
             (_, Alarm::Calm) => add("The guards are calm.".to_owned(), false),
         }

@@ -145,7 +145,7 @@ impl Guard {
                 };
             }
             _ if self.awareness >= WONDERING => {
-                self.begin_to_wonder(context, quarry.position, false)
+                self.begin_to_wonder(context, quarry.position, false);
             }
             _ => {}
         }

@@ -104,7 +104,9 @@ fn figures(player: &Player) -> [String; 5] {
 
 /// A row of cells: each figure without compression, then with it.
 fn cells<const N: usize>([plain, compressed]: [[String; N]; 2]) -> String {
-    plain.iter().zip(&compressed).map(|(one, other)| format!(" {one} | {other} |")).collect()
+    let pairs = plain.iter().zip(&compressed);
+    let cells: Vec<&str> = pairs.flat_map(|(one, other)| [one.as_str(), other.as_str()]).collect();
+    format!(" {} |", cells.join(" | "))
 }
 
 pub(crate) fn table() -> String {

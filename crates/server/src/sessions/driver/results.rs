@@ -227,7 +227,7 @@ impl ResultRecorder {
                 logging::result_lost(&result.key, reason);
             }
             Some(LateOutcome::GivenUp(result, failure)) => {
-                logging::result_lost(&result.key, failure)
+                logging::result_lost(&result.key, failure);
             }
         }
         Next::Recorded
