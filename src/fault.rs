@@ -110,6 +110,12 @@ impl Faults {
         self.list.len()
     }
 
+    /// The faults in the order of their places. Faults without a place come first.
+    #[cfg(feature = "cli")]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Fault> {
+        self.list.iter()
+    }
+
     /// The first fault in one line, with its place and the number of further faults.
     pub fn summary(&self) -> String {
         let Some(fault) = self.list.first() else { return String::new() };
@@ -212,6 +218,22 @@ impl Fault {
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
+    }
+
+    /// The range of bytes in the text; `None` if the whole file is at fault.
+    #[cfg(feature = "cli")]
+    pub(crate) fn place(&self) -> Option<&Range<usize>> {
+        self.place.as_ref()
+    }
+
+    /// The description and the remedy, on one line.
+    #[cfg(feature = "cli")]
+    pub(crate) fn line(&self) -> String {
+        let described =
+            [self.message.as_str(), &self.label].into_iter().filter(|it| !it.is_empty());
+        let described = described.collect::<Vec<_>>().join(": ");
+        let remedy = if self.help.is_empty() { String::new() } else { format!("; {}", self.help) };
+        printable(&format!("{described}{remedy}"))
     }
 
     /// The first byte of the place.

@@ -30,6 +30,8 @@ pub mod builtin;
 mod checks;
 mod definitions;
 mod drawing;
+#[cfg(feature = "cli")]
+pub mod edit;
 mod files;
 mod keys;
 mod legend;

@@ -142,6 +142,15 @@ impl Sightings {
     }
 }
 
+/// The places of the rows of the grid in `entry` of the map `text`, from the north. `None` if the map writes the grid with
+/// escapes, or not as a string.
+#[cfg(feature = "cli")]
+pub(crate) fn places_of_rows(entry: &Entry<'_, '_>, text: &str) -> Option<Vec<Range<usize>>> {
+    let drawn = DrawnText::new(entry.string(EXAMPLE)?, entry.value_place.clone(), text);
+    let start = drawn.start?;
+    Some(drawn.rows().map(|(at, row)| start + at..start + at + row.len()).collect())
+}
+
 /// The text of the grid, with its place in the map.
 struct DrawnText<'a> {
     value: &'a str,
