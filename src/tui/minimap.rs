@@ -45,6 +45,8 @@ pub struct Minimap<'a> {
     glyphs: GlyphSet,
     depth: ColorDepth,
     zoom: i32,
+    /// The columns and rows for each cell of the map; `None` for the size that fits.
+    cell_size: Option<[u32; 2]>,
     offset: DVec2,
 }
 
@@ -64,6 +66,7 @@ impl<'a> Minimap<'a> {
             glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
             zoom: 0,
+            cell_size: None,
             offset: DVec2::ZERO,
         }
     }
@@ -118,6 +121,12 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn zoom(self, levels: i32) -> Self {
         Self { zoom: levels, ..self }
+    }
+
+    /// Draws each cell of the map on this many columns and rows, whatever the zoom.
+    #[must_use]
+    pub fn cell_size(self, columns: u32, rows: u32) -> Self {
+        Self { cell_size: Some([columns, rows]), ..self }
     }
 
     /// Moves the shown part by this many cells to the east and the south of the player, up to the edge of the map.
@@ -256,7 +265,7 @@ impl Minimap<'_> {
     #[cfg(feature = "terminal")]
     pub(crate) fn size_within(&self, room: Size) -> Size {
         let pixels = pixels_within(room, self.glyphs);
-        let needed = self.world.grid().extent() * scale(self.world, pixels, self.glyphs, self.zoom);
+        let needed = self.world.grid().extent() * self.scale(pixels);
         let needed = needed.ceil().min(pixels);
         let [columns, rows] = self.glyphs.pixels_per_cell().map(f64::from);
         Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
@@ -270,8 +279,18 @@ impl Minimap<'_> {
     }
 
     fn window(&self, area: Rect) -> MapViewport {
+        let size = pixels_within(area.as_size(), self.glyphs);
         let center = self.camera.position() + self.offset;
-        MapViewport::new(area, self.glyphs, self.world, center, self.zoom)
+        MapViewport::new(size, self.glyphs, self.world, center, self.scale(size))
+    }
+
+    /// The number of pixels per cell of the map in an area of this many pixels.
+    fn scale(&self, pixels: DVec2) -> DVec2 {
+        if let Some([columns, rows]) = self.cell_size {
+            let [across, down] = self.glyphs.pixels_per_cell();
+            return DVec2::new(f64::from(columns * across), f64::from(rows * down));
+        }
+        scale(self.world, pixels, self.glyphs, self.zoom)
     }
 
     fn draw_mosaics(&self, picture: &MapPicture, area: Rect, canvas: &mut impl Canvas) {
@@ -364,12 +383,10 @@ struct MapViewport {
 }
 
 impl MapViewport {
-    /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
-    fn new(area: Rect, glyphs: GlyphSet, world: &World, center: DVec2, zoom: i32) -> Self {
+    /// The whole map if it fits into `size` pixels, or else the part around `center`.
+    fn new(size: DVec2, glyphs: GlyphSet, world: &World, center: DVec2, scale: DVec2) -> Self {
         let pixels_per_cell = glyphs.pixels_per_cell();
-        let size = pixels_within(area.as_size(), glyphs);
         let map = world.grid().extent();
-        let scale = scale(world, size, glyphs, zoom);
         let spare = size - map * scale;
         let corner_along = |spare: f64, center: f64, size: f64| {
             if spare >= 0.0 {
