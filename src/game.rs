@@ -43,14 +43,14 @@ mod tools;
 mod turning;
 
 use crate::generate::{self, Site, Window};
-use crate::world::World;
+use crate::world::{Start, World};
 use checkpoint::Checkpoint;
 use doors::Doors;
 use guards::Guards;
 use hazards::Spikes;
 use mechanisms::Mechanisms;
 use multiplayer::Members;
-use player::{Player, RUN, STILL, Supplies, WALK};
+use player::{Motion, Player, RUN, STILL, Supplies, WALK};
 use scratch::Scratch;
 use show::Sprites;
 use tools::{Missiles, Smoke};
@@ -135,6 +135,14 @@ impl Game {
     /// A game at its start with these rules.
     pub fn with_rules(world: World, rules: Rules) -> Self {
         Self::begun(world, rules, None)
+    }
+
+    /// A game that starts at another place of `world`. `None` if the player has no room to stand there.
+    pub fn starting_at(world: World, start: Start) -> Option<Self> {
+        world.tile_in(start.cell)?;
+        let world = world.starting_at(start);
+        Motion::new(&world).placed_in(&world)?;
+        Some(Self::new(world))
     }
 
     /// A game at its start, with the window of a generated level.

@@ -385,6 +385,11 @@ impl World {
         self.ajar = PartlyOpenDoors::default();
     }
 
+    /// The world with another start, which must be on open floor with room to stand.
+    pub(crate) fn starting_at(self, start: Start) -> Self {
+        Self { start, ..self }
+    }
+
     /// The changes that a game has made.
     pub(crate) fn changes(&self) -> Changes<'_> {
         let Self {
