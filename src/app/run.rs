@@ -30,6 +30,7 @@ use ratatui::layout::{Rect, Size};
 
 use crate::app::App;
 use crate::app::controls::{self, Clock};
+use crate::app::detection::Detection;
 use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
 use crate::app::picture::TerminalLook;
@@ -43,7 +44,9 @@ use crate::app::title::Offers;
 use crate::game::{Game, Intents, PlayerId, STEPS_PER_SECOND, Script};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
-use crate::terminal::{Detected, Error, Event, Session, SessionOptions, locale_without_utf8};
+use crate::terminal::{
+    Detected, Error, Event, Recorder, Session, SessionOptions, locale_without_utf8,
+};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
@@ -81,6 +84,20 @@ pub fn play(
     recording: Recording,
 ) -> Result<ClosingLines, Error> {
     let settings = settings.preferring(&store.preferences());
+    let (mut session, detection) = enter(&settings, recording.terminal)?;
+    let mut app = App { detection, ..App::opened(opening, settings, store) };
+    app.script = recording.script;
+    app.run(&mut session)?;
+    _ = app.leave_game();
+    let trouble = app.store.trouble().map(str::to_owned);
+    Ok(ClosingLines { done: app.left, trouble })
+}
+
+/// Takes the terminal, and returns what is known about it already.
+pub(crate) fn enter(
+    settings: &Settings,
+    recorder: Option<Box<dyn Recorder>>,
+) -> Result<(Session, Detection), Error> {
     let mut options = SessionOptions::from_environment(|name| env::var(name).ok());
     if let Some(depth) = settings.depth {
         options.color_depth = Detected::Certain(depth);
@@ -88,59 +105,64 @@ pub fn play(
     options.fidelity = settings.fidelity;
     let ascii_locale = ascii_locale(settings.glyphs);
     options.is_ascii = ascii_locale.is_some();
-    let mut session = Session::enter_recorded(options, recording.terminal)?;
-    let mut presenter = Presenter::default();
-    let mut app = App::opened(opening, settings, store);
-    app.script = recording.script;
-    app.detection.ascii_locale = ascii_locale;
-    app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
-    update_terminal(&mut app, &session);
-    let time = Time::begin();
-    app.machine_time = time.of_machine();
-    while !app.has_left {
-        app.advance(time.now());
-        app.reload(time.now());
-        session.set_mouse(app.pointer.is_on() || app.playback.is_some())?;
-        if app.watch.take_ring() && app.store.preferences().bell {
-            session.ring_bell();
+    let reports_releases = (!options.ask_for_key_releases).then_some(false);
+    let session = Session::enter_recorded(options, recorder)?;
+    Ok((session, Detection { reports_releases, ascii_locale, ..Detection::default() }))
+}
+
+impl App {
+    /// Runs until the player leaves, or the program must end. Returns whether it must end.
+    pub(crate) fn run(&mut self, session: &mut Session) -> Result<bool, Error> {
+        let mut presenter = Presenter::default();
+        let time = Time::begin();
+        update_terminal(self, session);
+        self.machine_time = time.of_machine();
+        while !self.has_left {
+            self.advance(time.now());
+            self.reload(time.now());
+            session.set_mouse(self.pointer.is_on() || self.playback.is_some())?;
+            if self.watch.take_ring() && self.store.preferences().bell {
+                session.ring_bell();
+            }
+            if self.take_tmux_order() {
+                session.tell_tmux();
+            }
+            presenter.update(self, session, time.now())?;
+            let wakes_at = presenter.wakes_at(self, session, time.now());
+            let timeout = wakes_at.and_then(|wakes| time.until(wakes));
+            match session.next_event(timeout)? {
+                None | Some(Event::Ready) => {}
+                Some(Event::FocusGained) => {
+                    #[cfg(debug_assertions)]
+                    time.focus_reported();
+                }
+                Some(Event::Key(event)) => {
+                    #[cfg(debug_assertions)]
+                    panic_on_demand(event.key);
+                    self.key(event, time.now());
+                }
+                Some(Event::Mouse(event)) => self.mouse(event, time.now()),
+                Some(Event::FocusLost) => self.focus_lost(time.now()),
+                Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => {
+                    update_terminal(self, session);
+                }
+                Some(Event::KeyReleases(reported)) => self.releases_reported(reported),
+                Some(Event::TmuxTold(has_worked)) => self.tmux_told(has_worked),
+                Some(Event::Suspend) => {
+                    session.suspend()?;
+                    self.resumed(time.now());
+                }
+                Some(Event::Quit(_)) => return Ok(true),
+            }
         }
-        if app.take_tmux_order() {
-            session.tell_tmux();
-        }
-        presenter.update(&mut app, &mut session, time.now())?;
-        let wakes_at = presenter.wakes_at(&app, &session, time.now());
-        let timeout = wakes_at.and_then(|wakes| time.until(wakes));
-        match session.next_event(timeout)? {
-            None | Some(Event::Ready) => {}
-            Some(Event::FocusGained) => {
-                #[cfg(debug_assertions)]
-                time.focus_reported();
-            }
-            Some(Event::Key(event)) => {
-                #[cfg(debug_assertions)]
-                panic_on_demand(event.key);
-                app.key(event, time.now());
-            }
-            Some(Event::Mouse(event)) => app.mouse(event, time.now()),
-            Some(Event::FocusLost) => app.focus_lost(time.now()),
-            Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => {
-                update_terminal(&mut app, &session);
-            }
-            Some(Event::KeyReleases(reported)) => {
-                app.controls.held.set_reports_releases(reported);
-                app.detection.reports_releases = Some(reported);
-            }
-            Some(Event::TmuxTold(has_worked)) => app.tmux_told(has_worked),
-            Some(Event::Suspend) => {
-                session.suspend()?;
-                app.resumed(time.now());
-            }
-            Some(Event::Quit(_)) => break,
-        }
+        Ok(false)
     }
-    _ = app.leave_game();
-    let trouble = app.store.trouble().map(str::to_owned);
-    Ok(ClosingLines { done: app.left, trouble })
+
+    /// Records whether the terminal reports key releases.
+    pub(crate) fn releases_reported(&mut self, reported: bool) {
+        self.controls.held.set_reports_releases(reported);
+        self.detection.reports_releases = Some(reported);
+    }
 }
 
 /// The lines to print after the terminal has been restored.
