@@ -6,6 +6,8 @@
 mod controls;
 mod detection;
 mod draw;
+#[cfg(feature = "cli")]
+pub mod edit;
 mod history;
 mod levels;
 mod look_back;

@@ -9,6 +9,7 @@ mod cast;
 mod check;
 mod compare;
 pub mod config;
+mod edit;
 pub mod error;
 mod export;
 mod external;
@@ -67,6 +68,7 @@ enum Command {
     Compare(compare::Compare),
     Import(import::Import),
     Export(export::Export),
+    Edit(edit::Edit),
     Levels(levels::LevelsCommand),
     Config(config::Config),
     Replay(replay::ReplayCommand),
@@ -128,6 +130,7 @@ impl Arguments {
             None => &self.play.screen.look.caster,
             Some(Command::Play(options)) => &options.screen.look.caster,
             Some(Command::Replay(options)) => &options.screen.look.caster,
+            Some(Command::Edit(options)) => &options.screen.look.caster,
             Some(Command::Snapshot(options)) => &options.look.caster,
             Some(Command::Cast(options)) => &options.caster,
             Some(_) => options::EXACT,
@@ -143,6 +146,7 @@ impl Arguments {
             Command::Compare(options) => compare::run(&options),
             Command::Import(options) => import::run(&options),
             Command::Export(options) => export::run(&options),
+            Command::Edit(options) => edit::run(options, caster),
             Command::Levels(options) => levels::run(&options),
             Command::Config(options) => config::run(options),
             Command::Replay(options) => replay::run(options, caster),

@@ -45,6 +45,8 @@ pub struct Levels {
     /// The kind of descent, which ends with the player's death; `None` for levels, which can be
     /// retried until they are won.
     pub(crate) descent: Option<Descent>,
+    /// `true` for a test of a map in the editor. Leaving it leads back there, without a question.
+    pub(crate) is_trial: bool,
 }
 
 /// A level before it begins. It can begin any number of times.
@@ -95,6 +97,12 @@ impl Levels {
         Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
+    /// A game that tests a map in the editor.
+    #[cfg(feature = "cli")]
+    pub(crate) fn trial(game: Game) -> Self {
+        Self { is_trial: true, ..Self::of_games(game, iter::empty()) }
+    }
+
     /// One level that may change during the game. The game calls `changes` twenty times a second. If
     /// the level has changed since the last call, `changes` returns the new level or its faults.
     pub fn changing(
@@ -135,7 +143,7 @@ impl Levels {
 
     fn staged(stage: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
         let number = LevelNumber { number: 1, of: None };
-        Self { stage, rest: Box::new(rest), number, reload: None, descent: None }
+        Self { stage, rest: Box::new(rest), number, reload: None, descent: None, is_trial: false }
     }
 }
 

@@ -127,7 +127,7 @@ impl App {
             .lines(self.level_lines())
             .line(format!("in {}{fastest}", tenths(self.game.elapsed())))
             .lines(result.into_iter().flatten())
-            .entry("Go on", MenuChoice::NextLevel)
+            .entries((!self.levels.is_trial).then_some(("Go on", "", MenuChoice::NextLevel)))
             .entries((!self.is_descent()).then_some(("Play it again", "", MenuChoice::Restart)));
         self.with_leaving(menu)
     }

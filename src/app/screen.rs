@@ -316,7 +316,8 @@ impl App {
     /// Adds the entries that leave the game.
     pub(crate) fn with_leaving(&self, menu: Menu<MenuChoice>) -> Menu<MenuChoice> {
         let title = self.offers.as_ref().map(|_| ("Leave to the title", "", MenuChoice::ToTitle));
-        menu.entries(title).entry("Leave", MenuChoice::Leave)
+        let leave = if self.levels.is_trial { "Back to the editor" } else { "Leave" };
+        menu.entries(title).entry(leave, MenuChoice::Leave)
     }
 }
 
@@ -441,6 +442,9 @@ impl App {
         if let AppScreen::Binding(_) = self.screen() {
             return self.press_to_bind(key, press);
         }
+        if self.levels.is_trial && key == Key::Escape && self.plays() && press != Press::Repeat {
+            return self.leave();
+        }
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),
             Some(Action::NarrowView) => self.widen_view(false),
@@ -537,7 +541,7 @@ impl App {
     /// Asks whether to leave. If there is no game to lose, leaves without asking.
     fn ask_to_leave(&mut self) {
         let has_game = self.demo.is_none() && self.playback.is_none();
-        if !has_game || self.screen().is_before_start() {
+        if !has_game || self.levels.is_trial || self.screen().is_before_start() {
             self.leave();
         } else {
             self.open(AppScreen::Leaving);

@@ -24,7 +24,7 @@ use crate::world::FieldOfView;
 pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// The names of the commands.
-pub(crate) const COMMANDS: [&str; 14] = [
+pub(crate) const COMMANDS: [&str; 15] = [
     "play",
     "snapshot",
     "cast",
@@ -32,6 +32,7 @@ pub(crate) const COMMANDS: [&str; 14] = [
     "compare",
     "import",
     "export",
+    "edit",
     "levels",
     "config",
     "replay",

@@ -414,7 +414,7 @@ impl MapText {
     }
 
     /// The character of a thing that differs from `character` by one property: the character itself, if it is not drawn
-    /// elsewhere; or another one that is defined so; or a new one.
+    /// elsewhere; or another character with this definition; or a new one.
     fn variant(
         &mut self,
         character: char,

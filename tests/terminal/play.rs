@@ -4,6 +4,7 @@
 mod campaign;
 mod clock;
 mod doors;
+mod editing;
 mod ending;
 #[cfg(target_os = "linux")]
 mod failures;

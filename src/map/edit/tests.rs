@@ -142,7 +142,7 @@ fn carry_out(map: &mut MapDocument, operation: &Operation) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// After any operations, the text is one that can be opened, every step can be undone down to the bytes of the file,
+    /// After any operations, the text can be opened, every step can be undone down to the bytes of the file,
     /// and every step can be done again.
     #[test]
     fn any_operations_can_be_undone_and_done_again(

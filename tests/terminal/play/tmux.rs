@@ -19,11 +19,12 @@ const PAUSE: Duration = Duration::from_millis(1200);
 
 /// A tmux server, identified by its socket, which ends with the test. The path of a socket must be
 /// short.
-struct Server(String);
+pub(crate) struct Server(String);
 
 impl Server {
-    /// `None` if tmux is not installed, which is a failure if all programs must be installed.
-    fn new() -> Option<Self> {
+    /// The server of the test `name`. `None` if tmux is not installed, which is a failure if all programs must be
+    /// installed.
+    pub(crate) fn new(name: &str) -> Option<Self> {
         let is_installed = Command::new("tmux").arg("-V").output().is_ok();
         assert!(
             is_installed || env::var_os("CELLCASTER_SYSTEM_TESTS").is_none(),
@@ -33,7 +34,7 @@ impl Server {
             eprintln!("tmux is not installed: not tested");
             return None;
         }
-        let name = format!("cellcaster-tmux-{}", std::process::id());
+        let name = format!("cellcaster-{name}-{}", std::process::id());
         Some(Self(env::temp_dir().join(name).to_str().unwrap().to_owned()))
     }
 
@@ -44,7 +45,7 @@ impl Server {
     }
 
     /// A client whose terminal claims to be kitty. tmux repeats characters in such a terminal.
-    fn client(&self, arguments: &[&str]) -> Player {
+    pub(crate) fn client(&self, arguments: &[&str]) -> Player {
         let words = [&["-u", "-S", &self.0, "-f", "/dev/null"], arguments].concat();
         let path = env::var("PATH").unwrap_or_default();
         let environment =
@@ -80,7 +81,7 @@ fn has_true_color(emulator: &Emulator) -> bool {
 #[test]
 fn tmux_sends_all_colours_after_the_player_confirms() {
     const OFFER: &str = "24-bit colours in tmux";
-    let Some(server) = Server::new() else { return };
+    let Some(server) = Server::new("tmux") else { return };
     let mut player = server.client(&["new-session", PROGRAM]);
     player.wait_for("New game");
     thread::sleep(PAUSE);
