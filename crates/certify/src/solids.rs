@@ -72,8 +72,8 @@ struct Block {
     bottom: Covering,
     /// The light of its sides, if it does not depend on the cells in front of them.
     side_light: Option<Light>,
-    /// `true` for ground outside the map and below doors. Each cell in front of it lights its own
-    /// part.
+    /// `true` for ground outside the map, and for what is below and above a door. Each cell in
+    /// front of it lights its own part.
     is_lit_by_cells: bool,
     /// The light of its top and its bottom.
     flat_light: Light,
@@ -555,7 +555,7 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
             Ceiling::Sky => unreachable!("there is rock above"),
         },
         side_light,
-        is_lit_by_cells: false,
+        is_lit_by_cells: is_door,
         flat_light,
         mirror: None,
     });
