@@ -110,7 +110,7 @@ fn a_bad_map_is_reported_without_touching_the_terminal() {
 #[test]
 fn without_a_terminal_one_sentence_names_what_works() {
     let complaint = complaint_about(&["play"]);
-    assert!(complaint.contains("standard input is not a terminal"), "{complaint}");
+    assert!(complaint.contains("standard input"), "{complaint}");
     assert!(complaint.contains("`cellcaster snapshot`"), "{complaint}");
     assert_eq!(complaint.lines().count(), 1, "{complaint}");
 
