@@ -118,7 +118,7 @@ fn without_a_terminal_one_sentence_names_what_works() {
     let arguments = ["-c", script, PROGRAM];
     let mut player = Player::start((200, 24), Speaks::Kitty, "/bin/sh", arguments, &ENVIRONMENT);
     player.wait_for_end().assert_given_back();
-    player.wait_for("standard output is not a terminal");
+    player.wait_for("standard output");
     player.wait_for("`cellcaster snapshot`");
     player.wait_for("status 2");
     assert_untouched(&player.bytes());
