@@ -66,6 +66,8 @@ pub struct Config {
     pub web_watchers: u32,
     /// The most of them from one address.
     pub web_watchers_per_address: u32,
+    /// The reverse proxies, whose `X-Forwarded-For` names the browser.
+    pub web_proxies: Vec<AddressPrefix>,
     /// The proxies, whose connections begin with a header that names the visitor.
     pub proxies: Vec<AddressPrefix>,
     /// The keys of the moderators.
@@ -132,6 +134,7 @@ impl Default for Config {
             web: None,
             web_watchers: 200,
             web_watchers_per_address: 16,
+            web_proxies: Vec::new(),
             proxies: Vec::new(),
             moderators: Vec::new(),
             admission: Limits::default(),
@@ -431,7 +434,7 @@ const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
 const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
 const MODERATORS_EXAMPLE: &str = "moderators = [\"SHA256:...\"]";
 const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
-const PROXIES_EXAMPLE: &str = "proxies = [\"10.0.0.5\", \"10.1.0.0/16\"]";
+const PROXIES_EXAMPLE: &str = "[\"10.0.0.5\", \"10.1.0.0/16\"]";
 const WEB_EXAMPLE: &str = "web = \"127.0.0.1:8080\"";
 const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
 
@@ -495,7 +498,7 @@ const METRICS_LISTEN: Setting<Config> = Setting {
 };
 
 /// The text settings, in the order of a file.
-const TEXTS: [Setting<Config>; 8] = [
+const TEXTS: [Setting<Config>; 9] = [
     LISTEN,
     Setting {
         key: "name",
@@ -516,9 +519,19 @@ const TEXTS: [Setting<Config>; 8] = [
     MAPS,
     WEB,
     Setting {
+        key: "web-proxies",
+        about: "the addresses of reverse proxies; the address that they name in X-Forwarded-For counts as the\n\
+                browser's",
+        value: &Text {
+            at: |it| &mut it.web_proxies,
+            read: proxies,
+            write: |list| address_list(list),
+        },
+    },
+    Setting {
         key: "proxies",
         about: "the addresses of proxies; each SSH connection from them must begin with a PROXY header, whose\n\
-                address counts as the visitor's, and for browsers the header X-Forwarded-For counts",
+                address counts as the visitor's",
         value: &Text { at: |it| &mut it.proxies, read: proxies, write: |list| address_list(list) },
     },
     Setting {
@@ -782,7 +795,8 @@ fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
 /// The addresses of proxies. An element with a fault makes the whole list faulty.
 fn proxies(entry: &Entry<'_, '_>) -> Option<Vec<AddressPrefix>> {
     let Some(list) = entry.list() else {
-        entry.faults.push(entry.wrong_type("a list of addresses", PROXIES_EXAMPLE));
+        let example = format!("{} = {PROXIES_EXAMPLE}", entry.key);
+        entry.faults.push(entry.wrong_type("a list of addresses", &example));
         return None;
     };
     if list.len() > MAX_PROXIES {
@@ -793,18 +807,20 @@ fn proxies(entry: &Entry<'_, '_>) -> Option<Vec<AddressPrefix>> {
             "write a range such as 10.1.0.0/16 for several addresses",
         );
     }
-    let ranges: Vec<Option<AddressPrefix>> = list.iter().map(address_range).collect();
+    let ranges: Vec<Option<AddressPrefix>> =
+        list.iter().map(|range| address_range(range, entry.key)).collect();
     ranges.into_iter().collect()
 }
 
-fn address_range(entry: &Entry<'_, '_>) -> Option<AddressPrefix> {
+/// An element of the setting `key`.
+fn address_range(entry: &Entry<'_, '_>, key: &str) -> Option<AddressPrefix> {
     let text = match entry.value {
         DeValue::String(text) => text.as_ref(),
         _ => "",
     };
     AddressPrefix::parse(text).or_else(|| {
         let message = "this is neither an address nor a range of addresses";
-        entry.reject(message, "", format!("write {PROXIES_EXAMPLE}"))
+        entry.reject(message, "", format!("write {key} = {PROXIES_EXAMPLE}"))
     })
 }
 

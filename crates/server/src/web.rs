@@ -13,7 +13,7 @@
 //! - A room is drawn once for all who watch it, see [`live`], and a room that nobody watches is not drawn.
 //! - Requests are limited to [`MAX_REQUESTS`], in size, and in time. A flood of them displaces itself, as in
 //!   [`admission`](crate::admission). Watchers are limited in total and by address.
-//! - Only configured proxies name the address of a visitor, in `X-Forwarded-For`.
+//! - Only the configured `web-proxies` name the address of a visitor, in `X-Forwarded-For`.
 //! - Another site's page cannot open the WebSocket: its `Origin` must name the host of the request.
 //!
 //! Rejected: `axum`, which brings hyper, tower and about 25 crates. `httparse` and `tokio-websockets` bring four.
@@ -229,7 +229,7 @@ impl Web {
     /// a proxy's.
     fn visitor(&self, request: &Request, peer: IpAddr) -> IpAddr {
         let config = self.config.get();
-        let is_proxy = |address| config.proxies.iter().any(|range| range.contains(address));
+        let is_proxy = |address| config.web_proxies.iter().any(|range| range.contains(address));
         if !is_proxy(peer) {
             return peer;
         }

@@ -23,6 +23,7 @@ fn a_written_configuration_parses_to_itself() -> Result<(), Faults> {
     config.maps = Some("/srv/maps".into());
     config.proxies =
         ["10.0.0.5", "2001:db8::/32"].map(|it| AddressPrefix::parse(it).unwrap()).into();
+    config.web_proxies = vec![AddressPrefix::parse("127.0.0.1").unwrap()];
     config.moderators = vec![AccountKey::new([1; 32]), AccountKey::new([2; 32])];
     assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
     config.standing.pop();
@@ -83,6 +84,7 @@ fn text_faults_are_reported_with_their_lines() {
 fn proxy_faults_are_reported_with_their_lines() {
     insta::assert_snapshot!(faults("proxies = [\"10.0.0.5\", \"10.0.0.0/33\",\n\"proxy\", 5]\n"));
     insta::assert_snapshot!(faults("proxies = \"10.0.0.5\"\n"));
+    assert!(faults("web-proxies = [\"proxy\"]\n").contains("write web-proxies = ["));
     insta::assert_snapshot!(faults(&format!("proxies = [{}]\n", "\"10.0.0.5\", ".repeat(65))));
 }
 

@@ -408,7 +408,7 @@ fn watchers_are_limited_in_total_and_by_address() {
         let house = House::open(|config| {
             config.web_watchers = 5;
             config.web_watchers_per_address = 2;
-            config.proxies = vec![AddressPrefix::parse("127.0.0.0/8").unwrap()];
+            config.web_proxies = vec![AddressPrefix::parse("127.0.0.0/8").unwrap()];
         });
         let origin = format!("http://{}", house.address);
         let watch = |from: &'static str| {
@@ -436,7 +436,11 @@ fn watchers_are_limited_in_total_and_by_address() {
 #[test]
 fn nobody_but_a_proxy_names_an_address() {
     run(async || {
-        let house = House::open(|config| config.web_watchers_per_address = 1);
+        let house = House::open(|config| {
+            config.web_watchers_per_address = 1;
+            // The proxies of SSH are not those of browsers.
+            config.proxies = vec![AddressPrefix::parse("127.0.0.0/8").unwrap()];
+        });
         let origin = format!("http://{}", house.address);
         let headers = |from| -> [(&'static str, &str); 2] {
             [("origin", &origin), ("x-forwarded-for", from)]
