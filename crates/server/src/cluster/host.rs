@@ -60,7 +60,7 @@ impl HostContext {
             },
         };
         let mut state = state.ok_or(RoomRefusal::NoLevel)?;
-        state.record(self.recordings.open(id));
+        state.record(self.recordings.open(id, record.code.is_some()));
         Ok((state, record))
     }
 }

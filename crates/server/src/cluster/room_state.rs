@@ -249,7 +249,7 @@ mod tests {
         let catalog = Arc::new(Catalog::builtin());
         let [whole, part] = [RoomLogs::default(), RoomLogs::default()];
         let mut state = state();
-        state.record(whole.recordings().open(RoomId(7)));
+        state.record(whole.recordings().open(RoomId(7), false));
         let apply = |state: &mut RoomState, commands: Vec<Command>| {
             let (last, tick) = (state.number, state.tick);
             let entry = |command| Entry { step: 0, member: MemberId(1), command };
@@ -262,7 +262,7 @@ mod tests {
         apply(&mut state, vec![join, Command::Keep]);
         // A host that comes later records the next round.
         let mut later = RoomState::restore(&catalog, &state.checkpoint()).unwrap();
-        later.record(part.recordings().open(RoomId(7)));
+        later.record(part.recordings().open(RoomId(7), false));
         for commands in [vec![Command::Again], vec![Command::Return { token: 9 }], vec![]] {
             apply(&mut state, commands.clone());
             apply(&mut later, commands);

@@ -168,7 +168,7 @@ impl SimulatedHost {
         };
         let metrics = Arc::<Metrics>::default();
         let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
-        let recordings = Recordings::new(|_| None);
+        let recordings = Recordings::new(|_, _| None);
         let rooms = Rooms::new(
             limits,
             Arc::clone(catalog),

@@ -18,7 +18,7 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tokio::time::timeout;
 
-pub(crate) use self::recording::{CAST, RecordingBounds, Recordings};
+pub(crate) use self::recording::{CAST, PublicRecording, RecordingBounds, Recordings};
 use crate::accounts::Day;
 use crate::line::Line;
 use crate::load::Load;
@@ -326,7 +326,7 @@ impl Rooms {
         let header = room.header();
         logging::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
-        let log = RoundLog::new(self.0.recordings.open(id), &room);
+        let log = RoundLog::new(self.0.recordings.open(id, interface.code.is_some()), &room);
         let load = Arc::clone(&self.0.load);
         let sequencer = Sequencer { room, log, interface, load };
         let rooms = self.clone();

@@ -18,7 +18,7 @@ impl RoomLogs {
     /// Recordings that store into these logs.
     pub(crate) fn recordings(&self) -> Recordings {
         let logs = self.clone();
-        Recordings::new(move |room| Some(Box::new(RoomLog { room, logs: logs.clone() })))
+        Recordings::new(move |room, _| Some(Box::new(RoomLog { room, logs: logs.clone() })))
     }
 
     /// The recording of a room.

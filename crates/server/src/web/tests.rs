@@ -55,7 +55,7 @@ impl House {
             standing: vec![wish(Mode::Roam)],
         };
         let (catalog, seeds) = (Arc::new(Catalog::builtin()), Seeds { rooms: 7, codes: 8 });
-        let recordings = Recordings::new(|_| None);
+        let recordings = Recordings::new(|_, _| None);
         let rooms = Rooms::new(limits, catalog, recordings, Arc::clone(&load), seeds);
         let listener = listen("127.0.0.1:0".parse().unwrap()).unwrap();
         let address = listener.local_addr().unwrap();

@@ -9,6 +9,8 @@
 //!   when the recording reaches [`MAX_RECORDED_BYTES`]. Its room goes on, and the next round is recorded
 //!   again.
 //! - A round begins a new file if the last one has reached [`RecordingBounds::file`], so that long recordings age, too.
+//! - The name says who may see the recording in a browser: `room-7.log` everybody, `private-7.log` nobody. Recordings of
+//!   private rooms and of players who play alone are private.
 //! - Beside each recording is its [cast](Cast), with the same name and the ending `.cast`. It is a recording of its own
 //!   for the limits, and begins and ends with the log. If there is no room for it, the log goes on.
 //!
@@ -17,7 +19,7 @@
 //! ends with a whole line. Rejected: a thread for disk access, because the disk is used so rarely. The folder
 //! is read once, when the server starts: reading 65,536 file names again would delay a room's step.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
@@ -30,36 +32,77 @@ use std::time::{Duration, SystemTime};
 use crate::lock::locked;
 use crate::rooms::cast::Cast;
 use crate::rooms::replayed::MAX_RECORDED_BYTES;
-use crate::rooms::room::{Entry, Header, RoomView};
+use crate::rooms::room::{Entry, Header, Mode, RoomView};
 use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
 use cellcaster::app::store::private;
 
 /// Opens the recordings of rooms.
 #[derive(Clone)]
-pub(crate) struct Recordings(Arc<dyn Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync>);
+pub(crate) struct Recordings {
+    open: Arc<dyn Fn(RoomId, bool) -> Option<Box<dyn Recording>> + Send + Sync>,
+    /// The folder, if the recordings are in one.
+    folder: Option<Arc<RecordingFolder>>,
+}
 
 impl Recordings {
     /// Recordings opened by `open`.
     pub(crate) fn new(
-        open: impl Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync + 'static,
+        open: impl Fn(RoomId, bool) -> Option<Box<dyn Recording>> + Send + Sync + 'static,
     ) -> Self {
-        Self(Arc::new(open))
+        Self { open: Arc::new(open), folder: None }
     }
 
     /// Recordings in a folder; no recordings if there is no folder.
     pub(crate) fn in_folder(folder: Option<PathBuf>, bounds: RecordingBounds) -> Self {
-        let folder = folder.map(|path| Arc::new(RecordingFolder::open(path, bounds)));
-        Self::new(move |room| {
-            let folder = Arc::clone(folder.as_ref()?);
-            Some(Box::new(RecordedRoom::new(folder, room)))
+        let Some(path) = folder else { return Self::new(|_, _| None) };
+        let folder = Arc::new(RecordingFolder::open(path, bounds));
+        let of_rooms = Arc::clone(&folder);
+        let recordings = Self::new(move |room, is_private| {
+            Some(Box::new(RecordedRoom::new(Arc::clone(&of_rooms), room, is_private)))
+        });
+        Self { folder: Some(folder), ..recordings }
+    }
+
+    /// Opens the recording of a new room, which may be private; `None` if the room is not recorded.
+    pub(crate) fn open(&self, id: RoomId, is_private: bool) -> Option<Box<dyn Recording>> {
+        (self.open)(id, is_private)
+    }
+
+    /// The public logs, latest first: those that are being written, and then at most `most` finished ones.
+    pub(crate) fn public(&self, most: usize) -> Vec<PublicRecording> {
+        let Some(folder) = &self.folder else { return Vec::new() };
+        locked(&folder.held, |held| {
+            let finished = held.finished.keys().rev().map(|(time, path)| (*time, path));
+            let finished = finished.filter(|(_, path)| is_public_log(path)).take(most);
+            let written = held.written.iter().filter(|path| is_public_log(path));
+            let written = written.map(|path| (SystemTime::now(), path));
+            let recording = |(time, path): (SystemTime, &PathBuf)| PublicRecording {
+                name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+                path: path.clone(),
+                time,
+            };
+            written.chain(finished).map(recording).collect()
         })
     }
 
-    /// Opens the recording of a new room; `None` if the room is not recorded.
-    pub(crate) fn open(&self, id: RoomId) -> Option<Box<dyn Recording>> {
-        (self.0)(id)
+    /// The path of a public log, by its name such as `room-7`; `None` if there is no such log.
+    pub(crate) fn named(&self, name: &str) -> Option<PathBuf> {
+        // Names have no separators, so no path leaves the folder.
+        let path = self.folder.as_ref()?.path.join(format!("{name}.{LOG}"));
+        (is_public_log(&path) && path.is_file()).then_some(path)
     }
+}
+
+/// A recording that browsers may show.
+#[derive(Debug)]
+pub(crate) struct PublicRecording {
+    /// The name of the file without its ending.
+    pub(crate) name: String,
+    /// The path of the log.
+    pub(crate) path: PathBuf,
+    /// When it was finished; now, if it is being written.
+    pub(crate) time: SystemTime,
 }
 
 impl fmt::Debug for Recordings {
@@ -72,6 +115,7 @@ impl fmt::Debug for Recordings {
 struct RecordedRoom {
     folder: Arc<RecordingFolder>,
     room: RoomId,
+    is_private: bool,
     /// `None` if the recording ended before this round.
     file: Option<RecordedFile>,
     cast: RecordedCast,
@@ -114,10 +158,15 @@ struct RecordingFolder {
 struct Held {
     /// The finished recordings with their sizes in bytes, oldest first.
     finished: BTreeMap<(SystemTime, PathBuf), u64>,
+    /// The recordings that are being written.
+    written: BTreeSet<PathBuf>,
     /// The total size of all recordings, in blocks.
     blocks: u64,
 }
 
+/// The beginnings of the names of recordings that everybody may see, and of the others.
+const PUBLIC: &str = "room-";
+const PRIVATE: &str = "private-";
 /// The endings of the names of logs and casts.
 const LOG: &str = "log";
 pub(crate) const CAST: &str = "cast";
@@ -139,7 +188,10 @@ impl Recording for RecordedRoom {
             // Finish the previous files first, so that they can be removed to make room for the new one.
             self.file = None;
             self.cast = RecordedCast::Awaited;
-            self.file = RecordedFile::create(&self.folder, |folder| new_file(folder, self.room))
+            let is_private = self.is_private || header.mode == Mode::Alone;
+            let kind = if is_private { PRIVATE } else { PUBLIC };
+            let name = format!("{kind}{}", self.room);
+            self.file = RecordedFile::create(&self.folder, |folder| new_file(folder, &name))
                 .inspect_err(|error| {
                     tracing::error!(%error, room = %self.room, "a room cannot be recorded");
                 })
@@ -172,8 +224,8 @@ impl Recording for RecordedRoom {
 }
 
 impl RecordedRoom {
-    fn new(folder: Arc<RecordingFolder>, room: RoomId) -> Self {
-        Self { folder, room, file: None, cast: RecordedCast::Awaited }
+    fn new(folder: Arc<RecordingFolder>, room: RoomId, is_private: bool) -> Self {
+        Self { folder, room, is_private, file: None, cast: RecordedCast::Awaited }
     }
 
     /// Writes all of `text` or nothing. Discards it if the recording has ended.
@@ -214,6 +266,7 @@ impl RecordedFile {
         let created = create(&folder.path);
         let (path, file) =
             created.inspect_err(|_| locked(&folder.held, |held| held.blocks -= 1))?;
+        locked(&folder.held, |held| held.written.insert(path.clone()));
         Ok(Self { folder: Arc::clone(folder), path, output: BufWriter::new(file), bytes: 0 })
     }
 
@@ -243,7 +296,10 @@ impl Drop for RecordedFile {
         // Errors were already reported when the entries were written.
         _ = self.output.flush();
         let key = (SystemTime::now(), mem::take(&mut self.path));
-        locked(&self.folder.held, |held| held.finished.insert(key, self.bytes));
+        locked(&self.folder.held, |held| {
+            held.written.remove(&key.1);
+            held.finished.insert(key, self.bytes);
+        });
     }
 }
 
@@ -299,11 +355,20 @@ fn recordings(folder: &Path) -> impl Iterator<Item = ((SystemTime, PathBuf), u64
     })
 }
 
-/// Returns true for the name of a recording or a cast, such as `room-7.log` or `room-7-2.cast`.
+/// Returns true for the name of a recording or a cast, such as `room-7.log` or `private-7-2.cast`.
 fn is_name(name: &OsStr) -> bool {
-    let is_kind = |kind: &str| [LOG, CAST].contains(&kind);
-    let parts = name.to_str().and_then(|name| name.strip_prefix("room-")?.split_once('.'));
-    let numbers = parts.filter(|(_, kind)| is_kind(kind)).map(|(numbers, _)| numbers);
+    let has_kind = |kind: &str| [LOG, CAST].iter().any(|ending| is_name_of(name, kind, ending));
+    has_kind(PUBLIC) || has_kind(PRIVATE)
+}
+
+fn is_public_log(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| is_name_of(name, PUBLIC, LOG))
+}
+
+/// Returns true for a name with this beginning and this ending.
+fn is_name_of(name: &OsStr, kind: &str, ending: &str) -> bool {
+    let parts = name.to_str().and_then(|name| name.strip_prefix(kind)?.split_once('.'));
+    let numbers = parts.filter(|parts| parts.1 == ending).map(|parts| parts.0);
     numbers.is_some_and(|text| text.split('-').all(|number| number.parse::<u32>().is_ok()))
 }
 
@@ -323,10 +388,10 @@ fn create(path: &Path) -> io::Result<File> {
     options.write(true).create_new(true).open(path)
 }
 
-fn new_file(folder: &Path, room: RoomId) -> io::Result<(PathBuf, File)> {
+fn new_file(folder: &Path, name: &str) -> io::Result<(PathBuf, File)> {
     for number in 0.. {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };
-        let path = folder.join(format!("room-{room}{suffix}.{LOG}"));
+        let path = folder.join(format!("{name}{suffix}.{LOG}"));
         // A cast may be older than its log by one write, and therefore stay longer.
         if path.with_extension(CAST).exists() {
             continue;
@@ -348,7 +413,7 @@ mod tests {
     use crate::line::Line;
     use serde_json::{Value, json};
 
-    use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, Room, parse_log};
+    use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Room, parse_log};
     use crate::rooms::sequencer::RoundLog;
     use crate::simulation::{HALL, catalog};
     use cellcaster::game::{Intent, PlayerColor};
@@ -408,7 +473,7 @@ mod tests {
 
     /// The log of a room in its first round.
     fn begun(folder: &Arc<RecordingFolder>, room: u32) -> RecordedRoom {
-        let mut log = RecordedRoom::new(folder.clone(), RoomId(room));
+        let mut log = RecordedRoom::new(folder.clone(), RoomId(room), false);
         log.begin(&header()).unwrap();
         log
     }
@@ -533,7 +598,7 @@ mod tests {
     #[test]
     fn a_cast_beside_the_log_shows_the_room_from_above() {
         let place = TemporaryFolder::new("cast");
-        play(RecordedRoom::new(place.open(1 << 20), RoomId(7)), 300);
+        play(RecordedRoom::new(place.open(1 << 20), RoomId(7), false), 300);
         assert_eq!(place.names(), ["room-7.cast", "room-7.log"]);
         let cast = fs::read_to_string(place.0.join("room-7.cast")).unwrap();
         let mut lines = cast.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
@@ -557,7 +622,7 @@ mod tests {
         let place = TemporaryFolder::new("casts");
         let folder = place.open(6 * BLOCK);
         for room in 1..=4 {
-            play(RecordedRoom::new(folder.clone(), RoomId(room)), 2000);
+            play(RecordedRoom::new(folder.clone(), RoomId(room), false), 2000);
             assert!(place.bytes() <= 6 * BLOCK, "{} bytes", place.bytes());
         }
         assert!(place.names().contains(&"room-4.log".to_owned()), "{:?}", place.names());

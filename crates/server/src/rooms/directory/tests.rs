@@ -47,7 +47,7 @@ fn rooms(broken: &'static [u32]) -> Rooms {
         closes_after: Duration::ZERO,
         standing: vec![room_request(Mode::Roam)],
     };
-    let recordings = Recordings::new(|id| {
+    let recordings = Recordings::new(|id, _| {
         broken.contains(&id.0).then(|| -> Box<dyn Recording> { Box::new(Broken) })
     });
     let load = Arc::new(Load::new(Arc::<Metrics>::default()));
