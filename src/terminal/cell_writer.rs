@@ -190,6 +190,12 @@ impl<W: Write> CellWriter<W> {
         self.cursor_visible = false;
     }
 
+    /// Forgets the position of the cursor and the colours in force. The next frame is then right for every terminal that
+    /// shows the same screen.
+    pub fn forget_pen(&mut self) {
+        self.pen.forget();
+    }
+
     /// Calls `draw` to draw a whole frame on a blank screen, without ratatui's
     /// [`Terminal`](ratatui::Terminal) and its buffers. The next flush writes the changes.
     ///

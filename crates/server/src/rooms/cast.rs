@@ -1,9 +1,10 @@
-//! The cast of a recorded room: the room from above, as an asciicast (version 2) beside the log.
+//! The cast of a room: the room from above, for players of asciicasts.
 //!
-//! Only the version that wrote a log can replay it. Every player of asciicasts shows the cast, whatever becomes of
-//! the rules: the whole level, an arrow for each member, their points, and what was said.
+//! Beside each log is a cast as a file (version 2). Only the version that wrote a log can replay it. Every player of
+//! asciicasts shows the cast, whatever becomes of the rules: the whole level, an arrow for each member, and their
+//! points. Browsers may watch casts, so a cast contains no chat; the log does.
 //!
-//! The cast is drawn while the room runs, four pictures a second. With eight members who walk around in the museum, a
+//! The file is drawn while the room runs, four pictures a second. With eight members who walk around in the museum, a
 //! minute takes 90 kB and 0.06 s of processor time. A room without members takes no steps, and its cast stands still.
 //!
 //! Rejected: drawing the cast when the log is complete. The log of a standing room is complete when the server ends,
@@ -31,11 +32,11 @@ use crate::rooms::room::{MemberView, RoomView};
 
 /// The number of steps between two pictures.
 pub(crate) const INTERVAL: u64 = STEPS_PER_SECOND as u64 / 4;
-const SIZE: Size = Size::new(80, 24);
+pub(crate) const SIZE: Size = Size::new(80, 24);
 /// The rows below the map for the members.
 const MEMBER_ROWS: u16 = 2;
-/// The rows below these for the latest lines of chat. Several may arrive between two pictures.
-const CHAT_ROWS: u16 = 3;
+/// Hides the cursor.
+const HIDE: &str = "\x1b[?25l";
 
 /// Draws the pictures of a cast.
 pub(crate) struct Cast {
@@ -58,19 +59,27 @@ impl Cast {
     /// The line with the next picture; `None` if the picture has not changed.
     pub(crate) fn line(&mut self, room: &RoomView) -> Option<String> {
         let seconds = (self.pictures * INTERVAL) as f64 * STEP;
+        let text = self.next(room);
+        (!text.is_empty()).then(|| format!("{}\n", json!([seconds, "o", text])))
+    }
+
+    /// The bytes that change the last picture into the next one; for the first picture, all of it. They are right for
+    /// every terminal that shows the last picture, whatever was written to it before.
+    pub(crate) fn next(&mut self, room: &RoomView) -> String {
+        let mut bytes = if self.pictures == 0 { HIDE.into() } else { Vec::new() };
         self.pictures += 1;
+        self.writer.forget_pen();
         self.writer.draw_frame(|screen| draw(screen, room));
         // Writing into memory cannot fail.
         _ = Backend::flush(&mut self.writer);
-        let bytes = std::mem::take(self.writer.output_mut());
-        let text = String::from_utf8_lossy(&bytes);
-        (!text.is_empty()).then(|| format!("{}\n", json!([seconds, "o", text])))
+        bytes.append(self.writer.output_mut());
+        String::from_utf8_lossy(&bytes).into_owned()
     }
 }
 
 fn draw(canvas: &mut impl Canvas, room: &RoomView) {
     let area = canvas.bounds();
-    let below = area.height - MEMBER_ROWS - CHAT_ROWS;
+    let below = area.height - MEMBER_ROWS;
     let title = Rect { height: 1, ..area };
     let map = Rect { y: 1, height: below - 1, ..area };
     let world = room.game.world();
@@ -81,13 +90,6 @@ fn draw(canvas: &mut impl Canvas, room: &RoomView) {
     let names = room.members.iter().flat_map(|member| [label(member), Span::raw("  ")]);
     let names = Paragraph::new(names.collect::<Line<'_>>()).wrap(Wrap { trim: true });
     canvas.draw_widget(names, Rect { y: below, height: MEMBER_ROWS, ..area });
-    let latest = room.said.len().saturating_sub(usize::from(CHAT_ROWS));
-    for (said, y) in room.said[latest..].iter().zip(below + MEMBER_ROWS..) {
-        let by = said.by.as_ref();
-        let by = by.map(|(name, color)| Span::styled(format!("{name}: "), style(color.rgb())));
-        let line: Line<'_> = by.into_iter().chain([Span::raw(said.text.as_str())]).collect();
-        canvas.draw_widget(line, Rect { y, height: 1, ..area });
-    }
 }
 
 fn draw_map(canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
