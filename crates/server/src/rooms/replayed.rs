@@ -45,45 +45,112 @@ pub(crate) fn replayed(
     catalog: &Arc<Catalog>,
     look: &mut dyn FnMut(&Room) -> Result<(), String>,
 ) -> Result<Vec<RoundReport>, String> {
-    if is_of_other_version(text) {
-        return Err("it was recorded by another version of Cellcaster".to_owned());
+    let mut replay = RoomReplay::new(text, catalog)?;
+    let mut reports = Vec::new();
+    loop {
+        while replay.is_playing()? {
+            look(&replay.room)?;
+            replay.room.advance();
+        }
+        reports.push(report(&replay.room, replay.room.header()));
+        if !replay.next_round()? {
+            return Ok(reports);
+        }
     }
-    let rounds = parse_log(text).ok_or("a line is neither part of a header nor an entry")?;
-    let last = rounds.len().saturating_sub(1);
-    let rounds = rounds.iter().enumerate();
-    rounds
-        .map(|(index, (header, entries))| play(catalog, (header, entries), index == last, look))
-        .collect()
 }
 
-fn play(
-    catalog: &Arc<Catalog>,
-    (header, entries): (&Header, &[Entry]),
-    is_last: bool,
-    look: &mut dyn FnMut(&Room) -> Result<(), String>,
-) -> Result<RoundReport, String> {
-    let no_level = || no_level(&header.level);
-    let mut room = Room::new(catalog, header.clone()).ok_or_else(no_level)?;
-    let end = entries.last().map_or(0, |entry| entry.step);
-    let mut entries = entries.iter().peekable();
-    let mut last = 0;
-    loop {
-        while let Some(entry) = entries.next_if(|entry| entry.step <= room.step()) {
+/// The replay of a recording, at one of its steps. Clones share the recording.
+#[derive(Clone, Debug)]
+pub(crate) struct RoomReplay {
+    catalog: Arc<Catalog>,
+    rounds: Arc<[(Header, Vec<Entry>)]>,
+    /// The room in the current round.
+    pub(crate) room: Room,
+    /// The index of the round, and of its next entry.
+    round: usize,
+    next: usize,
+    /// The step of the last entry.
+    last: u64,
+}
+
+impl RoomReplay {
+    /// The replay of `text`, before the first step.
+    ///
+    /// # Errors
+    /// A sentence fragment, if the text is not a recording, has another version, or needs a level that is not in the
+    /// catalog.
+    pub(crate) fn new(text: &str, catalog: &Arc<Catalog>) -> Result<Self, String> {
+        if is_of_other_version(text) {
+            return Err("it was recorded by another version of Cellcaster".to_owned());
+        }
+        let rounds = parse_log(text).ok_or("a line is neither part of a header nor an entry")?;
+        let (header, _) = rounds.first().ok_or("it is empty")?;
+        let room = begin(catalog, header)?;
+        let (catalog, rounds) = (Arc::clone(catalog), rounds.into());
+        Ok(Self { catalog, rounds, room, round: 0, next: 0, last: 0 })
+    }
+
+    /// The headers of all rounds.
+    pub(crate) fn headers(&self) -> impl Iterator<Item = &Header> {
+        self.rounds.iter().map(|(header, _)| header)
+    }
+
+    /// Applies the entries that are due. Returns true if the round has another step.
+    ///
+    /// # Errors
+    /// A sentence fragment, if nothing happens in the round for too long.
+    pub(crate) fn is_playing(&mut self) -> Result<bool, String> {
+        let Self { rounds, room, round, next, last, .. } = self;
+        let (header, entries) = &rounds[*round];
+        while let Some(entry) = entries.get(*next).filter(|entry| entry.step <= room.step()) {
             room.apply(entry);
-            last = room.step();
+            *next += 1;
+            *last = room.step();
         }
-        let next = entries.peek().map_or(room.step(), |entry| entry.step);
+        let entry = entries.get(*next);
+        let is_last = *round + 1 == rounds.len();
+        let end = entries.last().map_or(0, |entry| entry.step);
         let is_over = if is_last { room.step() >= end } else { room.is_over() };
-        if is_over && entries.peek().is_none() {
-            return Ok(report(&room, header));
+        if is_over && entry.is_none() {
+            return Ok(false);
         }
-        if next - last > MAX_QUIET || cfg!(feature = "fuzzing") && room.step() >= MAX_FUZZED {
+        let step = entry.map_or(room.step(), |entry| entry.step);
+        if step - *last > MAX_QUIET || cfg!(feature = "fuzzing") && room.step() >= MAX_FUZZED {
             let round = header.round;
             return Err(format!("nothing happens in round {round} for longer than a day"));
         }
-        look(&room)?;
-        room.advance();
+        Ok(true)
     }
+
+    /// Begins the next round. Returns false if there is none.
+    ///
+    /// # Errors
+    /// A sentence fragment, if it needs a level that is not in the catalog.
+    pub(crate) fn next_round(&mut self) -> Result<bool, String> {
+        let Some((header, _)) = self.rounds.get(self.round + 1) else { return Ok(false) };
+        self.room = begin(&self.catalog, header)?;
+        (self.round, self.next, self.last) = (self.round + 1, 0, 0);
+        Ok(true)
+    }
+
+    /// Takes the next step, of the next round if need be. Returns false if there is none.
+    ///
+    /// # Errors
+    /// See [`is_playing`](Self::is_playing) and [`next_round`](Self::next_round).
+    pub(crate) fn step(&mut self) -> Result<bool, String> {
+        while !self.is_playing()? {
+            if !self.next_round()? {
+                return Ok(false);
+            }
+        }
+        self.room.advance();
+        Ok(true)
+    }
+}
+
+/// The room at the beginning of a round.
+fn begin(catalog: &Arc<Catalog>, header: &Header) -> Result<Room, String> {
+    Room::new(catalog, header.clone()).ok_or_else(|| no_level(&header.level))
 }
 
 fn report(room: &Room, header: &Header) -> RoundReport {

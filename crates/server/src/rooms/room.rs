@@ -34,7 +34,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use self::catalog::{Catalog, no_level};
 pub(crate) use self::log::{
-    CHAT_COLUMNS, Command, Emote, Entry, Header, Seat, is_of_other_version, parse_log,
+    CHAT_COLUMNS, Command, Emote, Entry, Header, Seat, first_header, is_of_other_version, parse_log,
 };
 use self::looks::FigureLook;
 use self::member::{AWAY, Member, looking_only};

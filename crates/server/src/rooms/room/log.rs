@@ -302,13 +302,24 @@ pub(crate) fn is_of_other_version(text: &str) -> bool {
     first.strip_prefix(ROOM_RECORDING).is_some_and(|version| version != VERSION)
 }
 
+/// The header at the beginning of a recording, of which `text` is the first part.
+pub(crate) fn first_header(text: &str) -> Option<Header> {
+    let mut lines = text.lines();
+    let first = lines.next()?;
+    let rest = lines.take_while(|line| !is_entry(line) && !line.starts_with(ROOM_RECORDING));
+    Header::parse(std::iter::once(first).chain(rest))
+}
+
+fn is_entry(line: &str) -> bool {
+    line.starts_with(|first: char| first.is_ascii_digit())
+}
+
 /// Parses a recording into rounds: headers with their entries. `None` if a line is neither.
 pub(crate) fn parse_log(text: &str) -> Option<Vec<(Header, Vec<Entry>)>> {
     let mut rounds = Vec::new();
     let mut lines = text.lines().peekable();
     while lines.peek().is_some() {
         let mut head = vec![lines.next()?];
-        let is_entry = |line: &str| line.starts_with(|first: char| first.is_ascii_digit());
         let goes_on = |line: &&str| !is_entry(line) && !line.starts_with(ROOM_RECORDING);
         head.extend(std::iter::from_fn(|| lines.next_if(goes_on)));
         let entries = std::iter::from_fn(|| lines.next_if(|line| is_entry(line))).map(Entry::parse);
