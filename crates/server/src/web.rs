@@ -1,44 +1,60 @@
-//! The rooms in a browser: a page that lists the public rooms and shows one of them live.
+//! The rooms in a browser: a page that shows the public rooms live, their records, and the boards.
 //!
 //! The service is plain HTTP/1.1 for a reverse proxy that encrypts. It answers one request on each connection:
 //!
 //! - `GET /` is the page, one file without anything from elsewhere.
-//! - `GET /rooms` is the list of rooms, as JSON.
-//! - `GET /rooms/ID/live` becomes a WebSocket, which carries the [pictures](picture) of a room.
+//! - `GET /rooms`, `/records` and `/boards` are lists, as JSON; `/boards.txt` is the boards as text.
+//! - `GET /rooms/ID/live` becomes a WebSocket, which carries the [pictures](picture) of a room, `/rooms/ID/stream` one
+//!   that carries its [cast](alis) for asciinema's player.
+//! - `GET /records/NAME/play?from=SECONDS` becomes a WebSocket, which carries the pictures of a [record](records), and
+//!   `/records/NAME.cast` is its cast.
 //!
 //! # Rules
 //!
 //! - Nothing that a browser sends reaches a room. A browser that sends data on the WebSocket is disconnected.
 //! - Private rooms are neither listed nor shown. A picture shows what the lobby's live picture shows.
-//! - A room is drawn once for all who watch it, see [`live`], and a room that nobody watches is not drawn.
+//! - A room is drawn once for all who watch it, see [`live`], and a room that nobody watches is not drawn. A second of a
+//!   record is drawn once, see [`records`].
 //! - Requests are limited to [`MAX_REQUESTS`], in size, and in time. A flood of them displaces itself, as in
-//!   [`admission`](crate::admission). Watchers are limited in total and by address.
+//!   [`admission`](crate::admission). Watchers, and those who load a cast, are limited in total and by address.
 //! - Only the configured `web-proxies` name the address of a visitor, in `X-Forwarded-For`.
 //! - Another site's page cannot open the WebSocket: its `Origin` must name the host of the request.
 //!
 //! Rejected: `axum`, which brings hyper, tower and about 25 crates. `httparse` and `tokio-websockets` bring four.
 
+mod alis;
+mod boards;
 mod live;
 mod picture;
+mod records;
 mod request;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 use std::collections::BTreeMap;
 use std::io::{self, Cursor};
 use std::net::{IpAddr, SocketAddr};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use serde_json::json;
+use http::HeaderValue;
+use http::header::SEC_WEBSOCKET_PROTOCOL;
+use serde_json::{Value, json};
+use tokio::fs::File;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, copy, join, sink};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::{AbortHandle, JoinSet};
 use tokio::time::{Instant, sleep, timeout};
 use tokio_websockets::{Limits as MessageLimits, ServerBuilder};
 
-use self::live::{LiveRooms, public_rooms, watch};
+pub(crate) use self::boards::read as read_boards;
+use self::boards::{AskBoards, Boards};
+use self::live::{Form, LiveRooms, public_rooms};
+use self::records::Records;
 use self::request::Request;
+use self::watch::{SEND_TIMEOUT, Source, watch};
 use crate::admission::{Admission, ConnectionId, Limits, Outcome, Refusal};
 use crate::config::LiveConfig;
 use crate::line::Line;
@@ -73,6 +89,8 @@ pub(crate) struct Web {
     config: LiveConfig,
     rooms: Rooms,
     live: Arc<LiveRooms>,
+    records: Arc<Records>,
+    boards: Boards,
     begun: Instant,
     requests: Arc<Mutex<Requests>>,
     watchers: Arc<Mutex<Admission>>,
@@ -94,6 +112,15 @@ struct Answer {
     body: String,
 }
 
+/// What a request wants that lasts.
+enum Wanted {
+    Room(RoomId, Form),
+    /// The record with this name, from a second on.
+    Record(String, u32),
+    /// The cast in this file.
+    Cast(PathBuf),
+}
+
 /// Listens for browsers.
 ///
 /// # Errors
@@ -103,12 +130,19 @@ pub(crate) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
 }
 
 impl Web {
-    pub(crate) fn new(config: LiveConfig, rooms: Rooms, load: Arc<Load>) -> Self {
+    pub(crate) fn new(
+        config: LiveConfig,
+        rooms: Rooms,
+        load: Arc<Load>,
+        boards: AskBoards,
+    ) -> Self {
         let admission = Admission::new(unlimited(MAX_REQUESTS));
         let requests = Requests { admission, chance: SplitMix64::new(0), open: BTreeMap::new() };
         Self {
             config,
+            records: Arc::new(Records::new(rooms.clone(), Arc::clone(&load.metrics))),
             live: Arc::new(LiveRooms::new(rooms.clone(), load)),
+            boards: Boards::new(boards),
             rooms,
             begun: Instant::now(),
             requests: Arc::new(Mutex::new(requests)),
@@ -156,47 +190,92 @@ impl Web {
             Ok(Ok((_, None))) => return finish(socket, Answer::bad_request()).await,
             Ok(Err(_)) | Err(_) => return Ok(()),
         };
-        let id = match self.route(&request) {
-            Ok(id) => id,
+        let wanted = match self.route(&request).await {
+            Ok(wanted) => wanted,
             Err(answer) => return finish(socket, answer).await,
         };
         let address = self.visitor(&request, peer);
         let _counted = match self.count(address) {
             Ok(counted) => counted,
-            Err(sentence) => {
-                return finish(socket, Answer::text("503 Service Unavailable", sentence)).await;
-            }
-        };
-        let Some(pictures) = self.live.watch(id) else {
-            return finish(socket, Answer::no_room()).await;
+            Err(sentence) => return finish(socket, Answer::unavailable(sentence)).await,
         };
         // Watchers are limited on their own.
         drop(place);
+        match wanted {
+            Wanted::Cast(path) => send_file(socket, &path).await,
+            Wanted::Room(id, form) => match self.live.watch(id, form) {
+                Some(room) => self.show((socket, head), &request, room).await,
+                None => finish(socket, Answer::no_room()).await,
+            },
+            Wanted::Record(name, from) => match self.records.watch(&name, from) {
+                Ok(record) => self.show((socket, head), &request, record).await,
+                Err(sentence) => finish(socket, Answer::unavailable(sentence + "\n")).await,
+            },
+        }
+    }
+
+    /// Opens the WebSocket for a request whose bytes are in `head`, and shows `source`.
+    async fn show(
+        &self,
+        (mut socket, head): (TcpStream, Vec<u8>),
+        request: &Request,
+        mut source: impl Source,
+    ) -> io::Result<()> {
         let (reader, writer) = socket.split();
         let stream = join(Cursor::new(head).chain(reader), writer);
         let limits = MessageLimits::default().max_payload_len(Some(MAX_MESSAGE));
-        let server = ServerBuilder::new().limits(limits);
+        let mut server = ServerBuilder::new().limits(limits);
+        // A browser ends the connection if the answer names a protocol that it has not offered.
+        if request.protocols.iter().any(|it| it == alis::PROTOCOL) {
+            let protocol = HeaderValue::from_static(alis::PROTOCOL);
+            server =
+                server.add_header(SEC_WEBSOCKET_PROTOCOL, protocol).map_err(io::Error::other)?;
+        }
         if let Ok(Ok((_, socket))) = timeout(ANSWER_TIMEOUT, server.accept(stream)).await {
-            watch(socket, pictures, &self.live.load.metrics).await;
+            watch(socket, &mut source, &self.live.load.metrics).await;
         }
         Ok(())
     }
 
-    /// The room that a request wants to watch, or the answer to another request.
-    fn route(&self, request: &Request) -> Result<RoomId, Answer> {
+    /// What a request wants that lasts, or the answer to another request.
+    async fn route(&self, request: &Request) -> Result<Wanted, Answer> {
         if request.method != "GET" {
             let answer = Answer::text("405 Method Not Allowed", "use the method GET\n".to_owned());
             return Err(Answer { headers: "Allow: GET\r\n".to_owned(), ..answer });
         }
+        let catalog = self.rooms.catalog();
         match request.path() {
             "/" => return Err(Answer::page()),
-            "/rooms" => return Err(Answer::json(self.list())),
+            "/rooms" => return Err(Answer::json(&self.list())),
+            "/records" => return Err(Answer::json(&self.records.list().await)),
+            "/boards" => return Err(Answer::json(&self.boards.json(catalog).await)),
+            "/boards.txt" => {
+                return Err(Answer::text("200 OK", self.boards.text(catalog).await));
+            }
             _ => {}
         }
-        let id = request.path().strip_prefix("/rooms/").and_then(|it| it.strip_suffix("/live"));
-        let id = id.and_then(|id| id.parse().ok()).map(RoomId).ok_or_else(|| {
-            Answer::text("404 Not Found", "the page is at / and the list at /rooms\n".to_owned())
-        })?;
+        let not_found = || {
+            let text = "the page is at /, the lists are at /rooms, /records and /boards\n";
+            Answer::text("404 Not Found", text.to_owned())
+        };
+        let mut parts = request.path().splitn(4, '/').skip(1);
+        let parts = [parts.next(), parts.next(), parts.next()].map(Option::unwrap_or_default);
+        let wanted = match parts {
+            ["rooms", id, form @ ("live" | "stream")] => {
+                let id = id.parse().map_err(|_| not_found())?;
+                let is_live = form == "live";
+                Wanted::Room(RoomId(id), if is_live { Form::Cells } else { Form::Cast })
+            }
+            ["records", name, "play"] => {
+                let from = request.query("from").map_or(Ok(0), str::parse);
+                Wanted::Record(name.to_owned(), from.map_err(|_| not_found())?)
+            }
+            ["records", file, ""] => {
+                let cast = file.strip_suffix(".cast").and_then(|name| self.records.cast(name));
+                return cast.map(Wanted::Cast).ok_or_else(not_found);
+            }
+            _ => return Err(not_found()),
+        };
         if !request.is_upgrade {
             let text = "a room is watched through a WebSocket\n".to_owned();
             let headers = "Upgrade: websocket\r\n".to_owned();
@@ -206,11 +285,11 @@ impl Web {
             let text = "only this host's own page can watch a room\n".to_owned();
             return Err(Answer::text("403 Forbidden", text));
         }
-        Ok(id)
+        Ok(wanted)
     }
 
     /// The public rooms, as JSON.
-    fn list(&self) -> String {
+    fn list(&self) -> Value {
         let catalog = self.rooms.catalog();
         let rooms = public_rooms(&self.rooms);
         let rooms = rooms.iter().map(|room| {
@@ -222,7 +301,7 @@ impl Web {
                 "most": room.mode.most(),
             })
         });
-        json!({ "name": self.config.get().name, "rooms": rooms.collect::<Vec<_>>() }).to_string()
+        json!({ "name": self.config.get().name, "rooms": rooms.collect::<Vec<_>>() })
     }
 
     /// The address of the visitor: the peer's, or if the peer is a proxy, the last one in `X-Forwarded-For` that is not
@@ -318,8 +397,12 @@ impl Answer {
         Self::text("404 Not Found", "there is no such public room\n".to_owned())
     }
 
-    fn json(body: String) -> Self {
-        Self { kind: "application/json", ..Self::text("200 OK", body) }
+    fn unavailable(sentence: String) -> Self {
+        Self::text("503 Service Unavailable", sentence)
+    }
+
+    fn json(value: &Value) -> Self {
+        Self { kind: "application/json", ..Self::text("200 OK", value.to_string()) }
     }
 
     fn page() -> Self {
@@ -337,18 +420,47 @@ impl Answer {
 /// Sends the answer and closes the connection.
 async fn finish(mut socket: TcpStream, answer: Answer) -> io::Result<()> {
     let Answer { status, kind, headers, body } = answer;
-    let text = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{headers}\
-         Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
-         Connection: close\r\n\r\n{body}",
-        body.len()
-    );
+    let text = head(status, kind, &headers, body.len() as u64) + &body;
     let sent = async {
         socket.write_all(text.as_bytes()).await?;
-        socket.shutdown().await?;
-        // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
-        copy(&mut socket, &mut sink()).await
+        close(socket).await
     };
     _ = timeout(ANSWER_TIMEOUT, sent).await;
     Ok(())
+}
+
+/// Sends the content of a file as it is now, and closes the connection.
+async fn send_file(mut socket: TcpStream, path: &Path) -> io::Result<()> {
+    let mut file = File::open(path).await?;
+    let length = file.metadata().await?.len();
+    let head = head("200 OK", "application/x-asciicast", "", length);
+    timeout(SEND_TIMEOUT, socket.write_all(head.as_bytes())).await??;
+    let mut part = vec![0; SEND_BUFFER as usize];
+    let mut left = length as usize;
+    while left > 0 {
+        let most = part.len().min(left);
+        let count = file.read(&mut part[..most]).await?;
+        if count == 0 {
+            break;
+        }
+        timeout(SEND_TIMEOUT, socket.write_all(&part[..count])).await??;
+        left -= count;
+    }
+    timeout(SEND_TIMEOUT, close(socket)).await?
+}
+
+/// The head of an answer. `headers` are further ones, each with its line ending.
+fn head(status: &str, kind: &str, headers: &str, length: u64) -> String {
+    format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{headers}\
+         Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+         Connection: close\r\n\r\n"
+    )
+}
+
+/// Closes a connection whose answer is written.
+async fn close(mut socket: TcpStream) -> io::Result<()> {
+    socket.shutdown().await?;
+    // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
+    copy(&mut socket, &mut sink()).await.map(drop)
 }

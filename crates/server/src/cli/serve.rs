@@ -94,7 +94,8 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         if let Some(listener) = web_listener {
             logging::web_listening(listener.local_addr().map_err(cannot)?);
             let (rooms, load) = host.rooms();
-            services.spawn(Web::new(server.config(), rooms, load).serve(listener));
+            let boards = Box::new(host.store_calls(web::read_boards));
+            services.spawn(Web::new(server.config(), rooms, load, boards).serve(listener));
         }
         let operator = host.operator(signals.drain());
         services.spawn(operator.clone().answer_others());

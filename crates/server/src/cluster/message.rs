@@ -181,6 +181,7 @@ impl Record {
             phase: self.phase,
             members: self.names.as_slice().into(),
             watchers: 0,
+            browsers: 0,
             code: self.code,
         }
     }

@@ -65,6 +65,8 @@ struct Directory {
     summaries: watch::Sender<Arc<[RoomSummary]>>,
     /// The rooms that this host shares with other hosts.
     shared: Mutex<Vec<RoomSummary>>,
+    /// The browsers that watch rooms on this host.
+    browsers: Mutex<BTreeMap<RoomId, usize>>,
     /// Those of the shared rooms that somebody has entered on this host.
     entered: Mutex<BTreeMap<RoomId, Weak<RoomInterface>>>,
     /// The generator of invitation codes.
@@ -119,6 +121,7 @@ impl Rooms {
             open: Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() }),
             summaries: watch::Sender::new(Arc::from([])),
             shared: Mutex::default(),
+            browsers: Mutex::default(),
             entered: Mutex::default(),
             codes: Mutex::new(SplitMix64::new(seeds.codes)),
         }));
@@ -217,6 +220,17 @@ impl Rooms {
             entered.retain(|_, interface| interface.strong_count() > 0);
             entered.insert(id, Arc::downgrade(interface));
         });
+    }
+
+    /// Records the number of browsers that watch a room on this host, and tells the lobbies if it has changed.
+    pub(crate) fn note_browsers(&self, id: RoomId, count: usize) {
+        let before = locked(&self.0.browsers, |browsers| match count {
+            0 => browsers.remove(&id),
+            count => browsers.insert(id, count),
+        });
+        if before.unwrap_or_default() != count {
+            self.publish();
+        }
     }
 
     /// A code for a new private room.
@@ -372,7 +386,12 @@ impl Rooms {
         locked(&self.0.open, |open| {
             let rooms = open.rooms.values().map(summary);
             let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
-            let summaries: Arc<[RoomSummary]> = rooms.collect();
+            let mut summaries: Arc<[RoomSummary]> = rooms.collect();
+            locked(&self.0.browsers, |browsers| {
+                for room in Arc::make_mut(&mut summaries) {
+                    room.browsers = browsers.get(&room.id).copied().unwrap_or_default();
+                }
+            });
             let metrics = &self.0.load.metrics;
             metrics.rooms.set(summaries.len() as i64);
             metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());

@@ -39,8 +39,9 @@ pub(crate) struct RoomSummary {
     pub(crate) phase: Phase,
     /// The names of the members, in the order of joining.
     pub(crate) members: Arc<[Line]>,
-    /// The number of watchers.
+    /// The number of watchers, and of browsers that show the room live.
     pub(crate) watchers: usize,
+    pub(crate) browsers: usize,
     /// The code of a private room, which no lobby lists; `None` if the room is open to everybody.
     pub(crate) code: Option<RoomCode>,
 }
@@ -57,6 +58,7 @@ impl RoomSummary {
             phase: room.phase(),
             members: room.names().cloned().collect(),
             watchers: 0,
+            browsers: 0,
             code: None,
         }
     }

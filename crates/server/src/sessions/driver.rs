@@ -260,6 +260,16 @@ impl GameHost {
         (self.shared.rooms.clone(), Arc::clone(&self.shared.load))
     }
 
+    /// A function that runs `act` on the store; it returns `None` once the host has ended.
+    pub(crate) fn store_calls<T: Send + 'static>(
+        &self,
+        act: fn(&mut HostStore) -> T,
+    ) -> impl Fn() -> Option<Answer<T>> + use<T> {
+        // The last owner of the host shuts down the store's thread.
+        let shared = Arc::downgrade(&self.shared);
+        move || Some(shared.upgrade()?.store.call(act))
+    }
+
     /// A function that lists the rooms for an operator.
     pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
         let summaries = self.shared.rooms.summaries();

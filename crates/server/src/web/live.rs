@@ -1,67 +1,75 @@
-//! Rooms that are watched: each is drawn by one task for all who watch it.
+//! Rooms that are watched: each is drawn by one task for all who watch it in the same [form](Form).
 //!
 //! - A task draws at most [`PICTURES_PER_SECOND`] times a second, less often if the processor is busy, and only if
 //!   the room has taken a step. It ends with its room or its last watcher.
-//! - The task keeps the latest picture only. A watcher who has read the picture before gets the changes, and a
-//!   watcher who is behind gets the whole picture. So a watcher who does not read holds one picture, and nothing is
+//! - [`PICTURES_PER_MESSAGE`] pictures make a message, which the page shows one after the other. So half a thousand
+//!   watchers cost a thousand messages a second, not five.
+//! - The task keeps the latest message only. A watcher who has read the message before gets the changes, and a
+//!   watcher who is behind gets the whole picture. So a watcher who does not read holds one message, and nothing is
 //!   queued.
 //! - A message is encoded once. The whole picture is encoded when the first watcher needs it.
-//!
-//! While a player turned for five seconds, 1, 16 and 100 watchers had 49, 49 and 50 pictures drawn. Each watcher got
-//! 54 kB a second, and all hundred together cost 0.08 s of processor time.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 use bytes::Bytes;
-use futures_util::{SinkExt, StreamExt};
 use serde_json::json;
-use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::watch;
-use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep, timeout};
-use tokio_websockets::{CloseCode, Error, Message, WebSocketStream};
+use tokio::time::{Instant, sleep};
+use tokio_websockets::Message;
 
+use super::alis;
 use super::picture::{self, Cell};
-use crate::bucket::Bucket;
+use super::watch::Source;
 use crate::load::Load;
 use crate::lock::locked;
 use crate::metrics::Metrics;
+use crate::rooms::cast::{self, Cast};
 use crate::rooms::directory::Rooms;
 use crate::rooms::room::{Catalog, Mode, Phase, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::lobby::seen_through;
 use cellcaster::app::parts::of_steps;
+use cellcaster::game::STEPS_PER_SECOND;
 
 /// The maximum number of pictures per second.
-const PICTURES_PER_SECOND: u32 = 10;
+pub(crate) const PICTURES_PER_SECOND: u32 = 10;
+/// The number of pictures in a message.
+const PICTURES_PER_MESSAGE: u32 = 5;
 /// The number of a session's usual frames in the time of one picture.
 const FRAMES_PER_PICTURE: u32 = 3;
-/// The interval between two pings.
-const PING_INTERVAL: Duration = Duration::from_secs(30);
-/// The time that a browser may take to accept a message.
-const SEND_TIMEOUT: Duration = Duration::from_secs(30);
-/// The control frames that a browser may send in a second, and at once.
-const CONTROLS: [f64; 2] = [1.0, 10.0];
+/// The time between two pictures of a cast.
+const CAST_INTERVAL: Duration =
+    Duration::from_millis(1000 * cast::INTERVAL / STEPS_PER_SECOND as u64);
+
+/// The form in which a room is watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Form {
+    /// What a member sees, in messages for the page.
+    Cells,
+    /// The room from above, in events for asciinema's player.
+    Cast,
+}
 
 /// The rooms that are watched.
 pub(crate) struct LiveRooms {
     rooms: Rooms,
     pub(crate) load: Arc<Load>,
-    watched: Mutex<BTreeMap<RoomId, watch::Sender<Arc<Picture>>>>,
+    watched: Mutex<BTreeMap<(RoomId, Form), watch::Sender<Arc<Picture>>>>,
 }
 
-/// The latest picture of a room.
+/// The latest message about a room.
 #[derive(Debug, Default)]
-pub(crate) struct Picture {
-    /// The number of pictures before this one, which is 0 before the first.
+struct Picture {
+    /// The number of messages before this one, which is 0 before the first.
     number: u64,
-    step: u32,
-    cells: Vec<Cell>,
-    /// The changes since the previous picture; `None` if the cells are the same.
+    /// The changes since the previous message; `None` if the pictures are the same.
     changes: Option<Bytes>,
+    /// The step and the cells of the last picture.
+    last: (u32, Vec<Cell>),
     whole: OnceLock<Bytes>,
-    /// The room in words, as JSON.
+    /// The room in words, as JSON; empty in a cast.
     words: Arc<str>,
 }
 
@@ -84,17 +92,17 @@ impl LiveRooms {
     }
 
     /// Watches a public room.
-    pub(crate) fn watch(self: &Arc<Self>, id: RoomId) -> Option<watch::Receiver<Arc<Picture>>> {
+    pub(crate) fn watch(self: &Arc<Self>, id: RoomId, form: Form) -> Option<LivePictures> {
         self.is_public(id).then(|| {
             locked(&self.watched, |watched| {
-                let pictures = watched.entry(id).or_insert_with(|| {
+                let pictures = watched.entry((id, form)).or_insert_with(|| {
                     let pictures = watch::Sender::default();
-                    tokio::spawn(Arc::clone(self).draw(id, pictures.clone()));
+                    tokio::spawn(Arc::clone(self).draw((id, form), pictures.clone()));
                     pictures
                 });
                 let mut pictures = pictures.subscribe();
                 pictures.mark_changed();
-                pictures
+                LivePictures { form, pictures, read: 0, words: "".into(), has_ended: false }
             })
         })
     }
@@ -106,64 +114,202 @@ impl LiveRooms {
     }
 
     /// Draws a room for as long as it is watched.
-    async fn draw(self: Arc<Self>, id: RoomId, pictures: watch::Sender<Arc<Picture>>) {
+    async fn draw(
+        self: Arc<Self>,
+        (id, form): (RoomId, Form),
+        pictures: watch::Sender<Arc<Picture>>,
+    ) {
+        let mut drawing = match form {
+            Form::Cells => Drawing::Cells(Cells::default()),
+            Form::Cast => Drawing::Cast(Box::new(DrawnCast::new())),
+        };
         loop {
             let is_public = self.is_public(id);
-            let goes_on = locked(&self.watched, |watched| {
+            let (goes_on, browsers) = locked(&self.watched, |watched| {
                 let goes_on = is_public && pictures.receiver_count() > 0;
                 if !goes_on {
-                    watched.remove(&id);
+                    watched.remove(&(id, form));
                 }
-                goes_on
+                let of_room = watched.iter().filter(|(it, _)| it.0 == id);
+                (goes_on, of_room.map(|(_, pictures)| pictures.receiver_count()).sum())
             });
+            self.rooms.note_browsers(id, if is_public { browsers } else { 0 });
             if !goes_on {
                 return;
             }
             // The snapshot is dropped before the task waits.
             if let Some(room) = self.rooms.view(id) {
-                let before = Arc::clone(&pictures.borrow());
-                let next = before.next(&room, self.rooms.catalog(), &self.load.metrics);
+                let next = drawing.next(&room, self.rooms.catalog(), &self.load.metrics);
                 if let Some(next) = next {
                     pictures.send_replace(Arc::new(next));
                 }
             }
             let picture_time = self.load.rate().frame_time * FRAMES_PER_PICTURE;
-            sleep(picture_time.max(Duration::from_secs(1) / PICTURES_PER_SECOND)).await;
+            let least = match form {
+                Form::Cells => Duration::from_secs(1) / PICTURES_PER_SECOND,
+                Form::Cast => CAST_INTERVAL,
+            };
+            sleep(picture_time.max(least)).await;
         }
+    }
+}
+
+/// The drawing of a room.
+enum Drawing {
+    Cells(Cells),
+    Cast(Box<DrawnCast>),
+}
+
+/// The cells of a room, and the message that is being written.
+#[derive(Default)]
+struct Cells {
+    /// The number of messages up to now.
+    messages: u64,
+    /// The number of pictures since the last message, including pictures without a change.
+    waiting: u32,
+    step: u32,
+    cells: Vec<Cell>,
+    message: picture::Message,
+    words: Arc<str>,
+}
+
+struct DrawnCast {
+    cast: Cast,
+    begun: Instant,
+    /// The number and the time of the last event, and the room's step.
+    number: u64,
+    time: u64,
+    step: u64,
+}
+
+impl Drawing {
+    /// Draws `room`. Returns the next message, if one is complete and differs from the one before.
+    fn next(&mut self, room: &RoomView, catalog: &Catalog, metrics: &Metrics) -> Option<Picture> {
+        match self {
+            Self::Cells(cells) => cells.next(room, catalog, metrics),
+            Self::Cast(cast) => cast.next(room, metrics),
+        }
+    }
+}
+
+impl Cells {
+    fn next(&mut self, room: &RoomView, catalog: &Catalog, metrics: &Metrics) -> Option<Picture> {
+        let step = u32::try_from(room.step).unwrap_or(u32::MAX);
+        let is_first = self.messages == 0;
+        if is_first || step != self.step {
+            let cells = picture::draw(room, catalog);
+            metrics.web_pictures.inc();
+            if !is_first {
+                self.message.push_changes(step, &self.cells, &cells);
+            }
+            (self.step, self.cells) = (step, cells);
+        }
+        self.waiting += 1;
+        if !is_first && self.waiting < PICTURES_PER_MESSAGE {
+            return None;
+        }
+        self.waiting = 0;
+        let (changes, words) = (self.message.take(), words(room, catalog));
+        if !is_first && changes.is_none() && *words == *self.words {
+            return None;
+        }
+        self.words = words.into();
+        self.messages += 1;
+        Some(Picture {
+            number: self.messages,
+            changes,
+            last: (self.step, self.cells.clone()),
+            whole: OnceLock::new(),
+            words: Arc::clone(&self.words),
+        })
+    }
+}
+
+impl DrawnCast {
+    fn new() -> Self {
+        Self { cast: Cast::new(), begun: Instant::now(), number: 0, time: 0, step: 0 }
+    }
+
+    fn next(&mut self, room: &RoomView, metrics: &Metrics) -> Option<Picture> {
+        if self.number > 0 && room.step == self.step {
+            return None;
+        }
+        self.step = room.step;
+        let text = self.cast.next(room);
+        metrics.web_pictures.inc();
+        if text.is_empty() {
+            return None;
+        }
+        self.number += 1;
+        let time = self.begun.elapsed().as_micros() as u64;
+        let since = time - std::mem::replace(&mut self.time, time);
+        let screen = Cast::new().next(room);
+        Some(Picture {
+            number: self.number,
+            changes: Some(alis::output(self.number, since, &text)),
+            whole: alis::start(self.number, time, cast::SIZE, &screen).into(),
+            ..Picture::default()
+        })
     }
 }
 
 impl Picture {
-    /// The picture of `room`, if it differs from this one.
-    fn next(&self, room: &RoomView, catalog: &Catalog, metrics: &Metrics) -> Option<Self> {
-        let step = u32::try_from(room.step).unwrap_or(u32::MAX);
-        let words = words(room, catalog);
-        let is_first = self.number == 0;
-        if !is_first && step == self.step && *words == *self.words {
-            return None;
-        }
-        let cells = picture::draw(room, catalog);
-        metrics.web_pictures.inc();
-        let changes = picture::changes(step, &self.cells, &cells);
-        if !is_first && changes.is_none() && *words == *self.words {
-            return None;
-        }
-        let (number, whole) = (self.number + 1, OnceLock::new());
-        Some(Self { number, step, cells, changes, whole, words: words.into() })
-    }
-
-    /// The message for a watcher who has read picture `read`.
+    /// The message for a watcher who has read message `read`.
     fn message(&self, read: u64) -> Option<Bytes> {
         if read > 0 && read + 1 == self.number {
             return self.changes.clone();
         }
-        let whole = self.whole.get_or_init(|| picture::whole(self.step, &self.cells));
+        let whole = self.whole.get_or_init(|| {
+            let (step, cells) = &self.last;
+            let mut message = picture::Message::default();
+            message.push_whole(*step, cells);
+            message.take().unwrap_or_default()
+        });
         Some(whole.clone())
     }
 }
 
+/// The messages about a room for one browser.
+pub(crate) struct LivePictures {
+    form: Form,
+    pictures: watch::Receiver<Arc<Picture>>,
+    /// The number of the last message that was read.
+    read: u64,
+    words: Arc<str>,
+    has_ended: bool,
+}
+
+impl Source for LivePictures {
+    async fn next(&mut self) -> Result<Vec<Message>, String> {
+        let mut messages = Vec::new();
+        while messages.is_empty() {
+            if self.has_ended || self.pictures.changed().await.is_err() {
+                if self.form == Form::Cells || self.has_ended {
+                    return Err("The room has closed.".to_owned());
+                }
+                self.has_ended = true;
+                return Ok(vec![Message::binary(alis::END)]);
+            }
+            let picture = Arc::clone(&self.pictures.borrow_and_update());
+            if picture.number == 0 {
+                continue;
+            }
+            if self.words != picture.words {
+                self.words = Arc::clone(&picture.words);
+                messages.push(Message::text(self.words.to_string()));
+            }
+            if self.form == Form::Cast && self.read == 0 {
+                messages.push(Message::binary(alis::MAGIC));
+            }
+            messages.extend(picture.message(self.read).map(Message::binary));
+            self.read = picture.number;
+        }
+        Ok(messages)
+    }
+}
+
 /// The room in words: its mode and level, and the players with their points and places.
-fn words(room: &RoomView, catalog: &Catalog) -> String {
+pub(crate) fn words(room: &RoomView, catalog: &Catalog) -> String {
     let players = room.members.iter().map(|member| {
         json!({
             "name": member.name.as_str(),
@@ -187,96 +333,4 @@ fn words(room: &RoomView, catalog: &Catalog) -> String {
         "players": players.collect::<Vec<_>>(),
     })
     .to_string()
-}
-
-/// Sends the pictures to a browser until the room closes, or the browser leaves, sends data or does not read.
-pub(crate) async fn watch<S: AsyncRead + AsyncWrite + Unpin>(
-    mut socket: WebSocketStream<S>,
-    mut pictures: watch::Receiver<Arc<Picture>>,
-    metrics: &Metrics,
-) {
-    metrics.web_watchers.inc();
-    let _counted = Counted(metrics);
-    if let Some((code, reason)) = send_pictures(&mut socket, &mut pictures, metrics).await {
-        let goodbye = Message::close(Some(code), reason);
-        _ = timeout(SEND_TIMEOUT, socket.send(goodbye)).await;
-    }
-}
-
-struct Counted<'a>(&'a Metrics);
-
-impl Drop for Counted<'_> {
-    fn drop(&mut self) {
-        self.0.web_watchers.dec();
-    }
-}
-
-/// Sends pictures. Returns the code and the reason to tell the browser, unless it has gone.
-async fn send_pictures<S: AsyncRead + AsyncWrite + Unpin>(
-    socket: &mut WebSocketStream<S>,
-    pictures: &mut watch::Receiver<Arc<Picture>>,
-    metrics: &Metrics,
-) -> Option<(CloseCode, &'static str)> {
-    let begun = Instant::now();
-    let [per_second, most] = CONTROLS;
-    let mut controls = Bucket::new(per_second, most, Duration::ZERO);
-    let mut pings = interval_at(begun + PING_INTERVAL, PING_INTERVAL);
-    pings.set_missed_tick_behavior(MissedTickBehavior::Delay);
-    let (mut read, mut words, mut is_alive): (u64, Arc<str>, bool) = (0, "".into(), true);
-    loop {
-        tokio::select! {
-            changed = pictures.changed() => {
-                if changed.is_err() {
-                    return Some((CloseCode::NORMAL_CLOSURE, "The room has closed."));
-                }
-                let picture = Arc::clone(&pictures.borrow_and_update());
-                if picture.number == 0 {
-                    continue;
-                }
-                if words != picture.words {
-                    words = Arc::clone(&picture.words);
-                    send(socket, Message::text(words.to_string())).await?;
-                }
-                let message = picture.message(read);
-                read = picture.number;
-                // Only the message stays in memory while the browser does not read.
-                drop(picture);
-                if let Some(message) = message {
-                    metrics.web_bytes.inc_by(message.len() as u64);
-                    send(socket, Message::binary(message)).await?;
-                }
-            }
-            message = socket.next() => {
-                let message = match message? {
-                    Ok(message) => message,
-                    Err(Error::Io(_)) => return None,
-                    Err(_) => return Some((CloseCode::POLICY_VIOLATION, NO_DATA)),
-                };
-                if !(message.is_ping() || message.is_pong() || message.is_close()) {
-                    return Some((CloseCode::POLICY_VIOLATION, NO_DATA));
-                }
-                is_alive = true;
-                if !controls.takes_one(begun.elapsed()) {
-                    return Some((CloseCode::POLICY_VIOLATION, "There are too many control frames."));
-                }
-            }
-            _ = pings.tick() => {
-                if !std::mem::take(&mut is_alive) {
-                    return None;
-                }
-                send(socket, Message::ping("")).await?;
-            }
-        }
-    }
-}
-
-/// Told to a browser that sends data.
-const NO_DATA: &str = "This socket only shows a room.";
-
-/// Sends a message, and waits until the socket has taken it. Returns `None` if the browser has gone or does not read.
-async fn send<S: AsyncRead + AsyncWrite + Unpin>(
-    socket: &mut WebSocketStream<S>,
-    message: Message,
-) -> Option<()> {
-    timeout(SEND_TIMEOUT, socket.send(message)).await.ok()?.ok()
 }

@@ -1,10 +1,11 @@
 //! Pictures of a room for browsers: what the lobby's live picture shows, and the bytes that carry it.
 //!
-//! A message is compressed with raw DEFLATE, which browsers decompress. Numbers are big-endian:
+//! A message holds pictures in the order of their steps. It is compressed with raw DEFLATE, which browsers decompress.
+//! Numbers are big-endian:
 //!
 //! ```text
 //! whole picture:  0, step u32, columns u8, rows u8, the cells by rows
-//! changes:        1, step u32, runs of: first cell u16, count u16, the cells
+//! changes:        1, step u32, count of runs u16, runs of: first cell u16, count u16, the cells
 //! cell:           0, upper RGB, lower RGB
 //!                 n, n bytes of a character in UTF-8, its RGB, the RGB behind it
 //! ```
@@ -108,44 +109,60 @@ fn rgb(color: Color, default: Color) -> Rgb {
     }
 }
 
-/// The message with a whole picture.
-pub(crate) fn whole(step: u32, cells: &[Cell]) -> Bytes {
-    let mut bytes = head(0, step);
-    bytes.extend([COLUMNS as u8, ROWS as u8]);
-    for cell in cells {
-        push(&mut bytes, *cell);
-    }
-    compressed(&bytes)
-}
+/// A message that is being written.
+#[derive(Debug, Default)]
+pub(crate) struct Message(Vec<u8>);
 
-/// The message with the changes from one picture to the next; `None` if there are none.
-pub(crate) fn changes(step: u32, before: &[Cell], after: &[Cell]) -> Option<Bytes> {
-    let mut bytes = head(1, step);
-    let empty = bytes.len();
-    let mut runs: Vec<(usize, usize)> = Vec::new();
-    for (at, (before, after)) in before.iter().zip(after).enumerate() {
-        if before == after {
-            continue;
-        }
-        match runs.last_mut() {
-            Some((_, end)) if at <= *end + MAX_GAP => *end = at + 1,
-            _ => runs.push((at, at + 1)),
+impl Message {
+    /// Adds a whole picture.
+    pub(crate) fn push_whole(&mut self, step: u32, cells: &[Cell]) {
+        self.push_head(0, step);
+        self.0.extend([COLUMNS as u8, ROWS as u8]);
+        for cell in cells {
+            push(&mut self.0, *cell);
         }
     }
-    for (start, end) in runs {
-        bytes.extend((start as u16).to_be_bytes());
-        bytes.extend(((end - start) as u16).to_be_bytes());
-        for cell in &after[start..end] {
-            push(&mut bytes, *cell);
-        }
-    }
-    (bytes.len() > empty).then(|| compressed(&bytes))
-}
 
-fn head(kind: u8, step: u32) -> Vec<u8> {
-    let mut bytes = vec![kind];
-    bytes.extend(step.to_be_bytes());
-    bytes
+    /// Adds the changes from one picture to the next, if there are any.
+    pub(crate) fn push_changes(&mut self, step: u32, before: &[Cell], after: &[Cell]) {
+        let mut runs: Vec<(usize, usize)> = Vec::new();
+        for (at, (before, after)) in before.iter().zip(after).enumerate() {
+            if before == after {
+                continue;
+            }
+            match runs.last_mut() {
+                Some((_, end)) if at <= *end + MAX_GAP => *end = at + 1,
+                _ => runs.push((at, at + 1)),
+            }
+        }
+        if runs.is_empty() {
+            return;
+        }
+        self.push_head(1, step);
+        self.push_number(runs.len());
+        for (start, end) in runs {
+            self.push_number(start);
+            self.push_number(end - start);
+            for cell in &after[start..end] {
+                push(&mut self.0, *cell);
+            }
+        }
+    }
+
+    /// The bytes for browsers; `None` if there is no picture. The message is empty again.
+    pub(crate) fn take(&mut self) -> Option<Bytes> {
+        let bytes = std::mem::take(&mut self.0);
+        (!bytes.is_empty()).then(|| compressed(&bytes))
+    }
+
+    fn push_head(&mut self, kind: u8, step: u32) {
+        self.0.push(kind);
+        self.0.extend(step.to_be_bytes());
+    }
+
+    fn push_number(&mut self, number: usize) {
+        self.0.extend((number as u16).to_be_bytes());
+    }
 }
 
 fn push(bytes: &mut Vec<u8>, cell: Cell) {

@@ -20,6 +20,8 @@ pub(crate) struct Request {
     origin: Option<String>,
     /// Whether the client wants a WebSocket.
     pub(crate) is_upgrade: bool,
+    /// The elements of `Sec-WebSocket-Protocol`, in order.
+    pub(crate) protocols: Vec<String>,
     /// The elements of `X-Forwarded-For`, in order.
     pub(crate) forwarded: Vec<String>,
 }
@@ -28,6 +30,12 @@ impl Request {
     /// The path of the target.
     pub(crate) fn path(&self) -> &str {
         self.target.split('?').next().unwrap_or_default()
+    }
+
+    /// A value of the target's query, as it is written.
+    pub(crate) fn query(&self, name: &str) -> Option<&str> {
+        let (_, query) = self.target.split_once('?')?;
+        query.split('&').find_map(|part| part.strip_prefix(name)?.strip_prefix('='))
     }
 
     /// Returns true if `Origin` names the host of the request. Every browser sends it with a WebSocket.
@@ -85,10 +93,17 @@ fn parse(bytes: &[u8]) -> Option<Request> {
         } else if is("upgrade") {
             request.is_upgrade |= value.eq_ignore_ascii_case("websocket");
         } else if is("x-forwarded-for") {
-            request.forwarded.extend(value.split(',').map(|part| part.trim().to_owned()));
+            request.forwarded.extend(elements(value));
+        } else if is("sec-websocket-protocol") {
+            request.protocols.extend(elements(value));
         }
     }
     (!is_ambiguous).then_some(request)
+}
+
+/// The elements of a list in a header.
+fn elements(value: &str) -> impl Iterator<Item = String> {
+    value.split(',').map(|part| part.trim().to_owned())
 }
 
 #[cfg(test)]
@@ -108,7 +123,7 @@ mod tests {
             b"GET /rooms?all HTTP/1.1\r\nHost: a\r\nX-Forwarded-For: 192.0.2.7, 10.0.0.1\r\n\
                      x-forwarded-for: 10.0.0.2\r\n\r\n";
         let request = result(head).unwrap().unwrap();
-        assert_eq!(request.path(), "/rooms");
+        assert_eq!((request.path(), request.query("all")), ("/rooms", None));
         assert_eq!(request.forwarded, ["192.0.2.7", "10.0.0.1", "10.0.0.2"]);
         assert!(!request.is_of_same_host() && !request.is_upgrade);
         assert!(result(&head[..40]).is_err());

@@ -1,6 +1,7 @@
 //! The service over real sockets, with rooms in this process.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::io::Read;
 
 use flate2::read::DeflateDecoder;
@@ -9,18 +10,20 @@ use http::{HeaderName, HeaderValue};
 use serde_json::Value;
 use tokio::io::{AsyncRead, AsyncWrite, duplex};
 use tokio::runtime::Builder;
+use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
 use tokio_websockets::{ClientBuilder, Message, WebSocketStream};
 
 use super::picture::{COLUMNS, Cell, ROWS, draw};
 use super::*;
-use crate::accounts::AddressPrefix;
+use crate::accounts::{AccountId, AddressPrefix, LevelBoard, LevelScore, Name, UnixTime};
 use crate::config::Config;
 use crate::metrics::Metrics;
 use crate::rooms::directory::{Place, Recordings, RoomLimits, Seeds};
-use crate::rooms::room::{Catalog, Command, Mode, NAME_COLUMNS};
+use crate::rooms::replayed::replayed;
+use crate::rooms::room::{CHAT_COLUMNS, Catalog, Command, Mode, NAME_COLUMNS};
 use crate::rooms::summary::RoomRequest;
-use cellcaster::game::{Intent, Intents};
+use cellcaster::game::{Intent, Intents, Rank, Tally};
 use cellcaster::world::Difficulty;
 
 /// Long enough for a machine under load.
@@ -55,11 +58,17 @@ impl House {
             standing: vec![wish(Mode::Roam)],
         };
         let (catalog, seeds) = (Arc::new(Catalog::builtin()), Seeds { rooms: 7, codes: 8 });
-        let recordings = Recordings::new(|_, _| None);
+        let recordings =
+            Recordings::in_folder(config.recordings.clone(), config.recording_bounds());
         let rooms = Rooms::new(limits, catalog, recordings, Arc::clone(&load), seeds);
         let listener = listen("127.0.0.1:0".parse().unwrap()).unwrap();
         let address = listener.local_addr().unwrap();
-        let web = Web::new(LiveConfig::new(config), rooms.clone(), load);
+        let boards = Box::new(|| {
+            let (sender, answer) = oneshot::channel();
+            sender.send(made_up_boards()).unwrap();
+            Some(answer)
+        });
+        let web = Web::new(LiveConfig::new(config), rooms.clone(), load, boards);
         let service = tokio::spawn(web.serve(listener));
         Self { address, rooms, metrics, service }
     }
@@ -78,14 +87,28 @@ impl House {
         self.answer(&format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n")).await
     }
 
+    /// The body of an answer, as JSON.
+    async fn list(&self, path: &str) -> Value {
+        let answer = self.get(path).await;
+        serde_json::from_str(answer.split_once("\r\n\r\n").unwrap().1).unwrap()
+    }
+
     /// Watches a room, with more headers; fails if the server does not switch protocols.
     async fn watch_with(
         &self,
         room: u32,
         headers: &[(&'static str, &str)],
     ) -> Option<WebSocketStream<TcpStream>> {
+        self.open_socket(&format!("rooms/{room}/live"), headers).await
+    }
+
+    async fn open_socket(
+        &self,
+        path: &str,
+        headers: &[(&'static str, &str)],
+    ) -> Option<WebSocketStream<TcpStream>> {
         let socket = TcpStream::connect(self.address).await.unwrap();
-        let uri = format!("ws://{}/rooms/{room}/live", self.address);
+        let uri = format!("ws://{}/{path}", self.address);
         let mut client = ClientBuilder::new().uri(&uri).unwrap();
         for (name, value) in headers {
             let value = HeaderValue::from_str(value).unwrap();
@@ -95,7 +118,12 @@ impl House {
     }
 
     async fn watch(&self, room: u32) -> Option<WebSocketStream<TcpStream>> {
-        self.watch_with(room, &[("origin", &format!("http://{}", self.address))]).await
+        self.open_of_page(&format!("rooms/{room}/live")).await
+    }
+
+    /// Opens a WebSocket as the page does.
+    async fn open_of_page(&self, path: &str) -> Option<WebSocketStream<TcpStream>> {
+        self.open_socket(path, &[("origin", &format!("http://{}", self.address))]).await
     }
 
     /// Waits until this many browsers watch.
@@ -107,6 +135,19 @@ impl House {
         };
         timeout(PATIENCE, counted).await.expect("the number of watchers");
     }
+}
+
+fn made_up_boards() -> Vec<(LevelBoard, Vec<LevelScore>)> {
+    let board = |level| LevelBoard::new(level, Difficulty::Normal).unwrap();
+    let score = LevelScore {
+        account: AccountId(1),
+        name: Name::new("Mara").unwrap(),
+        tally: Tally { steps: 61 * 60, ..Tally::default() },
+        rank: Rank::ALL[0],
+        verified_at: UnixTime::new(1),
+    };
+    // The host does not have the second level.
+    vec![(board("cellar"), vec![score]), (board("moss-0123456789abcdef"), Vec::new())]
 }
 
 impl Drop for House {
@@ -125,47 +166,66 @@ struct Screen {
     step: u32,
     cells: Vec<Cell>,
     words: Value,
-    /// The number of messages with a whole picture, and with changes.
-    messages: [usize; 2],
+    /// The number of whole pictures, and of changes.
+    pictures: [usize; 2],
 }
 
 impl Screen {
-    /// Waits for the next picture.
-    async fn next<S: AsyncRead + AsyncWrite + Unpin>(&mut self, socket: &mut WebSocketStream<S>) {
+    /// Waits for the next message with pictures. Returns the steps and the cells of all pictures in it.
+    async fn next<S: AsyncRead + AsyncWrite + Unpin>(
+        &mut self,
+        socket: &mut WebSocketStream<S>,
+    ) -> Vec<(u32, Vec<Cell>)> {
+        self.next_or_end(socket).await.expect("a picture")
+    }
+
+    /// Like [`next`](Self::next).
+    ///
+    /// # Errors
+    /// The reason, if the server closes the connection.
+    async fn next_or_end<S: AsyncRead + AsyncWrite + Unpin>(
+        &mut self,
+        socket: &mut WebSocketStream<S>,
+    ) -> Result<Vec<(u32, Vec<Cell>)>, String> {
         loop {
             let message = timeout(PATIENCE, socket.next()).await.expect("a message");
             let message = message.unwrap().unwrap();
-            if let Some(text) = message.as_text() {
+            if let Some((_, reason)) = message.as_close() {
+                return Err(reason.to_owned());
+            } else if let Some(text) = message.as_text() {
                 self.words = serde_json::from_str(text).unwrap();
             } else if message.is_binary() {
-                return self.show(message.as_payload());
+                return Ok(self.show(message.as_payload()));
             }
         }
     }
 
-    fn show(&mut self, message: &[u8]) {
+    fn show(&mut self, message: &[u8]) -> Vec<(u32, Vec<Cell>)> {
         let mut bytes = Vec::new();
         DeflateDecoder::new(message).read_to_end(&mut bytes).unwrap();
-        let (kind, mut rest) = (bytes[0], &bytes[5..]);
-        self.messages[usize::from(kind)] += 1;
-        self.step = u32::from_be_bytes(bytes[1..5].try_into().unwrap());
-        if kind == 0 {
-            assert_eq!(rest[..2], [COLUMNS as u8, ROWS as u8]);
-            rest = &rest[2..];
-            self.cells.clear();
-            while !rest.is_empty() {
-                self.cells.push(take_cell(&mut rest));
-            }
-        }
+        let mut rest = &bytes[..];
+        let mut shown = Vec::new();
         while !rest.is_empty() {
-            let number = |at: usize| usize::from(u16::from_be_bytes([rest[at], rest[at + 1]]));
-            let (first, count) = (number(0), number(2));
-            rest = &rest[4..];
-            for cell in &mut self.cells[first..first + count] {
-                *cell = take_cell(&mut rest);
+            let kind = rest[0];
+            self.pictures[usize::from(kind)] += 1;
+            self.step = u32::from_be_bytes(rest[1..5].try_into().unwrap());
+            rest = &rest[5..];
+            if kind == 0 {
+                assert_eq!(rest[..2], [COLUMNS as u8, ROWS as u8]);
+                rest = &rest[2..];
+                let cells = COLUMNS * ROWS;
+                self.cells = (0..cells).map(|_| take_cell(&mut rest)).collect();
+            } else {
+                for _ in 0..take_number(&mut rest) {
+                    let (first, count) = (take_number(&mut rest), take_number(&mut rest));
+                    for cell in &mut self.cells[first..first + count] {
+                        *cell = take_cell(&mut rest);
+                    }
+                }
             }
+            shown.push((self.step, self.cells.clone()));
         }
-        assert_eq!(self.cells.len(), usize::from(COLUMNS * ROWS));
+        shown
     }
 
     /// The text cells of the last row.
@@ -177,6 +237,12 @@ impl Screen {
         });
         text.collect()
     }
+}
+
+fn take_number(bytes: &mut &[u8]) -> usize {
+    let (number, rest) = bytes.split_first_chunk().unwrap();
+    *bytes = rest;
+    u16::from_be_bytes(*number).into()
 }
 
 fn take_cell(bytes: &mut &[u8]) -> Cell {
@@ -212,9 +278,7 @@ fn the_page_and_the_list_are_served_and_everything_else_is_rejected() {
         let _ben = house.rooms.open(&wish(Mode::Tag), true, &name("Ben")).unwrap();
         let listed = async {
             loop {
-                let list = house.get("/rooms").await;
-                let list: Value =
-                    serde_json::from_str(list.split_once("\r\n\r\n").unwrap().1).unwrap();
+                let list = house.list("/rooms").await;
                 if list["rooms"][0]["players"][0] == "Ada" {
                     return list;
                 }
@@ -229,7 +293,9 @@ fn the_page_and_the_list_are_served_and_everything_else_is_rejected() {
         );
         assert_eq!(list["rooms"][0]["mode"], "Roam");
         for (request, status) in [
-            ("GET /boards HTTP/1.1\r\n\r\n", "404"),
+            ("GET /other HTTP/1.1\r\n\r\n", "404"),
+            ("GET /records/../room-1.cast HTTP/1.1\r\n\r\n", "404"),
+            ("GET /records/room-1/play?from=-1 HTTP/1.1\r\n\r\n", "404"),
             ("GET /rooms/1/live HTTP/1.1\r\nHost: a\r\n\r\n", "426"),
             ("GET /rooms/x/live HTTP/1.1\r\nHost: a\r\n\r\n", "404"),
             ("POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "405"),
@@ -259,20 +325,37 @@ fn a_live_picture_equals_the_snapshot_of_its_step() {
                         let view = ada.view().unwrap();
                         views.insert(view.step as u32, view);
                     }
-                    () = screen.next(&mut socket) => {
-                        let Some(view) = views.get(&screen.step) else { continue };
+                    pictures = screen.next(&mut socket) => for (step, cells) in pictures {
+                        let Some(view) = views.get(&step) else { continue };
                         let drawn = draw(view, house.rooms.catalog());
-                        assert!(screen.cells == drawn, "step {} differs", screen.step);
+                        assert!(cells == drawn, "step {step} differs");
                         compared += 1;
                     }
                 }
             }
         };
         timeout(PATIENCE, compare).await.unwrap();
-        assert_eq!(screen.messages[0], 1, "a browser that reads gets changes only");
+        assert_eq!(screen.pictures[0], 1, "a browser that reads gets changes only");
         assert_eq!(screen.words["seen"], "Ada");
         assert_eq!(screen.words["mode"], "Roam");
         assert_eq!(screen.words["players"][0]["name"], "Ada");
+    });
+}
+
+#[test]
+fn lobbies_know_how_many_browsers_watch() {
+    run(async || {
+        let house = House::open(|_| ());
+        let mut summaries = house.rooms.summaries();
+        let mut sockets = Vec::new();
+        for path in ["rooms/1/live", "rooms/1/live", "rooms/1/stream"] {
+            sockets.push(house.open_of_page(path).await.unwrap());
+        }
+        for count in [3, 0] {
+            let counted = summaries.wait_for(|rooms| rooms[0].browsers == count);
+            timeout(PATIENCE, counted).await.unwrap().unwrap();
+            sockets.clear();
+        }
     });
 }
 
@@ -348,12 +431,12 @@ fn a_browser_that_does_not_read_costs_one_picture() {
         let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
         turn(&ada, true);
         let live = Arc::new(LiveRooms::new(house.rooms.clone(), load(&house)));
-        let pictures = live.watch(RoomId(1)).unwrap();
+        let mut pictures = live.watch(RoomId(1), Form::Cells).unwrap();
         // The link holds a few bytes, so everything else waits in the service.
         let (near, far) = duplex(64);
         let metrics = Arc::clone(&house.metrics);
         let watched = tokio::spawn(async move {
-            watch(ServerBuilder::new().serve(near), pictures, &metrics).await;
+            watch(ServerBuilder::new().serve(near), &mut pictures, &metrics).await;
         });
         let drawn = async {
             while house.metrics.web_pictures.get() < 12 {
@@ -361,7 +444,6 @@ fn a_browser_that_does_not_read_costs_one_picture() {
             }
         };
         timeout(PATIENCE, drawn).await.unwrap();
-        assert_eq!(house.metrics.web_bytes.get(), 0, "the words alone fill the link");
         turn(&ada, false);
         sleep(Duration::from_millis(500)).await;
         // The browser reads again. It gets the message that was on its way, and then the newest picture.
@@ -377,8 +459,8 @@ fn a_browser_that_does_not_read_costs_one_picture() {
             }
         };
         timeout(PATIENCE, newest).await.unwrap();
-        assert_eq!(screen.messages[0], 2, "{:?}", screen.messages);
-        assert!(screen.messages[1] <= 2, "{:?}", screen.messages);
+        assert_eq!(screen.pictures[0], 2, "{:?}", screen.pictures);
+        assert!(screen.pictures[1] <= 5, "{:?}", screen.pictures);
         watched.abort();
     });
 }
@@ -485,5 +567,267 @@ fn a_room_without_players_is_shown_with_a_caption_and_a_closed_room_says_so() {
             }
         };
         assert_eq!(timeout(PATIENCE, closed).await.unwrap(), "The room has closed.");
+    });
+}
+
+/// A folder that is removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("cellcaster-web-{}-{name}", std::process::id());
+        Self(std::env::temp_dir().join(name))
+    }
+
+    /// A host that records its rooms into this folder.
+    fn house(&self, change: impl FnOnce(&mut Config)) -> House {
+        House::open(|config| {
+            config.recordings = Some(self.0.clone());
+            change(config);
+        })
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Lets Ada talk, turn around for a while, and leave.
+async fn play(house: &House) {
+    let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+    ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap())).unwrap();
+    turn(&ada, true);
+    sleep(Duration::from_millis(2600)).await;
+    drop(ada);
+    let left = async {
+        while house.rooms.view(RoomId(1)).is_none_or(|room| !room.members.is_empty()) {
+            sleep(Duration::from_millis(10)).await;
+        }
+        // The recording is flushed after the last step.
+        sleep(Duration::from_millis(100)).await;
+    };
+    timeout(PATIENCE, left).await.unwrap();
+}
+
+#[test]
+fn a_record_is_shown_from_any_second_exactly_as_it_was() {
+    run(async || {
+        let folder = Folder::new("record");
+        let house = folder.house(|_| ());
+        play(&house).await;
+        let list = house.list("/records").await;
+        assert_eq!((&list[0]["name"], &list[0]["mode"]), (&json!("room-1"), &json!("Roam")));
+        let log = fs::read_to_string(folder.0.join("room-1.log")).unwrap();
+        let catalog = house.rooms.catalog();
+        let mut drawn = Vec::new();
+        let look = &mut |room: &crate::rooms::room::Room| {
+            drawn.push(draw(&room.view(), catalog));
+            Ok(())
+        };
+        replayed(&log, catalog, look).unwrap();
+        assert!(drawn.len() > 120, "{} steps", drawn.len());
+        // The first browser draws the record; the second one shares its pieces.
+        let mut counts = Vec::new();
+        for from in [1, 0, 0, 9999] {
+            let path = format!("records/room-1/play?from={from}");
+            let mut socket = house.open_of_page(&path).await.unwrap();
+            let mut screen = Screen::default();
+            let mut steps = Vec::new();
+            let reason = loop {
+                match screen.next_or_end(&mut socket).await {
+                    Ok(pictures) => {
+                        for (step, cells) in pictures {
+                            let is_same = drawn.get(step as usize).is_none_or(|it| *it == cells);
+                            assert!(is_same, "step {step} differs");
+                            steps.push(step);
+                        }
+                    }
+                    Err(reason) => break reason,
+                }
+            };
+            assert_eq!(reason, "The record has ended.");
+            let last = (drawn.len() as u32).div_ceil(60) - 1;
+            assert_eq!(steps[0], from.min(last) * 60);
+            assert!(steps.last().unwrap() + 6 > last * 60, "{steps:?}");
+            assert_eq!(screen.words["players"][0]["name"], "Ada");
+            counts.push(house.metrics.web_pictures.get());
+        }
+        assert!(counts[1] > counts[0] && counts[1] == counts[2], "{counts:?}");
+    });
+}
+
+#[test]
+fn private_records_and_other_sites_are_rejected() {
+    run(async || {
+        let folder = Folder::new("private");
+        let house = folder.house(|_| ());
+        let ben = house.rooms.open(&wish(Mode::Tag), true, &name("Ben")).unwrap();
+        let cid = house.rooms.open(&wish(Mode::Alone), false, &name("Cid")).unwrap();
+        sleep(Duration::from_millis(1500)).await;
+        drop((ben, cid));
+        play(&house).await;
+        assert_eq!(house.list("/records").await.as_array().unwrap().len(), 1);
+        let names = fs::read_dir(&folder.0).unwrap().map(|it| it.unwrap().file_name());
+        let names: BTreeSet<_> = names.map(|it| it.into_string().unwrap()).collect();
+        assert!(names.contains("private-2.log") && names.contains("private-3.log"), "{names:?}");
+        for name in ["private-2", "private-3", "room-2", "room-9"] {
+            let play = house.open_of_page(&format!("records/{name}/play")).await;
+            assert!(play.is_none(), "{name}");
+            let cast = house.get(&format!("/records/{name}.cast")).await;
+            assert!(cast.starts_with("HTTP/1.1 404 "), "{name}: {cast}");
+        }
+        let headers = [("origin", "https://evil.example.org")];
+        for path in ["records/room-1/play", "rooms/1/stream"] {
+            assert!(house.open_socket(path, &headers).await.is_none(), "{path}");
+            assert!(house.open_of_page(path).await.is_some(), "{path}");
+        }
+    });
+}
+
+#[test]
+fn a_cast_is_loaded_without_chat_and_counts_as_a_watcher() {
+    run(async || {
+        let folder = Folder::new("cast");
+        let house = folder.house(|config| config.web_watchers_per_address = 1);
+        play(&house).await;
+        let cast = house.get("/records/room-1.cast").await;
+        let (head, cast) = cast.split_once("\r\n\r\n").unwrap();
+        assert!(head.contains("application/x-asciicast"), "{head}");
+        assert_eq!(cast, fs::read_to_string(folder.0.join("room-1.cast")).unwrap());
+        assert!(cast.contains("Ada") && !cast.contains("secret"), "{cast}");
+        assert!(cast.lines().nth(1).unwrap().contains("\\u001b[?25l"), "the cursor is shown");
+        let _watcher = house.watch(1).await.unwrap();
+        let refusal = house.get("/records/room-1.cast").await;
+        assert!(refusal.starts_with("HTTP/1.1 503 "), "{refusal}");
+    });
+}
+
+#[test]
+fn few_records_are_open_at_a_time() {
+    run(async || {
+        let folder = Folder::new("open");
+        let house = folder.house(|_| ());
+        play(&house).await;
+        for copy in 2..=5 {
+            fs::copy(folder.0.join("room-1.log"), folder.0.join(format!("room-{copy}.log")))
+                .unwrap();
+        }
+        let mut sockets = Vec::new();
+        for record in 1..=4 {
+            let path = format!("records/room-{record}/play");
+            sockets.push(house.open_of_page(&path).await.unwrap());
+        }
+        assert!(house.open_of_page("records/room-5/play").await.is_none());
+        assert!(house.open_of_page("records/room-1/play").await.is_some());
+        sockets.remove(0);
+        let opened = async {
+            while house.open_of_page("records/room-5/play").await.is_none() {
+                sleep(Duration::from_millis(20)).await;
+            }
+        };
+        timeout(PATIENCE, opened).await.unwrap();
+    });
+}
+
+#[test]
+fn boards_are_shown_as_json_and_as_text() {
+    run(async || {
+        let house = House::open(|_| ());
+        let boards = house.list("/boards").await;
+        assert_eq!(boards.as_array().unwrap().len(), 1);
+        let (level, entry) = (&boards[0]["level"], &boards[0]["entries"][0]);
+        assert_eq!((level, &entry["name"]), (&json!("Cellar"), &json!("Mara")));
+        let text = house.get("/boards.txt").await;
+        for part in ["Cellar, normal", "1  Mara", entry["time"].as_str().unwrap()] {
+            assert!(text.contains(part), "{text}");
+        }
+    });
+}
+
+/// The screen of asciinema's player, by its own emulator.
+struct Player {
+    terminal: Option<avt::Terminal>,
+    messages: usize,
+}
+
+impl Player {
+    async fn next(&mut self, socket: &mut WebSocketStream<TcpStream>) {
+        let message = timeout(PATIENCE, socket.next()).await.unwrap().unwrap().unwrap();
+        let mut bytes = message.as_payload().to_vec();
+        self.messages += 1;
+        if self.messages == 1 {
+            assert_eq!(bytes, b"ALiS\x01");
+            return;
+        }
+        let kind = bytes.remove(0);
+        let mut rest = &bytes[..];
+        let mut number = || {
+            let end = rest.iter().position(|byte| *byte < 128).unwrap();
+            let (bytes, others) = rest.split_at(end + 1);
+            rest = others;
+            bytes.iter().rev().fold(0, |sum, byte| sum << 7 | usize::from(byte & 127))
+        };
+        let (_, _) = (number(), number());
+        if kind == 1 {
+            let size = [number(), number()];
+            assert_eq!((size, number()), ([80, 24], 0));
+            self.terminal = Some(avt::Terminal::new(80, 24).unwrap());
+        } else {
+            assert_eq!(kind, b'o');
+        }
+        let length = number();
+        assert_eq!(length, rest.len());
+        self.terminal.as_mut().unwrap().feed(str::from_utf8(rest).unwrap());
+    }
+
+    /// The characters with their colours.
+    fn screen(&self) -> String {
+        let terminal = self.terminal.as_ref().unwrap();
+        assert_eq!(terminal.cursor().position(), None, "the cursor is shown");
+        terminal.screen().visible_lines().map(|line| format!("{:?}\n", line.cells())).collect()
+    }
+}
+
+#[test]
+fn a_player_who_comes_late_sees_the_same_stream() {
+    run(async || {
+        let house = House::open(|_| ());
+        let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap())).unwrap();
+        turn(&ada, true);
+        let offers = "v1.alis, v2.asciicast, raw";
+        let origin = format!("http://{}", house.address);
+        let headers = [("origin", origin.as_str()), ("sec-websocket-protocol", offers)];
+        let mut players = Vec::new();
+        let screens = async {
+            for _ in 0..3 {
+                let socket = house.open_socket("rooms/1/stream", &headers).await.unwrap();
+                players.push((Player { terminal: None, messages: 0 }, socket));
+                for (player, socket) in &mut players {
+                    for _ in 0..4 {
+                        player.next(socket).await;
+                    }
+                }
+            }
+            let mut intents = Intents::new();
+            intents.insert(Intent::Forward);
+            ada.act(Command::Intents { seen: 0, intents }).unwrap();
+            sleep(Duration::from_millis(600)).await;
+            // A room without members takes no steps.
+            drop(ada);
+            loop {
+                for (player, socket) in &mut players {
+                    while timeout(Duration::from_millis(300), player.next(socket)).await.is_ok() {}
+                }
+                let screens: BTreeSet<_> = players.iter().map(|it| it.0.screen()).collect();
+                if screens.len() == 1 {
+                    return screens.into_iter().next().unwrap();
+                }
+            }
+        };
+        let screen = timeout(PATIENCE, screens).await.expect("the same screens");
+        assert!(!screen.contains("secret"), "{screen}");
     });
 }

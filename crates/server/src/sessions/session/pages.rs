@@ -645,13 +645,15 @@ fn members_of(room: &RoomSummary) -> String {
     format!("{}/{}", room.members.len(), room.mode.most())
 }
 
-/// A sentence with the names of a room's members and the number of watchers.
+/// A sentence with the names of a room's members and the numbers of watchers and browsers.
 fn who_is_here(room: &RoomSummary) -> String {
-    let watchers = match room.watchers {
-        0 => String::new(),
-        1 => " 1 watcher.".to_owned(),
-        count => format!(" {count} watchers."),
-    };
+    let counts = [(room.watchers, "watcher"), (room.browsers, "browser")];
+    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let counts: Vec<String> = counts
+        .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
+        .collect();
+    let watchers =
+        if counts.is_empty() { String::new() } else { format!(" {}.", counts.join(", ")) };
     let names: Vec<&str> = room.members.iter().map(Line::as_str).collect();
     if names.is_empty() {
         return format!("Nobody is here yet.{watchers}");

@@ -299,6 +299,7 @@ fn room_elsewhere(id: u32, level: &str) -> RoomSummary {
         phase: Phase::Waiting,
         members: [line("Kim")].into(),
         watchers: 0,
+        browsers: 0,
         code: None,
     }
 }
