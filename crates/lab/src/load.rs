@@ -12,6 +12,9 @@
 //! `cellcaster-server` beside this one. `--sshd` measures OpenSSH's server, with one process of the
 //! game for each session, instead of `cellcaster-server`.
 //!
+//! `--browsers N` also measures before that, for as long, while N browsers watch the room with the most players. It
+//! prints the share of the processor that they add.
+//!
 //! `--table` measures one server with more and more players, at 20 and at 10 frames a second, and
 //! prints a table. `--update PAGE` writes the table to a page.
 //!
@@ -26,6 +29,7 @@
 //! `--soak` makes clients come, walk, talk, resize their windows and leave in several ways, chosen
 //! by `--seed`. It reports the server's resources ten times.
 
+mod browser;
 mod bus;
 mod client;
 #[path = "../../server/tests/support/lamp.rs"]
@@ -46,6 +50,7 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
+use browser::Browsers;
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
 use report::{Figures, Tally};
@@ -84,6 +89,9 @@ fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
     );
     measured.figures.print();
     plan.print_others(&measured.others);
+    if let Some(browsers) = &measured.browsers {
+        browsers.print(&measured.figures);
+    }
     Ok(())
 }
 
@@ -94,6 +102,7 @@ struct Measured {
     megabytes: [f64; 3],
     /// The time that the other processes have used.
     others: Vec<Duration>,
+    browsers: Option<Browsers>,
 }
 
 /// Starts the servers, and plays on them.
@@ -140,6 +149,10 @@ async fn play(
     for _ in 0..plan.silent {
         silent.push(client::connect(servers[0].address, &servers[0].access, 0).await?);
     }
+    let browsers = match plan.browsers {
+        0 => None,
+        count => Some(browser::watch((count, plan.seconds), &servers[0]).await?),
+    };
     sleep(Duration::from_secs(2)).await;
     let (before, others_before) = (usage(servers), plan.others());
     counts.store(true, Ordering::Release);
@@ -151,6 +164,7 @@ async fn play(
         figures: Figures::of(&tallies, plan.seconds, &between(&before, &after)),
         megabytes: [&empty, &walking, &after].map(|usage| megabytes(usage)),
         others: between(&others_before, &others_after),
+        browsers,
     })
 }
 

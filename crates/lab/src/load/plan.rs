@@ -16,6 +16,9 @@ pub(crate) struct Load {
     /// The number of further sessions that never read
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) silent: usize,
+    /// The number of browsers that watch a room first, for as long as the players are then measured alone
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["uses_sshd", "hosts", "table", "soak", "rooms"])]
+    pub(crate) browsers: usize,
     /// Measure OpenSSH's server with a game for each session, instead of cellcaster-server
     #[arg(long = "sshd")]
     pub(crate) uses_sshd: bool,
@@ -85,7 +88,9 @@ impl Load {
     pub(crate) fn configuration(&self) -> String {
         let rate = format!("frames-per-second = {}\n", self.frames_per_second);
         let budget = self.bytes_per_second.map(|it| format!("player-bytes-per-second = {it}\n"));
-        rate + &budget.unwrap_or_default()
+        let most = self.browsers.max(1);
+        let web = format!("web-watchers = {most}\nweb-watchers-per-address = {most}\n");
+        rate + &budget.unwrap_or_default() + &web
     }
 
     /// The options for each server.

@@ -16,8 +16,9 @@ pub(crate) struct ServerProcess {
     pub(crate) child: Child,
     pub(crate) folder: PathBuf,
     pub(crate) address: SocketAddr,
-    /// The address of its metrics; `None` if it has none.
+    /// The addresses of its metrics and of its page; `None` if it has none.
     pub(crate) metrics: Option<SocketAddr>,
+    pub(crate) web: Option<SocketAddr>,
     pub(crate) access: Access,
 }
 
@@ -42,13 +43,15 @@ impl ServerProcess {
         let folder = folder(number)?;
         let config = folder.join("serve.toml");
         let most = connections + 100;
-        // A port that is free at the moment.
-        let metrics = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
+        // Two ports that are free at the moment.
+        let ports = [TcpListener::bind("127.0.0.1:0")?, TcpListener::bind("127.0.0.1:0")?];
+        let [metrics, web] = [ports[0].local_addr()?, ports[1].local_addr()?];
+        drop(ports);
         fs::write(
             &config,
             format!(
                 "connections = {most}\nconnections-per-address = {most}\nstartups = {most}\n\
-                 stall-seconds = 600\n{lines}\
+                 stall-seconds = 600\nweb = \"{web}\"\n{lines}\
                  [metrics]\nlisten = \"{metrics}\"\n"
             ),
         )?;
@@ -65,7 +68,8 @@ impl ServerProcess {
         BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
         let address = line.strip_prefix("Listening at ").and_then(|it| it.split(';').next());
         let address = address.ok_or("the server did not start to listen")?.parse()?;
-        Ok(Self { child, folder, address, metrics: Some(metrics), access: Access::Guest })
+        let (metrics, web) = (Some(metrics), Some(web));
+        Ok(Self { child, folder, address, metrics, web, access: Access::Guest })
     }
 
     /// The id of its process.
@@ -197,6 +201,7 @@ pub(crate) fn start_sshd(program: &str) -> Result<ServerProcess, Box<dyn Error>>
         child,
         address: ([127, 0, 0, 1], port).into(),
         metrics: None,
+        web: None,
         access: Access::Key { user: user()?, file: folder.join("user_key") },
         folder,
     };
