@@ -14,6 +14,7 @@ use tokio::time::{interval, sleep};
 
 use super::report::Figures;
 use super::server::ServerProcess;
+use super::soak::figures;
 
 /// The time for the server to draw the room for all.
 const WARM_UP: Duration = Duration::from_secs(2);
@@ -26,6 +27,10 @@ pub(crate) struct Browsers {
     count: usize,
     /// The share of a core that the server has used for its players and the browsers.
     busy: f64,
+    /// Frames a second for all players.
+    frames: f64,
+    /// Pictures of the room a second.
+    pictures: f64,
     /// Kilobytes a second for each browser.
     kilobytes: f64,
     /// The number of browsers that were disconnected.
@@ -46,14 +51,22 @@ pub(crate) async fn watch(
         browsers.spawn(read(socket, Arc::clone(&bytes)));
     }
     sleep(WARM_UP).await;
-    let (before, read) = (server.usage(), bytes.load(Ordering::Relaxed));
+    let counts = || -> Result<_, Box<dyn Error>> {
+        let figures = figures(server)?;
+        let names = ["cellcaster_frames_total", "cellcaster_web_pictures_total"];
+        Ok(names.map(|name| figures.get(name).copied().unwrap_or(f64::NAN)))
+    };
+    let (before, first, read) = (server.usage(), counts()?, bytes.load(Ordering::Relaxed));
     sleep(Duration::from_secs(seconds)).await;
-    let (after, read) = (server.usage(), bytes.load(Ordering::Relaxed) - read);
+    let (after, last, read) = (server.usage(), counts()?, bytes.load(Ordering::Relaxed) - read);
+    let [frames, pictures] = [0, 1].map(|it| (last[it] - first[it]) / seconds as f64);
     let lost = std::iter::from_fn(|| browsers.try_join_next()).count();
     let used = after.processor.saturating_sub(before.processor);
     Ok(Browsers {
         count,
         busy: used.as_secs_f64() / seconds as f64,
+        frames,
+        pictures,
         kilobytes: read as f64 / (count as u64 * seconds) as f64 / 1000.0,
         lost,
     })
@@ -104,16 +117,19 @@ impl Browsers {
     /// Prints the cost of the browsers, beside that of the players alone.
     pub(crate) fn print(&self, alone: &Figures) {
         let share = |busy: f64| format!("{:.1} %", busy * 100.0);
-        let added = self.busy - alone.busy();
+        // With browsers, the players may have got fewer frames.
+        let frames = alone.frames[0] * alone.sessions as f64;
+        let added = self.busy - alone.busy() * self.frames / frames.max(1.0);
         let player = alone.busy() / alone.sessions.max(1) as f64;
         println!(
-            "browsers      {} with {:.1} KB a second each, {} of them disconnected",
-            self.count, self.kilobytes, self.lost
+            "browsers      {} with {:.1} pictures and {:.1} KB a second each, {} of them disconnected",
+            self.count, self.pictures, self.kilobytes, self.lost
         );
         println!(
-            "processor     {} of a core with browsers, {} for the players alone: the browsers cost {}, \
-             as much as {:.1} players",
+            "processor     {} of a core with browsers at {:.0} frames a second, {} for the players alone at \
+             {frames:.0}: the browsers cost {}, as much as {:.1} players",
             share(self.busy),
+            self.frames,
             share(alone.busy()),
             share(added),
             added / player

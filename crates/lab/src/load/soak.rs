@@ -95,7 +95,7 @@ fn report(server: &ServerProcess, begun: Instant, ends: &Ends) -> Result<(), Box
 }
 
 /// The server's metrics.
-fn figures(server: &ServerProcess) -> Result<BTreeMap<String, f64>, Box<dyn Error>> {
+pub(crate) fn figures(server: &ServerProcess) -> Result<BTreeMap<String, f64>, Box<dyn Error>> {
     let mut stream = TcpStream::connect(server.metrics.ok_or("no metrics")?)?;
     stream.write_all(b"GET /metrics HTTP/1.1\r\n\r\n")?;
     let mut text = String::new();

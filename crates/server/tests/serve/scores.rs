@@ -16,7 +16,7 @@ const MUSEUM: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
 
 /// A store with the results of two accounts. It stays open, like the store of a running host.
-fn filled(folder: &Path) -> HostStore {
+pub(crate) fn filled(folder: &Path) -> HostStore {
     let mut store = HostStore::open(folder).unwrap();
     let now = UnixTime::new(1_795_300_000);
     for (number, name, scripts) in [(1, "漢字", &[WON, HARD][..]), (2, "Ada", &[WON, MUSEUM])] {

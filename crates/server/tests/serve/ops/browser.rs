@@ -11,8 +11,9 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 use tokio_websockets::{ClientBuilder, Message, WebSocketStream};
 
-use super::web::{watch, watched};
+use super::web::{open_socket, watched};
 use crate::play::enter_room;
+use crate::scores::filled;
 use crate::transport::{TIMEOUT, folder, wait_until};
 
 /// The size of a picture in pixels, two for each cell.
@@ -136,7 +137,16 @@ fn message(socket: &mut TcpStream) -> (u8, Vec<u8>) {
 
 /// The pixels of a room's picture, as a list of colours.
 fn picture(port: u16, room: u32) -> Vec<u8> {
-    let (mut socket, answer) = watch(port, room);
+    first_picture(port, &format!("/rooms/{room}/live"))
+}
+
+/// The pixels of a record's picture at a second.
+fn recorded_picture(port: u16, second: u32) -> Vec<u8> {
+    first_picture(port, &format!("/records/room-1/play?from={second}"))
+}
+
+fn first_picture(port: u16, path: &str) -> Vec<u8> {
+    let (mut socket, answer) = open_socket(port, path);
     assert!(answer.starts_with("HTTP/1.1 101"), "{answer}");
     let binary = 2;
     let message = std::iter::repeat_with(|| message(&mut socket)).find(|it| it.0 == binary);
@@ -145,7 +155,9 @@ fn picture(port: u16, room: u32) -> Vec<u8> {
     assert_eq!(bytes[0], 0, "the first picture is a whole one");
     let [columns, rows] = PICTURE;
     let mut pixels = vec![0; 3 * columns * rows];
-    for (at, cell) in bytes[7..].chunks_exact(7).enumerate() {
+    // Two pixels make a cell, and other pictures may follow.
+    let cells = &bytes[7..][..7 * columns * rows / 2];
+    for (at, cell) in cells.chunks_exact(7).enumerate() {
         assert_eq!(cell[0], 0, "a cell with text");
         for (half, color) in cell[1..].chunks_exact(3).enumerate() {
             let pixel = (2 * (at / columns) + half) * columns + at % columns;
@@ -189,4 +201,64 @@ fn a_room_is_chosen_by_keyboard_and_shown_exactly() {
     browser.wait_for("the picture is gone", |page| {
         page.value("document.getElementById('room').hidden && location.hash === ''") == json!(true)
     });
+}
+
+#[test]
+fn a_record_is_played_by_keyboard_and_shown_exactly() {
+    let (recordings, store) = (folder(), folder());
+    drop(filled(&store));
+    let [recordings, store] = [recordings, store].map(|it| it.display().to_string());
+    let (running, [web, _]) = watched(&["--record-room", &recordings, "--store", &store, "--web"]);
+    let mara = running.visitor();
+    enter_room(&mara, "Mara");
+    mara.send("b");
+    // The record is flushed each second.
+    std::thread::sleep(std::time::Duration::from_secs(6));
+    drop(mara);
+    running.wait_for_visitors(0);
+    let mut browser = Browser::open(&format!("http://127.0.0.1:{web}/"));
+    let shows = |browser: &mut Browser, id: &str, text: &str| {
+        browser.wait_for(text, |page| {
+            let shown = page.value(&format!("document.getElementById('{id}').innerText"));
+            shown.as_str().is_some_and(|shown| shown.contains(text))
+        });
+    };
+    shows(&mut browser, "records", "Roam in The Museum of Walls");
+    shows(&mut browser, "boards", "Cellar, normal");
+    shows(&mut browser, "boards", "漢字");
+    let is_chosen = "document.activeElement.hash === '#record-room-1'";
+    while browser.value(is_chosen) != json!(true) {
+        browser.press("Tab", 9, "");
+    }
+    browser.press("Enter", 13, "\r");
+    shows(&mut browser, "words", "what Mara sees");
+    shows(&mut browser, "play", "Pause");
+    browser.press(" ", 32, " ");
+    shows(&mut browser, "play", "Play");
+    // Seeking works while the record is paused.
+    let seeks = [("Home", 36, 0), ("ArrowRight", 39, 5), ("ArrowLeft", 37, 0)];
+    for (key, code, second) in seeks {
+        browser.press(key, code, "");
+        shows(&mut browser, "clock", &format!("0:0{second} of"));
+        let expected = json!(recorded_picture(web, second));
+        browser.wait_for(&format!("second {second}"), |page| page.value(PIXELS) == expected);
+    }
+    let [first, later] = [0, 5].map(|second| recorded_picture(web, second));
+    assert!(first != later, "Mara has turned");
+    // The time line has the keys of a slider.
+    browser.value("document.getElementById('place').focus()");
+    browser.press("ArrowRight", 39, "");
+    shows(&mut browser, "clock", "0:01 of");
+    let spoken = browser.value("document.getElementById('place').getAttribute('aria-valuetext')");
+    assert!(spoken.as_str().is_some_and(|it| it.starts_with("0:01 of 0:")), "{spoken}");
+    browser.value("document.getElementById('stop').focus()");
+    browser.press("End", 35, "");
+    browser.value("document.getElementById('play').click()");
+    shows(&mut browser, "play", "Pause");
+    shows(&mut browser, "about", "The record has ended.");
+    browser.press("Escape", 27, "");
+    browser.wait_for("the picture is gone", |page| {
+        page.value("document.getElementById('room').hidden && location.hash === ''") == json!(true)
+    });
+    assert_eq!(browser.value(is_chosen), json!(true), "the focus has left the list");
 }

@@ -33,11 +33,16 @@ fn get(port: u16, path: &str) -> String {
 
 /// Asks for the pictures of a room; returns the socket after the server's answer.
 pub(crate) fn watch(port: u16, room: u32) -> (TcpStream, String) {
+    open_socket(port, &format!("/rooms/{room}/live"))
+}
+
+/// Asks for a WebSocket as the page does; returns the socket after the server's answer.
+pub(crate) fn open_socket(port: u16, path: &str) -> (TcpStream, String) {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
     stream.set_read_timeout(Some(TIMEOUT)).unwrap();
     write!(
         stream,
-        "GET /rooms/{room}/live HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n\
+        "GET {path} HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n\
          Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
          Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
     )
