@@ -1,4 +1,4 @@
-//! Messages of ALiS, version 1: the protocol by which asciinema's player shows a live stream over a WebSocket.
+//! Messages of `ALiS`, version 1: the protocol by which asciinema's player shows a live stream over a WebSocket.
 //!
 //! The first message is [`MAGIC`], the second one [`start`]. Each message has one event. Numbers are LEB128. An event has
 //! a number, and its time in microseconds since the event before. `start` contains the whole screen, so a player that has

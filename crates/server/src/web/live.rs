@@ -8,6 +8,8 @@
 //!   watcher who is behind gets the whole picture. So a watcher who does not read holds one message, and nothing is
 //!   queued.
 //! - A message is encoded once. The whole picture is encoded when the first watcher needs it.
+//!
+//! `cellcaster-lab load --browsers 500` measures the cost. docs/performance.md has the result.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -56,8 +58,11 @@ pub(crate) enum Form {
 pub(crate) struct LiveRooms {
     rooms: Rooms,
     pub(crate) load: Arc<Load>,
-    watched: Mutex<BTreeMap<(RoomId, Form), watch::Sender<Arc<Picture>>>>,
+    watched: Mutex<BTreeMap<(RoomId, Form), Pictures>>,
 }
+
+/// The sender of the messages about a room.
+type Pictures = watch::Sender<Arc<Picture>>;
 
 /// The latest message about a room.
 #[derive(Debug, Default)]
@@ -96,7 +101,7 @@ impl LiveRooms {
         self.is_public(id).then(|| {
             locked(&self.watched, |watched| {
                 let pictures = watched.entry((id, form)).or_insert_with(|| {
-                    let pictures = watch::Sender::default();
+                    let pictures = Pictures::default();
                     tokio::spawn(Arc::clone(self).draw((id, form), pictures.clone()));
                     pictures
                 });
@@ -114,11 +119,7 @@ impl LiveRooms {
     }
 
     /// Draws a room for as long as it is watched.
-    async fn draw(
-        self: Arc<Self>,
-        (id, form): (RoomId, Form),
-        pictures: watch::Sender<Arc<Picture>>,
-    ) {
+    async fn draw(self: Arc<Self>, (id, form): (RoomId, Form), pictures: Pictures) {
         let mut drawing = match form {
             Form::Cells => Drawing::Cells(Cells::default()),
             Form::Cast => Drawing::Cast(Box::new(DrawnCast::new())),
@@ -167,8 +168,8 @@ struct Cells {
     messages: u64,
     /// The number of pictures since the last message, including pictures without a change.
     waiting: u32,
-    step: u32,
-    cells: Vec<Cell>,
+    /// The step and the cells of the last picture.
+    last: (u32, Vec<Cell>),
     message: picture::Message,
     words: Arc<str>,
 }
@@ -196,13 +197,13 @@ impl Cells {
     fn next(&mut self, room: &RoomView, catalog: &Catalog, metrics: &Metrics) -> Option<Picture> {
         let step = u32::try_from(room.step).unwrap_or(u32::MAX);
         let is_first = self.messages == 0;
-        if is_first || step != self.step {
+        if is_first || step != self.last.0 {
             let cells = picture::draw(room, catalog);
             metrics.web_pictures.inc();
             if !is_first {
-                self.message.push_changes(step, &self.cells, &cells);
+                self.message.push_changes(step, &self.last.1, &cells);
             }
-            (self.step, self.cells) = (step, cells);
+            self.last = (step, cells);
         }
         self.waiting += 1;
         if !is_first && self.waiting < PICTURES_PER_MESSAGE {
@@ -218,7 +219,7 @@ impl Cells {
         Some(Picture {
             number: self.messages,
             changes,
-            last: (self.step, self.cells.clone()),
+            last: self.last.clone(),
             whole: OnceLock::new(),
             words: Arc::clone(&self.words),
         })

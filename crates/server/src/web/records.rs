@@ -22,7 +22,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::thread;
-use std::time::{Duration, Instant, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use bytes::Bytes;
 use serde_json::{Value, json};
@@ -247,11 +247,16 @@ fn listed(rooms: &Rooms) -> Value {
                 "name": recording.name,
                 "mode": header.mode.title(),
                 "level": rooms.catalog().title(&header.level),
-                "time": recording.time.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs(),
+                "time": recording.time.map(seconds),
             })
         })
     };
     recordings.into_iter().filter_map(entry).collect()
+}
+
+/// The seconds since 1970.
+fn seconds(time: SystemTime) -> u64 {
+    time.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs()
 }
 
 /// Returns true if the host has the level of a round, without generating it.
@@ -413,16 +418,13 @@ impl Source for RecordPictures {
         }
         let now = tokio::time::Instant::now;
         let mut messages = Vec::new();
-        let due = match self.due {
-            Some(due) => {
-                sleep_until(due).await;
-                due
-            }
-            None => {
-                self.second = self.second.min(record.seconds - 1);
-                messages.push(Message::text(json!({ "seconds": record.seconds }).to_string()));
-                now() - RESERVE
-            }
+        let due = if let Some(due) = self.due {
+            sleep_until(due).await;
+            due
+        } else {
+            self.second = self.second.min(record.seconds - 1);
+            messages.push(Message::text(json!({ "seconds": record.seconds }).to_string()));
+            now() - RESERVE
         };
         let piece = self.records.piece(&record, self.second).await;
         let piece = piece.ok_or("The rest of the record cannot be shown.")?;

@@ -40,10 +40,13 @@ use cellcaster::app::store::private;
 /// Opens the recordings of rooms.
 #[derive(Clone)]
 pub(crate) struct Recordings {
-    open: Arc<dyn Fn(RoomId, bool) -> Option<Box<dyn Recording>> + Send + Sync>,
+    open: Arc<OpenRecording>,
     /// The folder, if the recordings are in one.
     folder: Option<Arc<RecordingFolder>>,
 }
+
+/// Opens the recording of a room, which may be private.
+type OpenRecording = dyn Fn(RoomId, bool) -> Option<Box<dyn Recording>> + Send + Sync;
 
 impl Recordings {
     /// Recordings opened by `open`.
@@ -73,11 +76,11 @@ impl Recordings {
     pub(crate) fn public(&self, most: usize) -> Vec<PublicRecording> {
         let Some(folder) = &self.folder else { return Vec::new() };
         locked(&folder.held, |held| {
-            let finished = held.finished.keys().rev().map(|(time, path)| (*time, path));
+            let finished = held.finished.keys().rev().map(|(time, path)| (Some(*time), path));
             let finished = finished.filter(|(_, path)| is_public_log(path)).take(most);
             let written = held.written.iter().filter(|path| is_public_log(path));
-            let written = written.map(|path| (SystemTime::now(), path));
-            let recording = |(time, path): (SystemTime, &PathBuf)| PublicRecording {
+            let written = written.map(|path| (None, path));
+            let recording = |(time, path): (Option<SystemTime>, &PathBuf)| PublicRecording {
                 name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
                 path: path.clone(),
                 time,
@@ -88,9 +91,11 @@ impl Recordings {
 
     /// The path of a public log, by its name such as `room-7`; `None` if there is no such log.
     pub(crate) fn named(&self, name: &str) -> Option<PathBuf> {
-        // Names have no separators, so no path leaves the folder.
-        let path = self.folder.as_ref()?.path.join(format!("{name}.{LOG}"));
-        (is_public_log(&path) && path.is_file()).then_some(path)
+        let file = format!("{name}.{LOG}");
+        // Such a name has no separators, so the path does not leave the folder.
+        let is_public = is_name_of(OsStr::new(&file), PUBLIC, LOG);
+        let path = is_public.then_some(self.folder.as_ref()?.path.join(file))?;
+        path.is_file().then_some(path)
     }
 }
 
@@ -101,8 +106,8 @@ pub(crate) struct PublicRecording {
     pub(crate) name: String,
     /// The path of the log.
     pub(crate) path: PathBuf,
-    /// When it was finished; now, if it is being written.
-    pub(crate) time: SystemTime,
+    /// When it was finished; `None` if it is being written.
+    pub(crate) time: Option<SystemTime>,
 }
 
 impl fmt::Debug for Recordings {

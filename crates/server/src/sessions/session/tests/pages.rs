@@ -305,6 +305,18 @@ fn room_elsewhere(id: u32, level: &str) -> RoomSummary {
 }
 
 #[test]
+fn a_room_says_how_many_browsers_watch() {
+    let mut rig = Rig::new(Mode::Roam);
+    rig.rooms().show_shared(vec![room_elsewhere(7, "hall")]);
+    rig.rooms().note_browsers(RoomId(7), 12);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    for _ in 0..2 {
+        rig.press(one, ENTER);
+    }
+    assert!(rig.text(one).contains("Here: Kim. 12 browsers."), "{}", rig.text(one));
+}
+
+#[test]
 fn rooms_in_missing_maps_are_not_listed() {
     let mut rig = Rig::new(Mode::Roam);
     let elsewhere = |level| vec![room_elsewhere(7, level), room_elsewhere(8, "museum")];
