@@ -125,7 +125,7 @@ fn a_run_in_a_host_map_ranks_and_its_recording_replays() {
     drop(player);
     wait_until("the empty room", || !running.admin_says(&["rooms"]).contains("moss"));
 
-    let recording = recordings.join("room-1.log");
+    let recording = recordings.join("private-1.log");
     let alone = replay(&[&recording]);
     let error = String::from_utf8(alone.stderr).unwrap();
     assert_eq!(alone.status.code(), Some(2), "{error}");

@@ -53,7 +53,8 @@ fn a_host_records_the_rooms_of_its_players() {
     for entry in [" keep 1\n", " say 2 behind you\n", " leave 2\n"] {
         assert!(text.contains(entry), "{entry} is not in\n{text}");
     }
-    assert!(shows(&log.with_extension("cast"), "behind you"));
+    let cast = log.with_extension("cast");
+    assert!(shows(&cast, "Mara") && !shows(&cast, "behind you"));
     let replayed = server(&["replay"]).arg(log).output().unwrap();
     let shown = String::from_utf8(replayed.stdout).unwrap();
     assert!(shown.starts_with("round 1: ") && shown.contains("Mara"), "{shown}");
