@@ -264,7 +264,7 @@ impl GameHost {
     pub(crate) fn store_calls<T: Send + 'static>(
         &self,
         act: fn(&mut HostStore) -> T,
-    ) -> impl Fn() -> Option<Answer<T>> + use<T> {
+    ) -> impl Fn() -> Option<CallResult<T>> + use<T> {
         // The last owner of the host shuts down the store's thread.
         let shared = Arc::downgrade(&self.shared);
         move || Some(shared.upgrade()?.store.call(act))

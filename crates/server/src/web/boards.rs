@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use tokio::sync::Mutex;
 use unicode_width::UnicodeWidthStr;
 
-use crate::accounts::worker::Answer;
+use crate::accounts::worker::CallResult;
 use crate::accounts::{HostStore, LevelBoard, LevelScore, Name, StoreFailure};
 use crate::logging;
 use crate::rooms::room::Catalog;
@@ -24,7 +24,7 @@ const MAX: usize = 10;
 pub(crate) type ScoredBoards = Vec<(LevelBoard, Vec<LevelScore>)>;
 
 /// Asks the store for boards; `None` if the host ends.
-pub(crate) type AskBoards = Box<dyn Fn() -> Option<Answer<ScoredBoards>> + Send + Sync>;
+pub(crate) type AskBoards = Box<dyn Fn() -> Option<CallResult<ScoredBoards>> + Send + Sync>;
 
 /// The boards of a host.
 pub(crate) struct Boards {

@@ -8,7 +8,7 @@
 //! - A record is replayed once when it is opened. The replay leaves at most [`MAX_CHECKPOINTS`] copies of the room, from
 //!   which pieces are drawn.
 //! - At most [`MAX_OPEN`] records are open, each of at most [`MAX_BYTES`] and [`MAX_SECONDS`]; the rest of a longer one
-//!   is not shown. A record that is being written is shown as it was when it was opened, at most [`STALE`] ago.
+//!   is not shown. A record that is being written is shown as it was when it was opened, at most [`STALE_INTERVAL`] ago.
 //! - Records of private rooms and of players alone have other names, see
 //!   [`Recordings`](crate::rooms::directory::Recordings). A record in the daily level of another day is not shown,
 //!   because the level would have to be generated.
@@ -55,11 +55,11 @@ const MAX_CHECKPOINTS: usize = 24;
 const MAX_PIECES: usize = 64;
 const MAX_REPLAYS: usize = 8;
 /// The longest time that a record is replayed before other work has its turn.
-const SLICE: Duration = Duration::from_millis(20);
+const WORK_INTERVAL: Duration = Duration::from_millis(20);
 /// The time after which a record that has grown is opened again.
-const STALE: Duration = Duration::from_secs(30);
+const STALE_INTERVAL: Duration = Duration::from_secs(30);
 /// The time by which a browser gets pictures before it shows them.
-const RESERVE: Duration = Duration::from_secs(1);
+const RESERVE_INTERVAL: Duration = Duration::from_secs(1);
 /// The most finished records that are listed.
 const MAX_LISTED: usize = 50;
 /// The time for which a list is kept.
@@ -67,8 +67,8 @@ const LIST_INTERVAL: Duration = Duration::from_secs(5);
 /// The bytes of a record in which its header is.
 const HEAD_BYTES: u64 = 4 << 10;
 /// The steps of a second, and of a picture.
-const SECOND: u32 = STEPS_PER_SECOND;
-const PICTURE: u32 = STEPS_PER_SECOND / PICTURES_PER_SECOND;
+const SECOND_STEPS: u32 = STEPS_PER_SECOND;
+const PICTURE_STEPS: u32 = STEPS_PER_SECOND / PICTURES_PER_SECOND;
 
 /// The records of a host.
 pub(crate) struct Records {
@@ -81,7 +81,7 @@ pub(crate) struct Records {
 }
 
 /// The result of opening a record.
-type Opened = Result<Arc<Record>, Arc<str>>;
+type Opened = Result<Arc<RoomRecord>, Arc<str>>;
 
 /// A record that is open, or being opened.
 struct OpenRecord {
@@ -100,7 +100,7 @@ impl Drop for OpenRecord {
 }
 
 /// A record that can be shown from any second.
-struct Record {
+struct RoomRecord {
     seconds: u32,
     catalog: Arc<Catalog>,
     /// Replays at some of the seconds.
@@ -165,7 +165,8 @@ impl Records {
         let bytes = fs::metadata(&path).map_err(|_| none())?.len();
         let name = name.to_owned();
         locked(&self.open, |open| {
-            let is_current = |it: &OpenRecord| it.bytes == bytes || it.since.elapsed() < STALE;
+            let is_current =
+                |it: &OpenRecord| it.bytes == bytes || it.since.elapsed() < STALE_INTERVAL;
             if let Some(known) = open.iter().find(|it| it.name == name && is_current(it)) {
                 return Ok(Arc::clone(known));
             }
@@ -189,7 +190,7 @@ impl Records {
     }
 
     /// Reads a record, and replays it.
-    async fn load(&self, path: PathBuf) -> Result<Record, String> {
+    async fn load(&self, path: PathBuf) -> Result<RoomRecord, String> {
         let sentence = |reason: String| format!("This record cannot be shown: {reason}.");
         let ended = || sentence("the server ends".to_owned());
         let rooms = self.rooms.clone();
@@ -204,8 +205,8 @@ impl Records {
                 break;
             }
         }
-        Ok(Record {
-            seconds: scan.steps.div_ceil(SECOND).max(1),
+        Ok(RoomRecord {
+            seconds: scan.steps.div_ceil(SECOND_STEPS).max(1),
             catalog: Arc::clone(self.rooms.catalog()),
             checkpoints: scan.checkpoints,
             drawn: Mutex::default(),
@@ -213,7 +214,7 @@ impl Records {
     }
 
     /// A piece of a record; `None` if the server ends.
-    async fn piece(&self, record: &Arc<Record>, second: u32) -> Option<Piece> {
+    async fn piece(&self, record: &Arc<RoomRecord>, second: u32) -> Option<Piece> {
         if let Some(piece) = record.known(second) {
             return Some(piece);
         }
@@ -301,12 +302,12 @@ impl Scan {
         Self { replay, steps: 0, checkpoints: Vec::new(), interval: 10 }
     }
 
-    /// Replays for at most [`SLICE`]. Returns true at the end.
+    /// Replays for at most [`WORK_INTERVAL`]. Returns true at the end.
     fn go_on(&mut self) -> Result<bool, String> {
         let begun = Instant::now();
         loop {
-            if self.steps.is_multiple_of(SECOND) {
-                let second = self.steps / SECOND;
+            if self.steps.is_multiple_of(SECOND_STEPS) {
+                let second = self.steps / SECOND_STEPS;
                 if second >= MAX_SECONDS {
                     return Ok(true);
                 }
@@ -316,7 +317,7 @@ impl Scan {
                 return Ok(true);
             }
             self.steps += 1;
-            if self.steps.is_multiple_of(SECOND) && begun.elapsed() >= SLICE {
+            if self.steps.is_multiple_of(SECOND_STEPS) && begun.elapsed() >= WORK_INTERVAL {
                 return Ok(false);
             }
         }
@@ -338,7 +339,7 @@ impl Scan {
     }
 }
 
-impl Record {
+impl RoomRecord {
     /// A piece that is drawn already.
     fn known(&self, second: u32) -> Option<Piece> {
         locked(&self.drawn, |drawn| {
@@ -354,12 +355,14 @@ impl Record {
         });
         let kept = self.checkpoints.iter().rev().find(|it| it.0 <= second).cloned();
         let (at, mut replay) = recent.into_iter().chain(kept).max_by_key(|it| it.0)?;
-        for _ in at * SECOND..second * SECOND {
+        for _ in at * SECOND_STEPS..second * SECOND_STEPS {
             replay.step().ok()?;
         }
         let mut message = picture::Message::default();
         let (mut said, mut before) = (None, Vec::new());
-        for step in (second * SECOND..(second + 1) * SECOND).step_by(PICTURE as usize) {
+        for step in
+            (second * SECOND_STEPS..(second + 1) * SECOND_STEPS).step_by(PICTURE_STEPS as usize)
+        {
             // The picture shows who comes in at its step. This changes nothing else.
             replay.is_playing().ok()?;
             // The snapshot is dropped before the next step, which would copy its game.
@@ -374,7 +377,7 @@ impl Record {
             }
             before = cells;
             drop(view);
-            if !(0..PICTURE).all(|_| replay.step().unwrap_or_default()) {
+            if !(0..PICTURE_STEPS).all(|_| replay.step().unwrap_or_default()) {
                 break;
             }
         }
@@ -424,12 +427,12 @@ impl Source for RecordPictures {
         } else {
             self.second = self.second.min(record.seconds - 1);
             messages.push(Message::text(json!({ "seconds": record.seconds }).to_string()));
-            now() - RESERVE
+            now() - RESERVE_INTERVAL
         };
         let piece = self.records.piece(&record, self.second).await;
         let piece = piece.ok_or("The rest of the record cannot be shown.")?;
         self.second += 1;
-        self.due = Some((due + Duration::from_secs(1)).max(now() - RESERVE));
+        self.due = Some((due + Duration::from_secs(1)).max(now() - RESERVE_INTERVAL));
         if self.words != piece.words {
             self.words = Arc::clone(&piece.words);
             messages.push(Message::text(piece.words.to_string()));
