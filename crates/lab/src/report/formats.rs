@@ -268,10 +268,10 @@ impl Origin {
         [("machine", machine), ("program", program), ("command", command), ("date", date)]
     }
 
-    /// All parts in a sentence.
+    /// The date, the version and the machine in a sentence.
     pub(crate) fn sentence(&self) -> String {
-        let Self { machine, program, command, date } = self;
-        format!("Measured on {date} by `{command}`, Cellcaster {program}, on {machine}.")
+        let Self { machine, program, date, .. } = self;
+        format!("Measured on {date}, version {program}, on {machine}.")
     }
 }
 
