@@ -23,6 +23,7 @@ mod saved;
 mod screen;
 pub(crate) mod setting;
 mod settings;
+mod states;
 pub(crate) mod status;
 pub mod store;
 mod taking_back;
@@ -38,6 +39,8 @@ pub mod parts {
         panel, picture_and_status, too_small, wrapped,
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
+    pub use crate::app::playback::player::{PLAYER_HELP, Perspective, Player, PlayerKey};
+    pub use crate::app::playback::recorded::{Cursor, MarkKind, Record};
     pub use crate::app::played::Watch;
     pub use crate::app::setting::{
         Choice, Field, FieldAt, Setting, Value, reject_range, toml_string,

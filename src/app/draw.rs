@@ -17,6 +17,7 @@ use ratatui::layout::{Rect, Size};
 use crate::app::controls::{Action, Bindings};
 use crate::app::picture::{DrawOptions, Overlay, Suspicion};
 use crate::app::playback::Playback;
+use crate::app::playback::player::Perspective;
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::AppScreen;
@@ -157,7 +158,7 @@ impl App {
 
     fn paint_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let options = self.draw_options();
-        if self.playback.as_ref().is_some_and(Playback::is_from_above) {
+        if self.playback.as_ref().is_some_and(|it| it.perspective() == Perspective::Above) {
             return self.draw_from_above(canvas, area, &options);
         }
         let camera = self.free_camera();
@@ -179,7 +180,7 @@ impl App {
     }
 
     fn draw_options(&self) -> DrawOptions {
-        let sees = self.playback.as_ref().is_none_or(Playback::is_through_eyes);
+        let sees = self.playback.as_ref().is_none_or(|it| it.perspective() == Perspective::Eyes);
         let is_game = self.demo.is_none() && sees;
         let heading = |game: &Game| game.camera(self.settings.field_of_view).heading;
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));

@@ -1,18 +1,10 @@
 //! The history of a game: states at some of its past steps, from which the steps after them are
 //! played again.
 //!
-//! The states are stored games, one every [`EVERY`] steps. Once they take more than [`MAX_BYTES`],
-//! every second one is removed, and the time between two of them doubles. In the built-in levels, any
-//! past state is found again within 6 ms in a debug build.
-//!
 //! Rejected: copies of the game. They are found as fast, but a copy contains the whole grid.
 
-use crate::game::{Game, Intents, STEPS_PER_SECOND};
-
-/// The least number of steps between two states.
-const EVERY: u64 = 5 * STEPS_PER_SECOND as u64;
-/// The maximum number of bytes that the states take: half an hour in the largest built-in level.
-const MAX_BYTES: usize = 1 << 22;
+use crate::app::states::States;
+use crate::game::{Game, Intents};
 
 /// States of a game. Steps are counted as in the script of the run.
 #[derive(Debug)]
@@ -22,20 +14,14 @@ pub(crate) struct History {
     begun: u64,
     /// The number of steps now.
     steps: u64,
-    states: Vec<StoredState>,
-    every: u64,
-}
-
-#[derive(Debug)]
-struct StoredState {
-    steps: u64,
-    bytes: Vec<u8>,
+    /// Stored games.
+    states: States<Vec<u8>>,
 }
 
 impl History {
     /// The history of a game at its start, after `begun` steps of a run.
     pub(crate) fn new(start: Game, begun: u64) -> Self {
-        Self { start, begun, steps: begun, states: Vec::new(), every: EVERY }
+        Self { start, begun, steps: begun, states: States::default() }
     }
 
     /// The number of steps of the run up to now.
@@ -51,20 +37,7 @@ impl History {
     /// Records that `game` is the state after `steps` steps of the run.
     pub(crate) fn record(&mut self, steps: u64, game: &Game) {
         self.steps = steps;
-        let last = self.states.last().map_or(self.begun, |state| state.steps);
-        if steps < last + self.every {
-            return;
-        }
-        let Some(bytes) = game.stored() else { return };
-        self.states.push(StoredState { steps, bytes });
-        if self.states.iter().map(|state| state.bytes.len()).sum::<usize>() > MAX_BYTES {
-            self.every *= 2;
-            let mut is_kept = false;
-            self.states.retain(|_| {
-                is_kept = !is_kept;
-                is_kept
-            });
-        }
+        self.states.keep(self.begun, steps, || game.stored());
     }
 
     /// The state after `steps` steps, which must be in the past. `since` returns the intents of each
@@ -74,9 +47,10 @@ impl History {
         steps: u64,
         since: impl FnOnce(u64) -> I,
     ) -> Game {
-        let earlier = self.states.iter().rev().filter(|state| state.steps <= steps);
-        let mut restored =
-            earlier.filter_map(|it| Some((it.steps, self.start.clone().restored(&it.bytes).ok()?)));
+        let mut restored = self
+            .states
+            .before(steps)
+            .filter_map(|(step, bytes)| Some((step, self.start.clone().restored(bytes).ok()?)));
         let (first, mut game) = restored.next().unwrap_or((self.begun, self.start.clone()));
         let count = steps.saturating_sub(first) as usize;
         since(first).take(count).for_each(|intents| game.step(intents));
@@ -86,7 +60,7 @@ impl History {
     /// Forgets all states after `steps` steps.
     pub(crate) fn forget_after(&mut self, steps: u64) {
         self.steps = steps;
-        self.states.retain(|state| state.steps <= steps);
+        self.states.forget_after(steps);
     }
 }
 
@@ -94,7 +68,7 @@ impl History {
 mod tests {
     use super::*;
     use crate::app::recording::RunLog;
-    use crate::game::{Intent, Rules, Script};
+    use crate::game::Script;
     use crate::map::builtin;
 
     #[test]
@@ -118,21 +92,5 @@ mod tests {
                 assert_eq!(found.checksum(), checksum, "{} at {steps}", level.name);
             }
         }
-    }
-
-    #[test]
-    fn a_long_history_stays_within_its_bytes() {
-        let level = builtin::LEVELS.iter().find(|level| level.name == "citadel");
-        let world = level.and_then(|level| level.world().ok()).expect("the level is valid");
-        let game = Game::with_rules(world, Rules::default());
-        let mut history = History::new(game.clone(), 0);
-        let turn = [Intent::TurnLeft].into_iter().collect();
-        for steps in 1..400_000 {
-            history.record(steps, &game);
-        }
-        let bytes: usize = history.states.iter().map(|state| state.bytes.len()).sum();
-        assert!(bytes <= MAX_BYTES && history.states.len() > 100, "{bytes}");
-        let found = history.at(300_000, |_| std::iter::repeat_n(turn, 0));
-        assert_eq!(found.checksum(), game.checksum());
     }
 }

@@ -227,7 +227,7 @@ impl Presenter {
 
     /// The time of the next change that happens without an event; `None` for never.
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
-        if app.playback.as_ref().is_some_and(Playback::reads_ahead) {
+        if app.playback.as_ref().is_some_and(Playback::is_busy) {
             return Some(now);
         }
         let (frame, soonest) = if self.waits {

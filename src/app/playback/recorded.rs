@@ -1,162 +1,139 @@
-//! A recorded run: a script, its levels, the states along the way, and the marks of its events.
+//! Records that are read ahead: the states along the way, and the marks of events.
 //!
-//! The run is read ahead once, by playing it. While reading, every few seconds of it the state is
-//! kept. Any step that was read is then reached from the last state before it. A state is the bytes
-//! of a [stored](Game::stored) game, or a copy of a flight or of a game in a generated level, which
-//! cannot be stored.
+//! A record is a function of what it contains, in parts: the levels of a script, or the rounds of a
+//! room. It is read ahead once, by playing it. While reading, every few seconds of it the state is
+//! [kept](States). Any step that was read is then reached from the last state before it.
 //!
-//! If there are too many states, every second one is dropped and the distance doubles. A state takes
-//! 3 to 11 kB in the built-in levels and 80 kB in a generated one, so [`MAX_STATES`] of them take at
-//! most 6 MB or 40 MB. An hour of play has 360 states of 3 to 4.3 MB in all. A debug build reads it
-//! in 2.2 s, and the slowest of 500 jumps in it takes 18 ms. In a day of play, the states are 320
-//! seconds apart.
+//! A game in a generated level and a flight cannot be stored: 512 copies take 40 MB. An hour of play
+//! has 360 states of 3 to 4.3 MB in all. A debug build reads it in 2.2 s, and the slowest of 500
+//! jumps in it takes 18 ms. In a day of play, the states are 320 seconds apart.
 //!
-//! Two marks of the same kind are at least a second apart, so a day has at most 345,600 of them, in
-//! 6 MB. The stretches of a day take at most 125 MB, if no two steps of the script are alike.
+//! Two marks of the same kind are at least a second apart, so a day has at most 432,000 of them, in
+//! 7 MB.
 //!
 //! Rejected: copies of all games. They take 184 kB each in the largest built-in level.
 
-use crate::app::levels::{LevelNumber, Levels, Stage};
-use crate::app::played::Played;
-use crate::game::{Game, Intents, STEPS_PER_SECOND, Script, Tally};
-use crate::world::Difficulty;
+use std::fmt;
 
-/// The maximum number of states that are kept.
-pub(crate) const MAX_STATES: usize = 512;
-/// The first distance between two states, in steps.
-const FIRST_INTERVAL: u64 = 10 * STEPS_PER_SECOND as u64;
+use super::MAX_PLAYBACK_STEPS;
+use crate::app::states::States;
+use crate::game::STEPS_PER_SECOND;
+
 /// The minimum distance between two marks of the same kind, in steps.
 const MIN_DISTANCE: u64 = STEPS_PER_SECOND as u64;
+/// The steps to play between two looks at the clock, and at most before keys are read.
+const STEPS_PER_LOOK: u64 = 64;
+const MAX_READ: u64 = 1 << 17;
 
-/// A run that is read ahead while it is shown.
-pub(crate) struct RecordedRun {
-    /// The intents of the script, each with the number of steps up to their end.
-    stretches: Vec<(u64, Intents)>,
-    difficulty: Difficulty,
-    /// The levels that were reached.
-    levels: Vec<RecordedLevel>,
-    /// The levels after them.
-    rest: Box<dyn Iterator<Item = Stage>>,
-    first_number: LevelNumber,
-    /// The state up to which the run was read.
-    reader: Cursor,
-    game: Played,
+/// A record that can be played again.
+pub trait Record {
+    /// A game between two steps.
+    type Game;
+    /// A game in little memory.
+    type Stored;
+
+    /// The number of steps, as far as is known before it is read.
+    fn steps(&self) -> u64;
+
+    /// The part with this index at its start; `None` if there is none.
+    fn begin(&mut self, part: usize) -> Option<Self::Game>;
+
+    /// Whether a step follows.
+    fn goes_on(&self, cursor: Cursor, game: &Self::Game) -> bool;
+
+    /// Whether the next step is in the next part.
+    fn is_over(&self, part: usize, game: &Self::Game) -> bool;
+
+    /// Advances `game`, which is at `cursor`, by a step.
+    fn advance(&self, cursor: Cursor, game: &mut Self::Game);
+
+    /// The bytes of a game in the part with this index, or a copy.
+    fn store(&self, game: &Self::Game) -> Self::Stored;
+
+    /// The game that was stored.
+    fn restore(&mut self, part: usize, stored: &Self::Stored) -> Option<Self::Game>;
+
+    /// The number of events of each kind in this part, in the order of [`MarkKind::ALL`].
+    fn events(&self, game: &Self::Game) -> [u32; MarkKind::ALL.len()];
+}
+
+/// A record that is read ahead while it is shown.
+pub(crate) struct Reader<R: Record> {
+    pub(crate) record: R,
+    /// The number of steps before each part that was reached.
+    starts: Vec<u64>,
+    /// The state up to which the record was read.
+    cursor: Cursor,
+    game: R::Game,
     /// `true` if the end was read.
     is_read: bool,
-    /// The states on the way, without the starts of levels.
-    states: Vec<(Cursor, State)>,
-    /// The distance between two states, in steps.
-    interval: u64,
+    /// The states on the way, each with the index of its part. There are none of starts.
+    states: States<(usize, R::Stored)>,
     marks: Vec<Mark>,
-    /// The events of the current level up to the reader.
-    counts: Counts,
+    events: [u32; MarkKind::ALL.len()],
 }
 
-/// A level of the run.
-struct RecordedLevel {
-    stage: Stage,
-    /// The number of steps before its first one.
-    before: u64,
-}
-
-/// A place in a run.
+/// A place in a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) struct Cursor {
-    /// The number of steps before it, counted over all levels.
-    pub(crate) step: u64,
-    /// The index of its level.
-    pub(crate) level: usize,
+pub struct Cursor {
+    /// The number of steps before it, counted over all parts.
+    pub step: u64,
+    /// The index of its part.
+    pub part: usize,
 }
 
-/// A state of the game.
-enum State {
-    Stored(Vec<u8>),
-    Copy(Box<Played>),
-}
-
-/// An event in a run.
+/// An event in a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Mark {
     /// The number of steps up to and including the event.
     pub(crate) step: u64,
+    /// The kind of event.
     pub(crate) kind: MarkKind,
 }
 
 /// A kind of event, the least important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum MarkKind {
-    /// The player found treasure, a secret or a key.
+pub enum MarkKind {
+    /// A player found treasure, a secret or a key.
     Find,
-    /// A guard began to follow the player.
+    /// A guard began to follow a player.
     Alarm,
-    /// The player reached the exit.
-    LevelEnd,
-    /// The player died.
+    /// A player was caught by another one.
+    Catch,
+    /// A player reached the exit, or the round ended.
+    End,
+    /// A player died.
     Death,
 }
 
-/// The numbers of events in a level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-struct Counts {
-    finds: usize,
-    alarms: u32,
-    deaths: u32,
-}
-
-impl Counts {
-    fn of(played: &Played) -> Self {
-        let Some(game) = played.grid() else { return Self::default() };
-        let Tally { treasure, secrets, alarms, deaths, .. } = game.tally();
-        let finds = (treasure.found + secrets.found) as usize + game.keys().count();
-        Self { finds, alarms, deaths }
-    }
-}
-
-impl RecordedRun {
-    /// The run of `script` in `levels`, and its state at the start. `None` if the first level cannot
-    /// begin.
-    pub(crate) fn new(
-        levels: Levels,
-        script: &Script,
-        difficulty: Difficulty,
-    ) -> Option<(Self, Played)> {
-        let (stage, rest, first_number) = levels.into_parts();
-        let start = stage.begin(difficulty)?;
-        let mut end = 0;
-        let stretches = script.sections().iter().flat_map(|section| &section.stretches);
-        let stretches = stretches.map(|stretch| {
-            end += u64::from(stretch.steps);
-            (end, stretch.intents)
-        });
-        let run = Self {
-            stretches: stretches.collect(),
-            difficulty,
-            levels: vec![RecordedLevel { stage, before: 0 }],
-            rest,
-            first_number,
-            reader: Cursor::default(),
-            counts: Counts::of(&start),
-            game: start.clone(),
+impl<R: Record> Reader<R> {
+    /// A reader of `record`, and the first state. `None` if the first part cannot begin.
+    pub(crate) fn new(mut record: R) -> Option<(Self, R::Game)> {
+        let start = record.begin(0)?;
+        let reader = Self {
+            events: record.events(&start),
+            game: record.begin(0)?,
+            record,
+            starts: vec![0],
+            cursor: Cursor::default(),
             is_read: false,
-            states: Vec::new(),
-            interval: FIRST_INTERVAL,
+            states: States::default(),
             marks: Vec::new(),
         };
-        Some((run, start))
+        Some((reader, start))
     }
 
-    /// The number of steps: of the script or, once it was read, up to the end of its last level.
+    /// The number of steps: as far as is known or, once the end was read, up to it.
     pub(crate) fn steps(&self) -> u64 {
-        let of_script = self.stretches.last().map_or(0, |&(end, _)| end);
-        if self.is_read { self.reader.step } else { of_script }
+        if self.is_read { self.cursor.step } else { self.record.steps().max(self.cursor.step) }
     }
 
     /// The number of steps that were read.
     pub(crate) fn steps_read(&self) -> u64 {
-        self.reader.step
+        self.cursor.step
     }
 
-    /// Whether the run was read to its end.
+    /// Whether the record was read to its end.
     pub(crate) fn is_read(&self) -> bool {
         self.is_read
     }
@@ -166,158 +143,132 @@ impl RecordedRun {
         &self.marks
     }
 
-    /// The number of the level with this index.
-    pub(crate) fn number(&self, level: usize) -> LevelNumber {
-        self.first_number.after(level)
-    }
-
-    /// The levels from the one with this index on.
-    pub(crate) fn into_levels(self, level: usize) -> Levels {
-        let number = self.number(level);
-        let later = self.levels.into_iter().skip(level).map(|level| level.stage);
-        Levels::of_stages(later.chain(self.rest), number)
+    /// Reads until `is_late`.
+    pub(crate) fn read(&mut self, is_late: &dyn Fn() -> bool) {
+        for count in 1..=MAX_READ {
+            if self.is_read || count.is_multiple_of(STEPS_PER_LOOK) && is_late() {
+                break;
+            }
+            self.is_read = self.cursor.step >= MAX_PLAYBACK_STEPS || !self.read_step();
+        }
     }
 
     /// Reads one more step. Returns `false` at the end.
-    pub(crate) fn read(&mut self) -> bool {
-        let Some(intents) = self.intents(self.reader.step) else {
-            self.is_read = true;
+    fn read_step(&mut self) -> bool {
+        let Self { record, cursor, game, .. } = self;
+        if !record.goes_on(*cursor, game) {
             return false;
-        };
-        if self.game.is_finished() {
-            let next = self.rest.next();
-            let Some((game, stage)) = next.and_then(|it| Some((it.begin(self.difficulty)?, it)))
-            else {
-                self.is_read = true;
-                return false;
-            };
-            self.levels.push(RecordedLevel { stage, before: self.reader.step });
-            self.reader.level += 1;
-            self.counts = Counts::of(&game);
-            self.game = game;
         }
-        self.game.step(intents);
-        self.reader.step += 1;
+        if record.is_over(cursor.part, game) {
+            let Some(next) = record.begin(cursor.part + 1) else { return false };
+            self.starts.push(cursor.step);
+            cursor.part += 1;
+            self.events = record.events(&next);
+            *game = next;
+        }
+        record.advance(*cursor, game);
+        cursor.step += 1;
         self.mark_events();
-        if self.reader.step.is_multiple_of(self.interval) {
-            self.keep_state();
-        }
+        let Self { record, cursor, game, states, .. } = self;
+        states.keep(0, cursor.step, || Some((cursor.part, record.store(game))));
         true
     }
 
     fn mark_events(&mut self) {
-        let (before, now) = (self.counts, Counts::of(&self.game));
-        self.counts = now;
-        let events = [
-            (now.finds > before.finds, MarkKind::Find),
-            (now.alarms > before.alarms, MarkKind::Alarm),
-            (now.deaths > before.deaths, MarkKind::Death),
-            (self.game.is_finished(), MarkKind::LevelEnd),
-        ];
-        let step = self.reader.step;
-        for (_, kind) in events.into_iter().filter(|event| event.0) {
+        let now = self.record.events(&self.game);
+        let before = std::mem::replace(&mut self.events, now);
+        let step = self.cursor.step;
+        for (kind, (before, now)) in MarkKind::ALL.into_iter().zip(before.into_iter().zip(now)) {
             let is_near = |mark: &Mark| mark.kind == kind && step < mark.step + MIN_DISTANCE;
             let mut recent = self.marks.iter().rev().take(MarkKind::ALL.len());
-            if !recent.any(is_near) {
+            if now > before && !recent.any(is_near) {
                 self.marks.push(Mark { step, kind });
             }
         }
     }
 
-    fn keep_state(&mut self) {
-        if self.states.len() == MAX_STATES {
-            self.interval *= 2;
-            let interval = self.interval;
-            self.states.retain(|(cursor, _)| cursor.step.is_multiple_of(interval));
-            if !self.reader.step.is_multiple_of(interval) {
-                return;
-            }
-        }
-        let stored = self.game.grid().and_then(Game::stored);
-        let state = match stored {
-            Some(bytes) => State::Stored(bytes),
-            None => State::Copy(Box::new(self.game.clone())),
-        };
-        self.states.push((self.reader, state));
-    }
-
-    /// The intents of the step after `step` others; `None` at the end of the script.
-    fn intents(&self, step: u64) -> Option<Intents> {
-        let index = self.stretches.partition_point(|&(end, _)| end <= step);
-        self.stretches.get(index).map(|&(_, intents)| intents)
-    }
-
     /// Advances `game`, which is at `cursor`, by a step, if that step was read.
-    pub(crate) fn step(&self, cursor: &mut Cursor, game: &mut Played) {
-        if cursor.step >= self.reader.step {
+    pub(crate) fn step(&mut self, cursor: &mut Cursor, game: &mut R::Game) {
+        if cursor.step >= self.cursor.step {
             return;
         }
-        let Some(intents) = self.intents(cursor.step) else { return };
-        if game.is_finished()
-            && let Some(next) = self.start(cursor.level + 1)
+        if self.record.is_over(cursor.part, game)
+            && let Some(next) = self.record.begin(cursor.part + 1)
         {
-            cursor.level += 1;
+            cursor.part += 1;
             *game = next;
         }
-        game.step(intents);
+        self.record.advance(*cursor, game);
         cursor.step += 1;
     }
 
-    /// The level with this index at its start.
-    fn start(&self, level: usize) -> Option<Played> {
-        self.levels.get(level)?.stage.begin(self.difficulty)
-    }
-
-    /// Moves `game` from `cursor` to the state after `step` steps, or after all that were read.
-    pub(crate) fn seek(&self, step: u64, cursor: &mut Cursor, game: &mut Played) {
-        let step = step.min(self.reader.step);
-        let is_ahead = cursor.step <= step;
-        if let Some((nearest, start)) = self.state_before(step)
-            && !(is_ahead && nearest.step <= cursor.step)
+    /// Moves `game` from `cursor` towards the state after `step` steps, or after all that were read,
+    /// until `is_late`. Returns whether it is there.
+    pub(crate) fn seek(
+        &mut self,
+        step: u64,
+        (cursor, game): (&mut Cursor, &mut R::Game),
+        is_late: &dyn Fn() -> bool,
+    ) -> bool {
+        let step = step.min(self.cursor.step);
+        let nearest = self.state_before(step);
+        if (cursor.step > step || cursor.step < nearest.step)
+            && let Some(start) = self.restored(nearest)
         {
-            (*cursor, *game) = (nearest, start);
+            (*cursor, *game) = start;
         }
+        let mut count: u64 = 0;
         while cursor.step < step {
-            let before = cursor.step;
             self.step(cursor, game);
-            if cursor.step == before {
+            count += 1;
+            if count.is_multiple_of(STEPS_PER_LOOK) && is_late() {
                 break;
             }
         }
+        cursor.step >= step
     }
 
     /// The last known state from which the state after `step` steps can be played.
-    fn state_before(&self, step: u64) -> Option<(Cursor, Played)> {
-        // A level that begins at a step is entered only by the step after it.
-        let entered = self.levels.partition_point(|level| level.before < step);
-        let level = entered.saturating_sub(1);
-        let start = Cursor { step: self.levels.get(level)?.before, level };
-        let kept = self.states.partition_point(|(cursor, _)| cursor.step <= step);
-        let kept = self.states[..kept].last().filter(|(cursor, _)| cursor.step > start.step);
-        let restored = kept.and_then(|(cursor, state)| {
-            let game = match state {
-                State::Copy(game) => Played::clone(game),
-                State::Stored(bytes) => match self.start(cursor.level)? {
-                    Played::Grid(game) => Played::Grid(Box::new(game.restored(bytes).ok()?)),
-                    Played::Space(_) => return None,
-                },
-            };
-            Some((*cursor, game))
-        });
-        restored.or_else(|| Some((start, self.start(level)?)))
+    fn state_before(&self, step: u64) -> Cursor {
+        // A part that begins at a step is entered only by the step after it.
+        let entered = self.starts.partition_point(|&start| start < step);
+        let part = entered.saturating_sub(1);
+        let start = Cursor { step: self.starts[part], part };
+        let kept = self.states.before(step).next();
+        let kept = kept.map(|(step, &(part, _))| Cursor { step, part });
+        kept.filter(|kept| kept.step > start.step).unwrap_or(start)
+    }
+
+    /// A known state, or the start of its part if it cannot be restored.
+    fn restored(&mut self, at: Cursor) -> Option<(Cursor, R::Game)> {
+        let Self { record, states, starts, .. } = self;
+        let start = Cursor { step: starts[at.part], ..at };
+        let kept = states.before(at.step).next().filter(|_| at != start);
+        let restored = kept.and_then(|(_, (part, stored))| record.restore(*part, stored));
+        match restored {
+            Some(game) => Some((at, game)),
+            None => Some((start, record.begin(at.part)?)),
+        }
+    }
+}
+
+impl<R: Record> fmt::Debug for Reader<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Reader").field("cursor", &self.cursor).finish_non_exhaustive()
     }
 }
 
 impl MarkKind {
     /// All kinds, the least important first.
-    pub(crate) const ALL: [Self; 4] = [Self::Find, Self::Alarm, Self::LevelEnd, Self::Death];
+    pub const ALL: [Self; 5] = [Self::Find, Self::Alarm, Self::Catch, Self::End, Self::Death];
 
     /// The kind in a sentence, and its character on the time line.
-    pub(crate) const fn name(self) -> (&'static str, char) {
+    pub const fn name(self) -> (&'static str, char) {
         match self {
             Self::Find => ("find", '*'),
             Self::Alarm => ("alarm", '!'),
-            Self::LevelEnd => ("end of the level", '|'),
+            Self::Catch => ("catch", '+'),
+            Self::End => ("end of the level", '|'),
             Self::Death => ("death", 'x'),
         }
     }

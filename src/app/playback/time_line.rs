@@ -4,7 +4,7 @@
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::recorded::{MarkKind, RecordedRun};
+use super::recorded::{Mark, MarkKind};
 use crate::app::status::whole_seconds;
 use crate::color::palette::ColorDepth;
 use crate::game::STEP;
@@ -16,7 +16,11 @@ const MIN_BAR: u16 = 10;
 
 /// The contents of the row.
 pub(crate) struct TimeLine<'a> {
-    pub(crate) run: &'a RecordedRun,
+    /// The number of steps of the record, and of those that were read.
+    pub(crate) steps: u64,
+    pub(crate) read: u64,
+    pub(crate) is_read: bool,
+    pub(crate) marks: &'a [Mark],
     /// The number of steps before the place that is shown.
     pub(crate) step: u64,
     /// The speed, or why nothing moves.
@@ -57,9 +61,9 @@ impl TimeLine<'_> {
         glyphs: GlyphSet,
         depth: ColorDepth,
     ) -> Bar {
-        let Self { run, step, speed, view } = self;
+        let Self { steps, step, speed, view, .. } = self;
         let time = |steps: u64| whole_seconds(steps as f64 * STEP).to_string();
-        let (left, length) = (time(*step), time(run.steps()));
+        let (left, length) = (time(*step), time(*steps));
         let rights =
             [format!("{length}  {speed:<8}{view:<5}"), format!("{length}  {speed}"), length];
         // The blank columns: at both ends, and beside the line.
@@ -78,15 +82,15 @@ impl TimeLine<'_> {
     }
 
     fn draw_bar(&self, canvas: &mut impl Canvas, bar: Bar, glyphs: GlyphSet, depth: ColorDepth) {
-        let Self { run, step, .. } = self;
+        let Self { marks, is_read, .. } = self;
         let [passed, read, unread, here] =
             if glyphs.has_blocks() { ['━', '─', '·', '█'] } else { ['=', '-', '.', '#'] };
-        let steps = run.steps();
-        let (cursor, reader) = (bar.column(*step, steps), bar.column(run.steps_read(), steps));
+        let column = |step: u64| bar.column(step, self.steps);
+        let (cursor, reader) = (column(self.step), column(self.read));
         for x in bar.x..bar.x + bar.width {
             let part = if x < cursor {
                 passed
-            } else if x <= reader || run.is_read() {
+            } else if x <= reader || *is_read {
                 read
             } else {
                 unread
@@ -95,9 +99,9 @@ impl TimeLine<'_> {
         }
         // The most important marks are drawn last.
         for kind in MarkKind::ALL {
-            for mark in run.marks().iter().filter(|mark| mark.kind == kind) {
+            for mark in marks.iter().filter(|mark| mark.kind == kind) {
                 let colors = [color(kind, depth), Color::Reset];
-                canvas.draw_character(bar.column(mark.step, steps), bar.y, kind.name().1, colors);
+                canvas.draw_character(column(mark.step), bar.y, kind.name().1, colors);
             }
         }
         if bar.width > 0 {
@@ -109,8 +113,8 @@ impl TimeLine<'_> {
 fn color(kind: MarkKind, depth: ColorDepth) -> Color {
     match (depth, kind) {
         (ColorDepth::Mono, _) => Color::Reset,
-        (_, MarkKind::Find) => Color::Indexed(11),
+        (_, MarkKind::Find | MarkKind::Catch) => Color::Indexed(11),
         (_, MarkKind::Alarm | MarkKind::Death) => Color::Indexed(9),
-        (_, MarkKind::LevelEnd) => Color::Indexed(10),
+        (_, MarkKind::End) => Color::Indexed(10),
     }
 }
