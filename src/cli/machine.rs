@@ -7,7 +7,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use etcetera::base_strategy::choose_native_strategy;
 use etcetera::{BaseStrategy, choose_base_strategy};
 
-use crate::app::store::Store;
+use super::{Error, config};
+use crate::app::Configuration;
+use crate::app::store::{Preferences, Store};
 use crate::generate::daily_seed;
 
 /// The folder `cellcaster` in the platform's data folder, or the folder in `CELLCASTER_DATA`.
@@ -24,6 +26,18 @@ pub fn data_folder() -> Option<PathBuf> {
 /// damaged or unusable.
 pub(crate) fn open_store() -> (Store, Option<String>) {
     data_folder().map_or_else(|| (Store::in_memory(), None), |folder| Store::open(&folder))
+}
+
+/// The player's preferences and the settings in the configuration file, for programs that show the game on this machine.
+///
+/// # Errors
+/// If the configuration file has faults.
+pub fn own_settings() -> Result<(Preferences, Configuration), Error> {
+    let configuration = config::load(None)?.configuration;
+    let mut preferences = open_store().0.preferences();
+    preferences.glyphs = preferences.glyphs.or(configuration.glyphs);
+    preferences.colors = preferences.colors.or(configuration.colors);
+    Ok((preferences, configuration))
 }
 
 /// The path of the file `name` in the folder `cellcaster` in the platform's configuration folder.

@@ -75,7 +75,8 @@ pub const ROOM_RECORDING: &str = "cellcaster-room ";
 /// Shows the run, or writes the report that `options` select.
 pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Error> {
     if is_room_recording(&options.script) {
-        let words = [Some(options.script.into_os_string()), options.place.map];
+        let verify = options.verify.then(|| "--verify".into());
+        let words = [verify, Some(options.script.into_os_string()), options.place.map];
         return External::room_replay(words.into_iter().flatten()).run();
     }
     let script = load(&options.script)?;

@@ -111,6 +111,7 @@ impl FuzzedRoom {
             today: Day::default(),
             frame_time: Duration::from_millis(33),
             idle: IdleLimits::of(&Config::default()),
+            has_recordings: true,
         };
         let session = Session::new(identity, options, size, host, self.now);
         self.visitors.push(FuzzedVisitor { session, member: None, is_inside: false, name });

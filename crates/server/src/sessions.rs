@@ -2,4 +2,5 @@
 //! connection, the clock and the place in the room.
 
 pub mod driver;
+pub(crate) mod home;
 pub mod session;

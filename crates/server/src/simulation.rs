@@ -29,6 +29,7 @@ use crate::config::{Config, LiveConfig};
 use crate::line::Line;
 use crate::load::Worker;
 use crate::metrics::Metrics;
+use crate::rooms::directory::Recordings;
 use crate::rooms::directory::Rooms;
 use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomRequest};
@@ -84,6 +85,8 @@ pub(crate) struct RigOptions {
     pub(crate) seed: u64,
     /// The time at the start.
     pub(crate) time: UnixTime,
+    /// The recordings of rooms; `None` for tapes in memory.
+    pub(crate) recordings: Option<Recordings>,
 }
 
 pub(crate) fn line(text: &str) -> Line {
@@ -105,7 +108,8 @@ impl RigOptions {
         let (store_time, worker) = (Duration::ZERO, Worker::default());
         // The time of a store in memory.
         let time = UnixTime::new(1_000_000_000);
-        Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7, time }
+        let catalog = catalog(HALL);
+        Self { catalog, level: "hall", mode, store_time, worker, seed: 7, time, recordings: None }
     }
 }
 
@@ -129,7 +133,7 @@ impl Rig {
             visitors: visitors.clone(),
             time: options.time,
             catalog: options.catalog,
-            recordings: logs.recordings(),
+            recordings: options.recordings.unwrap_or_else(|| logs.recordings()),
             store: HostStore::in_memory(),
             store_time: options.store_time,
             worker: options.worker,

@@ -254,9 +254,10 @@ pub(crate) enum ListFormat {
     Json,
 }
 
-/// Replay the recording of a room, and print how its rounds ended
+/// Watch the recording of a room in the terminal, or print how its rounds ended
 ///
-/// With --png, also draw what a member saw, in half blocks and 24-bit colours.
+/// Space pauses, the arrows move through the recording, Tab shows the next player, v changes the view, and "?" shows
+/// the other keys.
 #[derive(Args, Debug)]
 pub(crate) struct Replay {
     /// A recording that --record-room wrote
@@ -265,7 +266,10 @@ pub(crate) struct Replay {
     /// The map file or the folder of maps, if rounds used the host's own maps
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) maps: Option<PathBuf>,
-    /// Write what a member saw as an animated PNG
+    /// Print each round with its standings instead; the exit status is 0 if the recording can be replayed
+    #[arg(long)]
+    pub(crate) verify: bool,
+    /// Print the rounds, and write what a member saw as an animated PNG in half blocks and 24-bit colours
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) png: Option<PathBuf>,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `cellcaster-server replay`: plays a recorded room again, prints its rounds, and draws what a member saw.
+//! `cellcaster-server replay`: shows a recorded room in the terminal, or prints its rounds and draws what a member saw.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::animation::{Frames, TooManyFrames};
+use cellcaster::cli::machine::own_settings;
 use cellcaster::cli::{Error, ROOM_RECORDING};
 use cellcaster::fault::printable_path;
 use cellcaster::game::{STEP, STEPS_PER_SECOND};
@@ -16,11 +17,13 @@ use cellcaster::game::{STEP, STEPS_PER_SECOND};
 use super::arguments::Replay;
 use crate::rooms::directory::CAST;
 use crate::rooms::maps::HostMaps;
-use crate::rooms::replayed::{MAX_RECORDED_BYTES, replayed};
+use crate::rooms::replayed::{MAX_RECORDED_BYTES, RoomRecord, replayed};
 use crate::rooms::room::{Catalog, MemberId, MemberView, Room, RoomView, is_of_other_version};
+use crate::sessions::home::watch;
 use crate::sessions::session::replayed::ReplayedScreen;
 
-/// Prints each round of the recording with its standings and its checksum. Draws the animated PNG in `options`.
+/// Shows the recording. If `options` say so, prints each round with its standings and its checksum instead, and draws
+/// the animated PNG.
 ///
 /// # Errors
 /// If the file is not a recording of a room, or is damaged or too long, or if the animated PNG cannot be drawn.
@@ -43,6 +46,10 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let maps = options.maps.as_deref().map(HostMaps::read).transpose();
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
     let catalog = Arc::new(Catalog::with(&maps));
+    if !options.verify && options.png.is_none() {
+        let record = RoomRecord::parse(&text, &catalog).map_err(|fault| cannot(&fault))?;
+        return Ok(watch(record, catalog, own_settings()?)?);
+    }
     let mut animation =
         options.png.as_ref().map(|_| MemberAnimation::new(options, &catalog)).transpose()?;
     let look = &mut |room: &Room| animation.as_mut().map_or(Ok(()), |it| it.look_at(room));

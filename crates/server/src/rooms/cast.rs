@@ -19,7 +19,7 @@ use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::{STEP, STEPS_PER_SECOND};
 use cellcaster::terminal::CellWriter;
 use cellcaster::tui::canvas::Canvas;
-use cellcaster::tui::{MapMark, Minimap, color_at};
+use cellcaster::tui::{GlyphSet, MapMark, Minimap, color_at};
 use cellcaster::world::FieldOfView;
 use ratatui::backend::Backend;
 use ratatui::layout::{Rect, Size};
@@ -86,20 +86,27 @@ fn draw(canvas: &mut impl Canvas, room: &RoomView) {
     let level = if world.title().is_empty() { &room.header.level } else { world.title() };
     let text = format!("{} in {level}, {}", room.header.mode.title(), of_steps(room.step));
     canvas.draw_widget(Line::styled(text, Modifier::BOLD), title);
-    draw_map(canvas, map, room);
+    draw_map(canvas, map, room, GlyphSet::default(), ColorDepth::default());
     let names = room.members.iter().flat_map(|member| [label(member), Span::raw("  ")]);
     let names = Paragraph::new(names.collect::<Line<'_>>()).wrap(Wrap { trim: true });
     canvas.draw_widget(names, Rect { y: below, height: MEMBER_ROWS, ..area });
 }
 
-fn draw_map(canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
+/// Draws the whole level, and an arrow for each member.
+pub(crate) fn draw_map(
+    canvas: &mut impl Canvas,
+    area: Rect,
+    room: &RoomView,
+    glyphs: GlyphSet,
+    depth: ColorDepth,
+) {
     let view = FieldOfView::default();
     let seen = |member: &MemberView| Some(room.game.seen_by(member.player?)?.camera(view));
     let cameras: Vec<_> =
         room.members.iter().filter_map(|it| Some((it.color, seen(it)?))).collect();
     let first = cameras.first().map(|(_, camera)| *camera);
     let camera = first.unwrap_or_else(|| room.game.world().start_camera(view));
-    let map = Minimap::new(room.game.world(), &camera);
+    let map = Minimap::new(room.game.world(), &camera).glyphs(glyphs).color_depth(depth);
     map.paint(area, canvas);
     for (color, camera) in &cameras {
         let mark = MapMark { position: camera.position(), heading: camera.heading };

@@ -262,6 +262,13 @@ impl Room {
         MemberId(self.next_member)
     }
 
+    /// The number of members who were caught by others, and the number of finishes and of ends of the round. Both
+    /// only grow during a round.
+    pub(crate) fn events(&self) -> [u32; 2] {
+        let is_over = matches!(self.round.phase, Phase::Over { .. });
+        [self.round.caught(), self.round.finished() as u32 + u32::from(is_over)]
+    }
+
     /// Returns true when the next round must begin.
     pub(crate) fn is_over(&self) -> bool {
         self.round.is_over(self.step) || self.all_wish_again()

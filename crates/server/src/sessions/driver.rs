@@ -80,6 +80,8 @@ struct Shared {
     /// Limits the number of large frames drawn at the same time.
     large_frames: Arc<Semaphore>,
     next_guest: AtomicU32,
+    /// Limits the number of records that are watched at the same time.
+    records: Arc<Semaphore>,
 }
 
 /// The clock by which a host knows the day.
@@ -112,6 +114,8 @@ impl Clock {
 const DAY_INTERVAL: Duration = Duration::from_secs(5);
 /// The interval between two decisions of the governor.
 const GOVERNOR_INTERVAL: Duration = Duration::from_millis(250);
+/// The maximum number of records that are watched at the same time. Each takes at most 30 MB.
+const MAX_RECORDS: usize = 8;
 /// The maximum number of queued calls to the store.
 const MAX_CALLS: usize = 256;
 /// Shown to a player that the host remembers while the database is away.
@@ -211,6 +215,7 @@ impl GameHost {
             load,
             large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
             next_guest: AtomicU32::new(1),
+            records: Arc::new(Semaphore::new(MAX_RECORDS)),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
         tokio::spawn(follow_days(Arc::downgrade(&shared)));

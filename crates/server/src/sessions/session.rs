@@ -30,6 +30,7 @@ mod line_entry;
 pub(crate) mod lobby;
 mod messages;
 mod pages;
+pub(crate) mod playback;
 pub(crate) mod replayed;
 mod settings;
 mod stay;
@@ -44,7 +45,8 @@ use std::time::Duration;
 pub(crate) use self::endings::IdleLimits;
 use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{
-    BoardRow, Moderation, Profile, RoomEntry, SessionContext, SessionEvent, SessionRequest,
+    BoardRow, Moderation, Profile, RecordWish, RecordingRow, RoomEntry, SessionContext,
+    SessionEvent, SessionRequest,
 };
 use self::stay::Stay;
 use self::ui::Ui;
@@ -52,7 +54,7 @@ use crate::bucket::Bucket;
 use crate::load::Rate;
 use crate::rooms::room::RoomView;
 use crate::rooms::summary::RoomId;
-use cellcaster::app::parts::{Meter, TerminalLook};
+use cellcaster::app::parts::Meter;
 use cellcaster::game::Intents;
 use cellcaster::terminal::{Event, KeyEvent, Phase, Protocol, SessionOptions, WindowSize};
 
@@ -189,6 +191,8 @@ impl Session {
 
     /// Draws a frame into the output.
     pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
+        let recorded = self.ui.playback.as_ref().map(|playback| playback.view());
+        let room = recorded.as_ref().or(room);
         if self.stale_from(room).is_some_and(|from| from <= now) {
             self.draw_anew(room, now);
         } else {
@@ -216,7 +220,7 @@ impl Session {
             protocol.ring_bell();
         }
         protocol.draw(|screen| ui.draw(screen, room));
-        ui.is_stale = false;
+        ui.drawn();
         if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
             stay.drawn(room, ui.field_of_view, ui.identity.preferences.ghost);
             self.drawn_step = room.step;
@@ -394,11 +398,7 @@ impl Session {
 
     /// Adopts the terminal's detected properties.
     fn follow_terminal(&mut self) {
-        let Self { protocol, ui, .. } = self;
-        ui.terminal = TerminalLook::of(protocol);
-        let is_chosen = ui.identity.preferences.colors.is_some();
-        ui.detection.follow(protocol, ui.depth(), is_chosen);
-        ui.pointer.set_columns(protocol.size().columns);
+        self.ui.follow_terminal(&self.protocol);
     }
 
     /// Ends the session if it should end, and restores the screen once the terminal has acknowledged all output.

@@ -39,7 +39,7 @@ use crate::lock::locked;
 use crate::metrics::Metrics;
 use crate::rooms::directory::{CAST, PublicRecording, Rooms};
 use crate::rooms::replayed::RoomReplay;
-use crate::rooms::room::{Catalog, Header, first_header, is_of_other_version};
+use crate::rooms::room::{Catalog, Header, is_of_other_version};
 use cellcaster::cli::ROOM_RECORDING;
 use cellcaster::game::STEPS_PER_SECOND;
 
@@ -64,8 +64,6 @@ const RESERVE_INTERVAL: Duration = Duration::from_secs(1);
 const MAX_LISTED: usize = 50;
 /// The time for which a list is kept.
 const LIST_INTERVAL: Duration = Duration::from_secs(5);
-/// The bytes of a record in which its header is.
-const HEAD_BYTES: u64 = 4 << 10;
 /// The steps of a second, and of a picture.
 const SECOND_STEPS: u32 = STEPS_PER_SECOND;
 const PICTURE_STEPS: u32 = STEPS_PER_SECOND / PICTURES_PER_SECOND;
@@ -81,7 +79,7 @@ pub(crate) struct Records {
 }
 
 /// The result of opening a record.
-type Opened = Result<Arc<RoomRecord>, Arc<str>>;
+type Opened = Result<Arc<WatchedRecord>, Arc<str>>;
 
 /// A record that is open, or being opened.
 struct OpenRecord {
@@ -100,7 +98,7 @@ impl Drop for OpenRecord {
 }
 
 /// A record that can be shown from any second.
-struct RoomRecord {
+struct WatchedRecord {
     seconds: u32,
     catalog: Arc<Catalog>,
     /// Replays at some of the seconds.
@@ -190,7 +188,7 @@ impl Records {
     }
 
     /// Reads a record, and replays it.
-    async fn load(&self, path: PathBuf) -> Result<RoomRecord, String> {
+    async fn load(&self, path: PathBuf) -> Result<WatchedRecord, String> {
         let sentence = |reason: String| format!("This record cannot be shown: {reason}.");
         let ended = || sentence("the server ends".to_owned());
         let rooms = self.rooms.clone();
@@ -205,7 +203,7 @@ impl Records {
                 break;
             }
         }
-        Ok(RoomRecord {
+        Ok(WatchedRecord {
             seconds: scan.steps.div_ceil(SECOND_STEPS).max(1),
             catalog: Arc::clone(self.rooms.catalog()),
             checkpoints: scan.checkpoints,
@@ -214,7 +212,7 @@ impl Records {
     }
 
     /// A piece of a record; `None` if the server ends.
-    async fn piece(&self, record: &Arc<RoomRecord>, second: u32) -> Option<Piece> {
+    async fn piece(&self, record: &Arc<WatchedRecord>, second: u32) -> Option<Piece> {
         if let Some(piece) = record.known(second) {
             return Some(piece);
         }
@@ -240,9 +238,7 @@ impl Records {
 fn listed(rooms: &Rooms) -> Value {
     let recordings = rooms.recordings().public(MAX_LISTED);
     let entry = |recording: PublicRecording| {
-        let mut head = Vec::new();
-        File::open(&recording.path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
-        let header = first_header(&String::from_utf8_lossy(&head))?;
+        let header = recording.header()?;
         is_shown(rooms, &header).then(|| {
             json!({
                 "name": recording.name,
@@ -339,7 +335,7 @@ impl Scan {
     }
 }
 
-impl RoomRecord {
+impl WatchedRecord {
     /// A piece that is drawn already.
     fn known(&self, second: u32) -> Option<Piece> {
         locked(&self.drawn, |drawn| {
@@ -363,8 +359,6 @@ impl RoomRecord {
         for step in
             (second * SECOND_STEPS..(second + 1) * SECOND_STEPS).step_by(PICTURE_STEPS as usize)
         {
-            // The picture shows who comes in at its step. This changes nothing else.
-            replay.is_playing().ok()?;
             // The snapshot is dropped before the next step, which would copy its game.
             let view = replay.room.view();
             let cells = picture::draw(&view, &self.catalog);

@@ -23,7 +23,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -32,7 +32,7 @@ use std::time::{Duration, SystemTime};
 use crate::lock::locked;
 use crate::rooms::cast::Cast;
 use crate::rooms::replayed::MAX_RECORDED_BYTES;
-use crate::rooms::room::{Entry, Header, Mode, RoomView};
+use crate::rooms::room::{Entry, Header, Mode, RoomView, first_header};
 use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
 use cellcaster::app::store::private;
@@ -89,6 +89,11 @@ impl Recordings {
         })
     }
 
+    /// Whether rooms are recorded in a folder.
+    pub(crate) fn has_folder(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// The path of a public log, by its name such as `room-7`; `None` if there is no such log.
     pub(crate) fn named(&self, name: &str) -> Option<PathBuf> {
         let file = format!("{name}.{LOG}");
@@ -99,8 +104,8 @@ impl Recordings {
     }
 }
 
-/// A recording that browsers may show.
-#[derive(Debug)]
+/// A recording that browsers and the lobby may show.
+#[derive(Clone, Debug)]
 pub(crate) struct PublicRecording {
     /// The name of the file without its ending.
     pub(crate) name: String,
@@ -108,6 +113,15 @@ pub(crate) struct PublicRecording {
     pub(crate) path: PathBuf,
     /// When it was finished; `None` if it is being written.
     pub(crate) time: Option<SystemTime>,
+}
+
+impl PublicRecording {
+    /// The header of the first round; `None` if it cannot be read, or is of another version.
+    pub(crate) fn header(&self) -> Option<Header> {
+        let mut head = Vec::new();
+        File::open(&self.path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+        first_header(&String::from_utf8_lossy(&head))
+    }
 }
 
 impl fmt::Debug for Recordings {
@@ -175,6 +189,8 @@ const PRIVATE: &str = "private-";
 /// The endings of the names of logs and casts.
 const LOG: &str = "log";
 pub(crate) const CAST: &str = "cast";
+/// The number of bytes at the beginning of a log that hold the header of its first round.
+const HEAD_BYTES: u64 = 4 << 10;
 /// The least disk space that a file takes, including its directory entry.
 const BLOCK: u64 = 4 << 10;
 

@@ -214,6 +214,15 @@ impl Round {
         }
     }
 
+    /// A number that grows when a member is caught by another one.
+    pub(crate) fn caught(&self) -> u32 {
+        match &self.play {
+            Play::Tag(tag) if tag.before.is_some() => tag.since as u32,
+            Play::Hide(hide) => hide.seekers.values().flatten().count() as u32,
+            _ => 0,
+        }
+    }
+
     /// Returns true if a member currently sees nothing.
     pub(crate) fn is_blind(&self, member: MemberId) -> bool {
         matches!(self.mode, Mode::Hide) && self.holds(member, 0)

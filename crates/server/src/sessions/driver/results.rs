@@ -20,12 +20,14 @@ use crate::line::Line;
 use crate::lock::locked;
 use crate::logging;
 use crate::metrics::Metrics;
+use crate::rooms::replayed::RoomRecord;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use crate::rooms::sequencer::FinishedRun;
 use crate::sessions::session::BoardRow;
 use crate::visitors::Visitors;
 use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::Improved;
+use cellcaster::game::Script;
 use cellcaster::world::{Difficulty, World};
 
 /// The maximum number of board entries shown, and the lowest place that a player is told.
@@ -156,6 +158,25 @@ pub(crate) fn board(
         })
     };
     scores.into_iter().filter_map(row).collect()
+}
+
+/// The run of a player on the board of a level.
+///
+/// # Errors
+/// A sentence, if the board has no such run.
+pub(crate) fn run(
+    store: &mut HostStore,
+    catalog: &Arc<Catalog>,
+    (level, difficulty): (&str, Difficulty),
+    name: Line,
+) -> Result<RoomRecord, String> {
+    let found = LevelBoard::new(level, difficulty).and_then(|board| {
+        let scores = store.level_scores(&board, MAX_ROWS).ok()?;
+        let score = scores.into_iter().find(|score| score.name.as_str() == name.as_str())?;
+        let text = store.script(score.account, &board).ok()??;
+        RoomRecord::of_script(&Script::parse(&text, "the script").ok()?, name, catalog)
+    });
+    found.ok_or_else(|| "The run cannot be shown: it is no longer on the board.".to_owned())
 }
 
 /// The pause between two passes over the waiting results.

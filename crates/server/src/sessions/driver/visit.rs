@@ -6,6 +6,7 @@
 //!   to any host within a minute gets their place back. If they go elsewhere while the host is looking for
 //!   that place, they have left the room.
 
+use std::fs;
 use std::net::IpAddr;
 use std::num::NonZero;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 use tokio::runtime::{Handle, RuntimeFlavor};
 use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
-use tokio::task::block_in_place;
+use tokio::task::{block_in_place, spawn_blocking};
 use tokio::time::sleep_until;
 
 use super::login::{self, AccountData};
@@ -30,13 +31,15 @@ use crate::line::Line;
 use crate::load::Work;
 use crate::lock::locked;
 use crate::logging;
-use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::directory::{Place, PublicRecording, RoomRefusal, Rooms};
 use crate::rooms::invitation::{Guesser, RoomCode};
-use crate::rooms::room::{CHAT_COLUMNS, Command, NAME_COLUMNS, RoomView};
+use crate::rooms::replayed::RoomRecord;
+use crate::rooms::room::{CHAT_COLUMNS, Command, Header, NAME_COLUMNS, RoomView};
 use crate::rooms::sequencer::FinishedRun;
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::session::{
-    IdleLimits, Profile, RoomEntry, Session, SessionContext, SessionEvent, SessionRequest,
+    IdleLimits, Profile, RecordWish, RecordingRow, RoomEntry, Session, SessionContext,
+    SessionEvent, SessionRequest,
 };
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Heard, Notice, Onlookers, Presence};
@@ -85,6 +88,8 @@ pub(crate) struct Driver {
     is_draining: bool,
     /// Whether the host is looking for the place that the visitor had before.
     is_returning: bool,
+    /// The permit to watch a record.
+    record: Option<OwnedSemaphorePermit>,
 }
 
 /// An event that a driver waits for.
@@ -162,6 +167,7 @@ impl Driver {
             today: shared.rooms.today(),
             frame_time: shared.load.rate().frame_time,
             idle: IdleLimits::of(&config),
+            has_recordings: shared.rooms.recordings().has_folder(),
         };
         let now = shared.now();
         let mut session = Session::new(identity, options, visitor.size, host, now);
@@ -191,6 +197,7 @@ impl Driver {
             sent: (0, 0),
             is_draining: false,
             is_returning: false,
+            record: None,
             shared,
         }
     }
@@ -429,6 +436,9 @@ impl Driver {
             SessionRequest::Moderate { player, act, reason } => {
                 self.moderate(&player, act, reason.as_ref());
             }
+            SessionRequest::Recordings => self.list_recordings(),
+            SessionRequest::Record(wish) => self.show_record(wish),
+            SessionRequest::EndRecord => self.record = None,
             SessionRequest::Leave => self.leave(),
             SessionRequest::Board { level, difficulty } => self.show_board(level, difficulty),
             SessionRequest::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
@@ -518,6 +528,51 @@ impl Driver {
             let rows = results::board(store, &level, difficulty, own).into();
             Some(Reply::SessionEvent(SessionEvent::Board { level, difficulty, rows }))
         });
+    }
+
+    fn list_recordings(&self) {
+        let (rooms, replies) = (self.shared.rooms.clone(), self.replies.clone());
+        spawn_blocking(move || {
+            let row = |recording: PublicRecording| {
+                let Header { mode, level, .. } = recording.header()?;
+                Some(RecordingRow { name: recording.name, mode, level, ended: recording.time? })
+            };
+            let recordings = rooms.recordings().public(MAX_LISTED_RECORDINGS);
+            let rows = recordings.into_iter().filter_map(row).collect();
+            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Recordings(rows)));
+        });
+    }
+
+    /// Loads a record, if not too many are watched.
+    fn show_record(&mut self, wish: RecordWish) {
+        self.record = None;
+        let Ok(permit) = Arc::clone(&self.shared.records).try_acquire_owned() else {
+            let sentence = "Others watch as many records as the host can show: try again later.";
+            return self.notify(SessionEvent::Record(Err(sentence.to_owned())));
+        };
+        self.record = Some(permit);
+        let (rooms, replies) = (self.shared.rooms.clone(), self.replies.clone());
+        match wish {
+            RecordWish::Room(name) => {
+                spawn_blocking(move || {
+                    let text = text_of_recording(&rooms, &name);
+                    let record = text.and_then(|text| RoomRecord::parse(&text, rooms.catalog()));
+                    let record = record
+                        .map_err(|reason| format!("The recording cannot be shown: {reason}."));
+                    _ = replies.try_send(Reply::SessionEvent(SessionEvent::Record(record)));
+                });
+            }
+            RecordWish::Run { level, difficulty, name } => {
+                let is_accepted = self.call_store(move |store| {
+                    let record = results::run(store, rooms.catalog(), (&level, difficulty), name);
+                    Some(Reply::SessionEvent(SessionEvent::Record(record)))
+                });
+                if !is_accepted {
+                    let sentence = "The host is busy; try again.".to_owned();
+                    self.notify(SessionEvent::Record(Err(sentence)));
+                }
+            }
+        }
     }
 
     /// Loads the ghosts of a level. They are for this visitor only, because each member may want different ones.
@@ -747,6 +802,21 @@ impl Driver {
             tokio::spawn(async move { rooms.forget_place(key).await });
         }
     }
+}
+
+/// The most finished recordings that the lobby lists.
+const MAX_LISTED_RECORDINGS: usize = 20;
+/// The largest recording that visitors can watch, in bytes: an hour of eight players. It takes three times as much memory.
+const MAX_WATCHED_BYTES: u64 = 4 << 20;
+
+/// The text of a public recording.
+fn text_of_recording(rooms: &Rooms, name: &str) -> Result<String, String> {
+    let path = rooms.recordings().named(name).ok_or("it is gone")?;
+    let length = fs::metadata(&path).map_err(|error| error.to_string())?.len();
+    if length > MAX_WATCHED_BYTES {
+        return Err(format!("it has more than {} MiB", MAX_WATCHED_BYTES >> 20));
+    }
+    fs::read_to_string(path).map_err(|error| error.to_string())
 }
 
 /// Draws a frame. A large frame does not block other tasks.

@@ -16,14 +16,16 @@ use ratatui::widgets::Block;
 
 use super::ceremony::finishers;
 use super::pages::Page;
+use super::playback::KEYS;
 use super::stay::{SeenGhost, seconds_left};
 use super::talk;
 use super::ui::Ui;
 use crate::line;
+use crate::rooms::cast;
 use crate::rooms::room::{Phase, RoomView};
 use cellcaster::app::parts::{
-    DrawOptions, Menu, Overlay, is_too_small, leaving, message, picture_and_status, too_small,
-    whole_seconds,
+    DrawOptions, Menu, Overlay, PLAYER_HELP, Perspective, is_too_small, leaving, message,
+    picture_and_status, too_small, whole_seconds,
 };
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::render::Filter;
@@ -55,7 +57,14 @@ impl Ui {
         if is_too_small(area) {
             return too_small(canvas);
         }
-        let [picture, status] = picture_and_status(area);
+        let rows = u16::from(self.playback.is_some());
+        let [above, below] = [area.height - rows, rows];
+        let [picture, status] = picture_and_status(Rect { height: above, ..area });
+        let (glyphs, depth) = (self.glyphs(), self.depth());
+        if let Some(playback) = &mut self.playback {
+            let line = Rect { y: area.y + above, height: below, ..area };
+            playback.player.draw_time_line(canvas, line, glyphs, depth);
+        }
         match (self.stay.is_some(), room) {
             (true, Some(room)) => {
                 self.draw_room(canvas, picture, room);
@@ -77,8 +86,13 @@ impl Ui {
             Page::Name => self.draw_name(canvas, area),
             Page::Code => self.draw_code(canvas, area),
             Page::Help => {
-                let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
-                let keys = (&room_keys[..], &self.bindings);
+                let lines = if self.playback.is_some() {
+                    [&PLAYER_HELP[..], &KEYS].concat()
+                } else {
+                    ROOM_KEYS.to_vec()
+                };
+                let lines: Vec<String> = lines.into_iter().map(str::to_owned).collect();
+                let (keys, notes) = ((&lines[..], &self.bindings), self.help_notes());
                 self.pages.help.draw(canvas, area, keys, notes.into_iter());
             }
             Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
@@ -132,7 +146,18 @@ impl Ui {
         let (options, page) = (self.draw_options(), self.page());
         let depth = options.depth;
         let preferences = self.identity.preferences;
+        let player = self.playback.as_ref().map(|playback| &playback.player);
+        if player.is_some_and(|player| player.perspective() == Perspective::Above) {
+            return cast::draw_map(canvas, area, room, options.glyphs, depth);
+        }
+        let free = player.and_then(|player| player.camera(options.field_of_view));
         let Some(stay) = &mut self.stay else { return };
+        if let Some(camera) = free {
+            let world = with_figures(room.game.world(), room.figures(), &[]);
+            let mut view = VIEW.take().unwrap_or_default();
+            options.draw(&*world, &camera, room.game.elapsed(), canvas, area, &mut view);
+            return VIEW.set(Some(view));
+        }
         let shows_standings =
             matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat);
         let seen_through = stay.seen_through(room);

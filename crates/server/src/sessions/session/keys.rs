@@ -61,6 +61,9 @@ impl Ui {
     /// Handles a mouse event. As at home, the mouse only steers the player.
     fn mouse(&mut self, event: MouseEvent) {
         self.is_stale |= self.idle.restart(self.now);
+        if self.playback.is_some() {
+            return self.mouse_in_playback(event);
+        }
         let plays = self.is_playing();
         self.pointer.handle(event, plays);
         self.want();
@@ -108,6 +111,7 @@ impl Ui {
     fn interrupted(&mut self) {
         match self.page() {
             Page::Leaving | Page::RoomMenu => self.say_goodbye(),
+            _ if self.playback.is_some() => self.end_playback(),
             _ if self.stay.is_some() => self.open(Page::RoomMenu),
             _ => self.open(Page::Leaving),
         }
@@ -226,6 +230,9 @@ impl Ui {
             Some(Action::NarrowView) => return self.widen_view(false),
             _ if press == Press::Repeat => return,
             _ => {}
+        }
+        if self.press_in_playback(key, press) {
+            return;
         }
         let Some(stay) = &mut self.stay else { return };
         let (is_member, watches) = (stay.member.is_some(), stay.is_watching);

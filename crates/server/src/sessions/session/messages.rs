@@ -1,14 +1,15 @@
 //! The messages between a session and its driver, and the facts that a session starts with.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use super::endings::IdleLimits;
 use crate::accounts::{AccountSettings, Day, Name};
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::invitation::RoomCode;
-use crate::rooms::room::{Catalog, Command, MemberId};
+use crate::rooms::replayed::RoomRecord;
+use crate::rooms::room::{Catalog, Command, MemberId, Mode};
 use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use crate::visitors::Onlookers;
 use cellcaster::app::Configuration;
@@ -51,6 +52,8 @@ pub(crate) struct SessionContext {
     /// The initial interval between frames.
     pub(crate) frame_time: Duration,
     pub(crate) idle: IdleLimits,
+    /// Whether the host records rooms.
+    pub(crate) has_recordings: bool,
 }
 
 /// A way into a room.
@@ -88,6 +91,12 @@ pub(crate) enum SessionRequest {
     Report { player: Line, reason: Option<Line>, lines: Vec<String> },
     /// Carry out an act of a moderator. Answered by [`SessionEvent::Advice`].
     Moderate { player: Line, act: Moderation, reason: Option<Line> },
+    /// List the recordings of public rooms. Answered by [`SessionEvent::Recordings`].
+    Recordings,
+    /// Load a record. Answered by [`SessionEvent::Record`].
+    Record(RecordWish),
+    /// The record is no longer watched. Not answered.
+    EndRecord,
     /// Leave the room. Not answered.
     Leave,
     /// Load a board. Answered by [`SessionEvent::Board`].
@@ -96,6 +105,15 @@ pub(crate) enum SessionRequest {
     Ghosts { level: String, difficulty: Difficulty },
     /// Save the settings. Not answered.
     Save(AccountSettings),
+}
+
+/// A record to watch.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum RecordWish {
+    /// The recording in this file.
+    Room(String),
+    /// The run of this player on a board.
+    Run { level: String, difficulty: Difficulty, name: Line },
 }
 
 /// An act of a moderator against a player.
@@ -107,6 +125,18 @@ pub(crate) enum Moderation {
     Unmute,
     /// Their sessions end.
     Kick,
+}
+
+/// A finished recording of a public room, in a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct RecordingRow {
+    /// The name of the file without its ending.
+    pub(crate) name: String,
+    /// The mode and the level of the first round.
+    pub(crate) mode: Mode,
+    pub(crate) level: String,
+    /// When the recording ended.
+    pub(crate) ended: SystemTime,
 }
 
 /// An event from the driver to a session.
@@ -128,6 +158,10 @@ pub(crate) enum SessionEvent {
     Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
     /// The ghosts of a level.
     Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
+    /// The recordings of public rooms, newest first.
+    Recordings(Arc<[RecordingRow]>),
+    /// A record, or a sentence that says why it cannot be watched.
+    Record(Result<RoomRecord, String>),
     /// A sentence about a result, or another message from the host.
     Result(String),
     /// A line from the operator.

@@ -4,12 +4,12 @@
 //! page, the usual choice is selected, so Enter alone leads to a first walk. Escape goes back. Before the
 //! session ends, the visitor is asked to confirm.
 
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use super::commands::Players;
 use super::draw::COMPRESSION;
 use super::line_entry::LineEntry;
-use super::messages::{Moderation, RoomEntry, SessionRequest};
+use super::messages::{Moderation, RecordWish, RoomEntry, SessionRequest};
 use super::ui::Ui;
 use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
@@ -26,12 +26,13 @@ const ROOMS_IN_LOBBY: usize = 5;
 const CODE_COLUMNS: usize = 12;
 /// The entries of the lobby after the rooms, each with the key that chooses it there. None of the keys selects an entry
 /// with a usual set of keys.
-const LOBBY_ENTRIES: [(char, &str, Choice); 9] = [
+const LOBBY_ENTRIES: [(char, &str, Choice); 10] = [
     ('o', "Open a room", Choice::Open(Page::Modes)),
     // Its label is the day.
     ('d', "", Choice::Open(Page::Daily)),
     ('l', Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone))),
     ('b', "Board", Choice::Open(Page::Boards)),
+    ('r', "Recordings", Choice::Recordings),
     ('c', "Enter a code", Choice::Open(Page::Code)),
     ('t', "Settings", Choice::Open(Page::Settings)),
     ('?', "Help", Choice::Open(Page::Help)),
@@ -64,7 +65,9 @@ pub(crate) enum Page {
     Code,
     /// A description of a room, before the visitor enters it.
     Card(RoomTarget),
-    /// The driver has been asked for the room.
+    /// The recordings of rooms.
+    Recordings,
+    /// The driver has been asked for the room or the record.
     Entering,
     Settings,
     Help,
@@ -94,6 +97,12 @@ pub(crate) enum Choice {
     Enter { watches: bool },
     /// Shows the board of a level.
     Board(LevelChoice),
+    /// Lists the recordings of rooms.
+    Recordings,
+    /// Shows the recording with this index.
+    Recording(usize),
+    /// Shows the run in this row of the board.
+    Run(usize),
     /// Changes whether the new room is private.
     ChangePrivacy,
     /// Changes the setting in this row of the settings page.
@@ -120,8 +129,6 @@ pub(crate) enum Choice {
     Again,
     /// Leaves the room.
     LeaveRoom,
-    /// Does nothing: the entry is only read.
-    Nothing,
 }
 
 /// A room to enter.
@@ -225,6 +232,24 @@ impl Ui {
                 self.ask_for_board();
                 self.open(Page::Board);
             }
+            Choice::Recordings => {
+                self.recordings = None;
+                self.ask(SessionRequest::Recordings);
+                self.open(Page::Recordings);
+            }
+            Choice::Recording(index) => {
+                let row = self.recordings.as_ref().and_then(|rows| rows.get(index));
+                if let Some(name) = row.map(|row| row.name.clone()) {
+                    self.ask_for_record(RecordWish::Room(name));
+                }
+            }
+            Choice::Run(index) => {
+                let row = self.board.rows.as_ref().and_then(|rows| rows.get(index));
+                let name = row.map(|row| row.name.clone());
+                if let Some(((level, difficulty), name)) = self.asked_board().zip(name) {
+                    self.ask_for_record(RecordWish::Run { level, difficulty, name });
+                }
+            }
             Choice::ChangePrivacy => self.change_privacy(),
             Choice::Change(row) => self.change_setting(row, true),
             Choice::Back => self.close(),
@@ -249,8 +274,13 @@ impl Ui {
                 self.show(Page::Room);
             }
             Choice::LeaveRoom => self.leave_by_request(),
-            Choice::Nothing => {}
         }
+    }
+
+    fn ask_for_record(&mut self, wish: RecordWish) {
+        self.record_from = self.page();
+        self.ask(SessionRequest::Record(wish));
+        self.open(Page::Entering);
     }
 
     /// Carries out a choice about a player.
@@ -339,7 +369,7 @@ impl Ui {
     /// The entry of the lobby that `key` chooses, besides the digits.
     pub(crate) fn lobby_choice(&self, key: Key) -> Option<Choice> {
         let is_chosen = |entry: &&(char, &str, Choice)| Key::Char(entry.0) == key;
-        let entry = LOBBY_ENTRIES.iter().find(is_chosen)?;
+        let entry = LOBBY_ENTRIES.iter().find(is_chosen).filter(|entry| self.has(entry.2))?;
         (self.page() == Page::Lobby).then_some(entry.2)
     }
 
@@ -353,6 +383,7 @@ impl Ui {
             Page::Levels(mode) => self.levels_menu(mode),
             Page::Boards => self.boards_menu(),
             Page::Board => self.board_menu(),
+            Page::Recordings => self.recordings_menu(),
             Page::Card(target) => self.card_menu(target),
             Page::Entering => Menu::new("").line("Going in…"),
             Page::Settings => self.settings_menu(),
@@ -383,11 +414,17 @@ impl Ui {
                 menu.entry_with(label, format!("{value}  {digit}"), choice)
             });
         let daily = self.host.today.title();
-        LOBBY_ENTRIES.into_iter().fold(menu, |menu, (key, label, choice)| {
+        let entries = LOBBY_ENTRIES.into_iter().filter(|(_, _, choice)| self.has(*choice));
+        entries.fold(menu, |menu, (key, label, choice)| {
             let label = if choice == Choice::Open(Page::Daily) { &daily } else { label };
             let shown = Some(key).filter(|&key| !self.selects(key));
             menu.entry_with(label, shown.map_or(String::new(), String::from), choice)
         })
+    }
+
+    /// Whether the lobby has an entry.
+    fn has(&self, choice: Choice) -> bool {
+        choice != Choice::Recordings || self.host.has_recordings
     }
 
     /// Returns true if a key selects an entry, because the visitor walks with it.
@@ -537,7 +574,22 @@ impl Ui {
                 let own = if row.is_own { " (you)" } else { "" };
                 let label = format!("{:>2}. {}{own}", index + 1, row.name);
                 let value = format!("{}  {}", row.rank.name(), of_steps(row.steps));
-                menu.entry_with(label, value, Choice::Nothing)
+                menu.entry_with(label, value, Choice::Run(index))
+            }),
+        }
+        .entry("Back", Choice::Back)
+    }
+
+    fn recordings_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("recordings");
+        let catalog = &self.host.catalog;
+        match &self.recordings {
+            None => menu.line("…"),
+            Some(rows) if rows.is_empty() => menu.line("There is none yet."),
+            Some(rows) => rows.iter().enumerate().fold(menu, |menu, (index, row)| {
+                let label = format!("{} in {}", row.mode.title(), catalog.title(&row.level));
+                let age = SystemTime::now().duration_since(row.ended).unwrap_or_default();
+                menu.entry_with(label, ago(age), Choice::Recording(index))
             }),
         }
         .entry("Back", Choice::Back)
@@ -637,6 +689,15 @@ impl Ui {
             menu.entry(label, Choice::Moderate(act))
         });
         menu.entry("Back", Choice::Back)
+    }
+}
+
+/// The age of a recording.
+fn ago(age: Duration) -> String {
+    match age.as_secs() / 60 {
+        minutes @ 0..60 => format!("{minutes} min ago"),
+        minutes @ 60..2880 => format!("{} h ago", minutes / 60),
+        minutes => format!("{} days ago", minutes / 1440),
     }
 }
 

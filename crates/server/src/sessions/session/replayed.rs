@@ -10,7 +10,6 @@ use super::endings::IdleLimits;
 use super::messages::{Profile, SessionContext, SessionEvent};
 use super::ui::Ui;
 use crate::accounts::Day;
-use crate::config::Config;
 use crate::line::Line;
 use crate::rooms::room::{Catalog, MemberId, RoomView};
 use crate::rooms::summary::RoomId;
@@ -26,26 +25,7 @@ pub(crate) struct ReplayedScreen {
 impl ReplayedScreen {
     /// The screen of `member`, as their session shows it with the usual settings.
     pub(crate) fn new(member: MemberId, name: Line, catalog: Arc<Catalog>, size: Size) -> Self {
-        let identity = Profile {
-            has_account: false,
-            name: name.clone(),
-            is_named: true,
-            preferences: Preferences::default(),
-            ignored: Vec::new(),
-            configuration: Configuration::default(),
-        };
-        let host = SessionContext {
-            name,
-            message: None,
-            notice: None,
-            compresses: true,
-            ascii_locale: None,
-            catalog,
-            today: Day::default(),
-            frame_time: Duration::ZERO,
-            idle: IdleLimits::of(&Config::default()),
-        };
-        let mut ui = Ui::new(identity, host, false, Duration::ZERO);
+        let mut ui = ui(name, catalog, (Preferences::default(), Configuration::default()));
         ui.notify(SessionEvent::Entered { room: RoomId(0), member: Some(member), code: None });
         Self { ui, picture: Buffer::empty(size.into()) }
     }
@@ -63,4 +43,33 @@ impl ReplayedScreen {
         }
         picture
     }
+}
+
+/// The user interface of somebody on this machine.
+pub(crate) fn ui(
+    name: Line,
+    catalog: Arc<Catalog>,
+    (preferences, configuration): (Preferences, Configuration),
+) -> Ui {
+    let identity = Profile {
+        has_account: false,
+        name: name.clone(),
+        is_named: true,
+        preferences,
+        ignored: Vec::new(),
+        configuration,
+    };
+    let host = SessionContext {
+        name,
+        message: None,
+        notice: None,
+        compresses: true,
+        ascii_locale: None,
+        catalog,
+        today: Day::default(),
+        frame_time: Duration::ZERO,
+        idle: IdleLimits { in_room: Duration::MAX, elsewhere: Duration::MAX },
+        has_recordings: false,
+    };
+    Ui::new(identity, host, false, Duration::ZERO)
 }

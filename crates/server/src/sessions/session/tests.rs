@@ -8,6 +8,7 @@ mod lag;
 mod lobby;
 mod pages;
 mod pictures;
+mod playback;
 mod private;
 mod room;
 mod talk;

@@ -8,8 +8,11 @@ use super::endings::{Draining, Idle, IdleAction};
 use super::ignored::Ignored;
 use super::line_entry::LineEntry;
 use super::lobby::Lobby;
-use super::messages::{BoardRow, Profile, SessionContext, SessionEvent, SessionRequest};
+use super::messages::{
+    BoardRow, Profile, RecordingRow, SessionContext, SessionEvent, SessionRequest,
+};
 use super::pages::{Choice, LevelChoice, Page};
+use super::playback::RoomPlayback;
 use super::stay::Stay;
 use super::talk::Talk;
 use crate::accounts::Day;
@@ -21,7 +24,7 @@ use cellcaster::app::parts::{
 };
 use cellcaster::app::{Bindings, Configuration};
 use cellcaster::game::Intents;
-use cellcaster::terminal::Key;
+use cellcaster::terminal::{Key, Protocol};
 use cellcaster::world::FieldOfView;
 
 /// The maximum number of queued requests. Further ones are dropped, because only a paste produces that many.
@@ -57,6 +60,12 @@ pub(crate) struct Ui {
     pub(crate) board: Board,
     /// The visitor's stay in a room; `None` in the lobby.
     pub(crate) stay: Option<Stay>,
+    /// The record that the visitor watches.
+    pub(crate) playback: Option<Box<RoomPlayback>>,
+    /// The page from which the visitor chose a record.
+    pub(crate) record_from: Page,
+    /// The recordings that the host offers; `None` until they arrive.
+    pub(crate) recordings: Option<Arc<[RecordingRow]>>,
     pub(crate) talk: Talk,
     pub(crate) ignored: Ignored,
     pub(crate) players: Players,
@@ -124,6 +133,9 @@ impl Ui {
             lobby: Lobby::default(),
             board: Board { level: LevelChoice::Daily, day: host.today, rows: None },
             stay: None,
+            playback: None,
+            record_from: Page::Lobby,
+            recordings: None,
             talk: Talk::default(),
             ignored: Ignored::new(identity.ignored.clone()),
             players: Players::default(),
@@ -139,6 +151,22 @@ impl Ui {
             identity,
             host,
         }
+    }
+
+    /// Takes over the properties of the terminal.
+    pub(crate) fn follow_terminal(&mut self, protocol: &Protocol) {
+        self.terminal = TerminalLook::of(protocol);
+        let is_chosen = self.identity.preferences.colors.is_some();
+        self.detection.follow(protocol, self.depth(), is_chosen);
+        self.pointer.set_columns(protocol.size().columns);
+        self.is_stale = true;
+    }
+
+    /// Continues after a suspension. The time of the suspension does not count.
+    pub(crate) fn resumed(&mut self, now: Duration) {
+        self.clock.skip_to(now);
+        self.release_keys();
+        self.is_stale = true;
     }
 
     /// Queues a request to the driver.
@@ -161,12 +189,28 @@ impl Ui {
                 stay.differs_from(room, view, shows_ghosts) || self.talk.is_behind(&room.said)
             })
         };
-        self.is_stale || self.stay.as_ref().is_some_and(differs)
+        let is_recorded = |it: &RoomPlayback| it.player.is_stale();
+        match &self.playback {
+            Some(playback) => self.is_stale || is_recorded(playback),
+            None => self.is_stale || self.stay.as_ref().is_some_and(differs),
+        }
+    }
+
+    /// Records that the screen was drawn.
+    pub(crate) fn drawn(&mut self) {
+        self.is_stale = false;
+        self.playback.iter_mut().for_each(|playback| playback.player.drawn());
     }
 
     /// Follows the room before it is drawn.
     pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) {
         let Some(stay) = &mut self.stay else { return };
+        if self.playback.is_some() {
+            // A record has no ghosts.
+            _ = stay.look_at(room, now);
+            self.talk.forget_old(now);
+            return;
+        }
         self.talk.hear(&room.said, &self.ignored, now);
         self.talk.forget_old(now);
         self.requests.extend(stay.look_at(room, now));
@@ -196,6 +240,7 @@ impl Ui {
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
             self.talk.next_end(),
+            self.playback_wakes_at(),
             stay.and_then(|stay| stay.intents.next_at()),
             self.draining.and_then(|draining| draining.next_at(self.now)),
         ];
@@ -209,12 +254,15 @@ impl Ui {
             self.renew_menu();
         }
         let context = self.key_context();
-        for _ in 0..self.clock.steps_until(now).min(Clock::MAX_STEPS) {
+        let steps = self.clock.steps_until(now).min(Clock::MAX_STEPS);
+        for _ in 0..steps {
             self.controls.advance(now, context);
             self.want();
             self.turn();
+            self.fly();
             self.controls.held.step();
         }
+        self.advance_playback(steps);
         self.controls.advance(now, context);
         self.want();
     }
@@ -253,7 +301,7 @@ impl Ui {
 
     pub(crate) fn key_context(&self) -> KeyContext {
         let is_airborne = self.stay.as_ref().is_some_and(|stay| stay.is_airborne);
-        KeyContext { plays: self.is_playing(), is_airborne, flies: false }
+        KeyContext { plays: self.is_playing() || self.flies(), is_airborne, flies: false }
     }
 
     /// Releases all held keys and stops continuous walking.
@@ -320,6 +368,18 @@ impl Ui {
                     stay.ghosts.receive(level, difficulty, ghosts);
                 }
             }
+            SessionEvent::Recordings(rows) => {
+                self.recordings = Some(rows);
+                self.renew_menu();
+            }
+            SessionEvent::Record(Ok(record)) => {
+                let from = if self.page() == Page::Entering { self.record_from } else { return };
+                self.begin_playback(record, Some(from));
+            }
+            SessionEvent::Record(Err(sentence)) => {
+                self.close();
+                self.hear(sentence);
+            }
             SessionEvent::Onlookers(onlookers) => self.lobby.onlookers = onlookers,
             SessionEvent::Result(sentence) => self.hear(sentence),
             SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
@@ -362,7 +422,7 @@ impl Ui {
         self.show(Page::Lobby);
     }
 
-    fn hear(&mut self, sentence: String) {
+    pub(crate) fn hear(&mut self, sentence: String) {
         if self.stay.is_some() {
             self.talk.hear_host(sentence, self.now);
         } else {

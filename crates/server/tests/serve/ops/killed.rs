@@ -41,7 +41,7 @@ fn recording(folder: &Path) -> String {
     let path = folder.join("room-1.log");
     let text = fs::read_to_string(&path).unwrap();
     assert!(text.ends_with('\n'), "{text}");
-    let replayed = server(&["replay"]).arg(&path).output().unwrap();
+    let replayed = server(&["replay", "--verify"]).arg(&path).output().unwrap();
     assert!(replayed.status.success(), "{replayed:?}\n{text}");
     assert!(String::from_utf8(replayed.stdout).unwrap().contains("round 1: Roam"));
     text

@@ -57,7 +57,7 @@ pub(crate) fn scores(data: &Path, arguments: &[&str]) -> String {
 }
 
 fn replay(arguments: &[&Path]) -> Output {
-    server(&["replay"]).args(arguments).output().unwrap()
+    server(&["replay", "--verify"]).args(arguments).output().unwrap()
 }
 
 /// Takes a new name, and presses `entry` in the lobby.

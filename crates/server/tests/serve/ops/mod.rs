@@ -20,4 +20,5 @@ mod running;
 mod shared_store;
 mod signals;
 mod talk;
+mod watching;
 mod web;

@@ -95,6 +95,13 @@ fn a_win_in_the_daily_level_is_on_its_board() {
         rig.press(jon, keys);
     }
     shows(&rig, jon, &["Left and right change the day.", " 1. Mara"]);
+    // The run is shown as Mara saw it.
+    for keys in [ENTER, " ", "\x1b[F"] {
+        rig.press(jon, keys);
+    }
+    shows(&rig, jon, &[" end"]);
+    rig.press(jon, "q");
+    assert_eq!(rig.page(jon), Page::Board);
     for _ in 0..9 {
         rig.press(jon, "\x1b[D");
     }

@@ -55,7 +55,7 @@ fn a_host_records_the_rooms_of_its_players() {
     }
     let cast = log.with_extension("cast");
     assert!(shows(&cast, "Mara") && !shows(&cast, "behind you"));
-    let replayed = server(&["replay"]).arg(log).output().unwrap();
+    let replayed = server(&["replay", "--verify"]).arg(log).output().unwrap();
     let shown = String::from_utf8(replayed.stdout).unwrap();
     assert!(shown.starts_with("round 1: ") && shown.contains("Mara"), "{shown}");
 }
