@@ -8,9 +8,10 @@
 //!   place of every key that is typed with it.
 
 use crate::app::App;
-use crate::app::controls::{Action, Bindings};
+use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen::{AppScreen, MenuChoice, capitalized};
+use crate::app::setting::Choice;
 use crate::terminal::Key;
 
 impl App {
@@ -25,6 +26,24 @@ impl App {
                 let choice = MenuChoice::Open(AppScreen::Binding(action));
                 (capitalized(does), keys.unwrap_or_else(|| "none".to_owned()), choice)
             }))
+            .entry_with("All keys", self.preset_name(), MenuChoice::ChangePreset)
+    }
+
+    /// The preset whose keys all actions have.
+    fn preset(&self) -> Option<Preset> {
+        let has_keys = |preset: &Preset| preset.bindings() == self.settings.bindings;
+        Preset::ALL.iter().map(|(preset, ..)| *preset).find(has_keys)
+    }
+
+    fn preset_name(&self) -> &'static str {
+        self.preset().map_or("own", Choice::name)
+    }
+
+    /// Gives all actions the keys of the next preset, or of the one before.
+    pub(crate) fn change_preset(&mut self, forward: bool) {
+        let preset = self.preset().map_or_else(Preset::default, |it| it.neighbour(forward));
+        self.set_bindings(preset.bindings());
+        self.say_in_menu(&format!("The keys are now those of {}.", preset.name()));
     }
 
     /// The question for a new key of `action`.

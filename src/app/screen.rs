@@ -87,6 +87,8 @@ pub(crate) enum MenuChoice {
     Endless,
     /// Changes the setting in this row of the settings page.
     Change(usize),
+    /// Gives all actions the keys of the next preset.
+    ChangePreset,
     /// Continues the current game.
     GoOn,
     /// Continues from the last checkpoint.
@@ -112,7 +114,9 @@ impl Page for AppScreen {
             Self::Help => PageKind::Help,
             Self::Leaving => PageKind::Leaving,
             Self::LevelDone | Self::Dead | Self::End => PageKind::Result,
-            Self::Settings | Self::Levels | Self::Maps => PageKind::Menu { has_values: true },
+            Self::Settings | Self::Keys | Self::Levels | Self::Maps => {
+                PageKind::Menu { has_values: true }
+            }
             _ => PageKind::Menu { has_values: false },
         }
     }
@@ -227,6 +231,7 @@ impl App {
             MenuChoice::RemoveOldest => self.remove_oldest(),
             MenuChoice::Back => self.close(),
             MenuChoice::Change(setting) => self.change_setting(setting, true),
+            MenuChoice::ChangePreset => self.change_preset(true),
             MenuChoice::Retry => self.retry(),
             MenuChoice::TakeBack => self.take_back(),
             MenuChoice::GoOn => self.show(AppScreen::Playing),
@@ -474,6 +479,7 @@ impl App {
         match (self.screen(), self.pages.menu.choice()) {
             (AppScreen::Levels | AppScreen::Maps, _) => self.change_difficulty(forward),
             (_, Some(MenuChoice::Change(setting))) => self.change_setting(setting, forward),
+            (_, Some(MenuChoice::ChangePreset)) => self.change_preset(forward),
             _ => {}
         }
     }

@@ -188,7 +188,7 @@ fn the_free_camera_flies_without_the_player() {
 #[test]
 fn playing_on_with_the_intents_of_the_script_leads_to_the_same_result() {
     let script = script(WINS);
-    for place in [0, 2, 5] {
+    for place in [0, 1, 3] {
         let mut rig = watching(WINS);
         tap(&mut rig, SPACE);
         tap(&mut rig, Key::Home);

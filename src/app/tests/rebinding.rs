@@ -122,3 +122,17 @@ fn shift_is_bound_by_itself_and_not_with_the_key_that_it_modifies() {
     rig.tap(Key::Shift, 30);
     assert_eq!(keys(&rig, FORWARD), "shift up");
 }
+
+#[test]
+fn all_keys_follow_a_preset() {
+    let mut rig = on_page(Store::in_memory());
+    rig.choose("All keys");
+    assert_eq!(keys(&rig, FORWARD), "z up");
+    assert!(page(&mut rig).contains("those of azerty"), "{}", page(&mut rig));
+    let store = std::mem::take(&mut rig.app.store);
+    assert_eq!(keys(&titled(Offers::default(), store), FORWARD), "z up");
+    rig = on_page(Store::in_memory());
+    rig.choose("Walk");
+    press(&mut rig, Key::Char('y'));
+    assert!(page(&mut rig).contains("own"), "{}", page(&mut rig));
+}
