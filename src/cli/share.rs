@@ -27,8 +27,8 @@ use crate::terminal::{CellWriter, Fidelity};
 
 /// Make an animation of part of a script
 ///
-/// Browsers and chat programs show gif and png, with 8x16 pixels for each cell and 256 colours; png is smaller. A cast
-/// is for asciinema. replay shows the times for --from and --to.
+/// Browsers and chat programs show gif and png, with 8x16 pixels for each cell and 256 colours; png is smaller. Browsers
+/// show svg, which is sharp at every size. A cast is for asciinema. replay shows the times for --from and --to.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -61,6 +61,7 @@ pub(crate) struct ShareCommand {
 enum ShareFormat {
     Gif,
     Png,
+    Svg,
     Cast,
 }
 
@@ -100,7 +101,7 @@ fn format(options: &ShareCommand) -> Result<ShareFormat, Error> {
     let of_file = ending.and_then(|ending| ShareFormat::from_str(ending, true).ok());
     let format = options.format.or(of_file).ok_or_else(|| {
         Error::mistake(
-            "choose a format: --format gif, png or cast, or an --output with that ending",
+            "choose a format: --format gif, png, svg or cast, or an --output with that ending",
         )
     })?;
     let rate = options.excerpt.frames_per_second.get();
@@ -148,6 +149,7 @@ fn made(
     let animation = match format {
         ShareFormat::Gif => AnimationFormat::Gif,
         ShareFormat::Png => AnimationFormat::Png,
+        ShareFormat::Svg => AnimationFormat::Svg,
         ShareFormat::Cast => {
             let mut cast = CastWriter::begin(&mut output, options)?;
             show(&mut |frame, picture| cast.draw(frame - part.start, picture))?;

@@ -223,6 +223,56 @@ fn a_gif_shows_the_pictures_of_the_animated_png_at_their_times() {
     }
 }
 
+/// The width of an SVG, and its frames: the pictures at their beginnings, without their lengths.
+fn decoded_svg(path: &str) -> (usize, Vec<Vec<[u8; 3]>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let between = |text: &str, from: &str, to: &str| {
+        let rest = text.split_once(from).unwrap().1;
+        rest.split_once(to).unwrap().0.to_owned()
+    };
+    let side =
+        |name: &str| -> usize { between(&text, &format!(" {name}=\""), "\"").parse().unwrap() };
+    let (width, height) = (side("width"), side("height"));
+    let (mut pixels, mut frames) = (vec![[0; 3]; width * height], Vec::new());
+    let mut begun = -1.0;
+    for group in text.split("<g>").skip(1) {
+        let times = between(group, "keyTimes=\"", "\"");
+        let times: Vec<f64> = times.split(';').map(|time| time.parse().unwrap()).collect();
+        let values = between(group, "values=\"", "\"");
+        let from = times[values.split(';').position(|value| value == "inline").unwrap()];
+        assert!(from > begun, "a frame appears after the one before");
+        begun = from;
+        for path in group.split("<path ").skip(1) {
+            let color = u32::from_str_radix(&between(path, "fill=\"#", "\""), 16).unwrap();
+            let [_, color @ ..] = color.to_be_bytes();
+            for rectangle in between(path, "d=\"", "\"").split('M').skip(1) {
+                let numbers = rectangle.split([' ', 'h', 'v', 'z']).take(4);
+                let numbers: Vec<usize> = numbers.map(|it| it.parse().unwrap()).collect();
+                for y in numbers[1]..numbers[1] + numbers[3] {
+                    pixels[y * width..][numbers[0]..][..numbers[2]].fill(color);
+                }
+            }
+        }
+        frames.push(pixels.clone());
+    }
+    (width, frames)
+}
+
+#[test]
+fn an_svg_shows_the_pictures_of_the_animated_png() {
+    let script = file("svg.script", SCRIPT);
+    let [png, svg] = ["as_png.png", "as_svg.svg"].map(|name| file(name, ""));
+    for path in [&png, &svg] {
+        output_of(&[
+            "share", &script, "museum", "--size", "60x20", "--fps", "20", "--colors", "16", "-o",
+            path,
+        ]);
+    }
+    let (png, svg) = (decoded(&png), decoded_svg(&svg));
+    assert_eq!((png.0, png.1.len()), (svg.0, svg.1.len()));
+    assert!(png.1.iter().zip(&svg.1).all(|(png, svg)| png.pixels == *svg));
+}
+
 #[test]
 fn mistakes_are_reported() {
     let bad = file("bad.script", "[x]\n1 s foward\n");

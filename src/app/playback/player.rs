@@ -255,8 +255,7 @@ impl<R: Record> Player<R> {
     /// Goes to the place at which a cell of the time line is pressed; returns whether there is one.
     pub fn press_at(&mut self, x: u16, y: u16) -> bool {
         let step = self.bar.step_at(x, y, self.reader.steps());
-        step.into_iter().for_each(|step| self.go_to(step));
-        step.is_some()
+        step.map(|step| self.go_to(step)).is_some()
     }
 
     /// The mark after or before the cursor.

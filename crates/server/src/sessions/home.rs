@@ -11,6 +11,7 @@ use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
 use cellcaster::terminal::{Detected, Error, Event, Session, SessionOptions, locale_without_utf8};
+use cellcaster::tui::GlyphSet;
 
 /// Shows a record until the player leaves.
 ///
@@ -27,7 +28,7 @@ pub(crate) fn watch(
         options.color_depth = Detected::Certain(depth);
     }
     options.fidelity = settings.1.fidelity;
-    let has_blocks = settings.0.glyphs.is_some_and(|glyphs| glyphs.has_blocks());
+    let has_blocks = settings.0.glyphs.is_some_and(GlyphSet::has_blocks);
     options.is_ascii = !has_blocks && locale_without_utf8(variable).is_some();
     let (is_ascii, asks) = (options.is_ascii, options.ask_for_key_releases);
     let frame_time = Duration::from_secs(1) / settings.1.frames_per_second.get();
@@ -51,7 +52,9 @@ pub(crate) fn watch(
         if is_due && !waits {
             if ui.is_stale(None) {
                 let view = ui.playback.as_ref().map(|playback| playback.view());
-                view.iter().for_each(|view| ui.look_at(view, now));
+                if let Some(view) = &view {
+                    ui.look_at(view, now);
+                }
                 terminal.draw(|screen| ui.draw(screen, view.as_ref()))?;
                 ui.drawn();
             } else {

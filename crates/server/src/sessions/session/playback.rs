@@ -142,10 +142,7 @@ impl Ui {
             }
             (_, Some(Action::TogglePause)) if !is_repeat => playback.player.toggle_pause(),
             (Key::Escape, _) | (_, Some(Action::Leave)) => self.end_playback(),
-            (_, Some(Action::ToggleHelp | Action::ToggleMinimap | Action::ChangeMap(_)))
-            | (_, Some(Action::WidenView | Action::NarrowView | Action::ToggleStats)) => {
-                return false;
-            }
+            (_, Some(action)) if acts_as_in_a_room(action) => return false,
             _ => {}
         }
         true
@@ -159,4 +156,13 @@ impl Ui {
             self.is_stale |= playback.player.press_at(x, y);
         }
     }
+}
+
+/// Whether an action does the same in a playback as in a room.
+fn acts_as_in_a_room(action: Action) -> bool {
+    use Action::{ChangeMap, NarrowView, ToggleHelp, ToggleMinimap, ToggleStats, WidenView};
+    matches!(
+        action,
+        ToggleHelp | ToggleMinimap | ChangeMap(_) | WidenView | NarrowView | ToggleStats
+    )
 }
