@@ -255,7 +255,9 @@ impl RoomReplay {
         let Self { record, room, round, last } = self;
         room.advance();
         let entries = record.entries(*round, room.step());
-        entries.iter().for_each(|entry| room.apply(entry));
+        for entry in entries {
+            room.apply(entry);
+        }
         if !entries.is_empty() {
             *last = room.step();
         }
