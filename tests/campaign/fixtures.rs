@@ -48,7 +48,7 @@ fn a_secret_wall_of_the_clock_tower_sinks_and_gives_the_treasure_behind_it() {
 
 #[test]
 fn a_player_who_dies_in_the_treasury_goes_on_from_its_checkpoint() {
-    let checkpoint = (27, 14);
+    let checkpoint = (36, 12);
     let mut pilot = begin("treasury");
     do_at(&mut pilot, Verb::Go, checkpoint);
     assert_eq!(pilot.game.message(), Some("Checkpoint."));
