@@ -299,6 +299,11 @@ impl FuzzedRoom {
             SessionRequest::Ghosts { level, difficulty } => {
                 Some(SessionEvent::Ghosts { level, difficulty, ghosts: [].into() })
             }
+            SessionRequest::Recordings => Some(SessionEvent::Recordings([].into())),
+            SessionRequest::Record(_) => {
+                Some(SessionEvent::Record(Err("The recording is gone.".to_owned())))
+            }
+            SessionRequest::EndRecord => None,
             SessionRequest::Save(settings) => {
                 assert!(settings.configuration.len() <= AccountSettings::MAX_BYTES);
                 assert!(settings.ignored.len() <= AccountSettings::MAX_IGNORED);
