@@ -123,28 +123,42 @@ fn compare_rows(
     let mut first = None;
     for (x, y) in rows.flat_map(|y| (0..frame.width()).map(move |x| (x, y))) {
         counts.pixels += 1;
-        let (right, down) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let met = solids.meet(direction(camera, frame, right, down));
-        let drawn = frame.pixel(x, y);
+        let (met, drawn) = (meet(solids, camera, frame, [x, y], [0.0; 2]), frame.pixel(x, y));
         if are_alike(drawn, met.color()) {
             continue;
         }
-        let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
-        let is_same = |(across, along): (f64, f64)| {
-            solids.meet(direction(camera, frame, right + across, down + along)) == met
-        };
-        if met.is_tied() || !beside.into_iter().all(is_same) {
-            counts.in_doubt += 1;
-        } else {
-            counts.wrong += 1;
-            first.get_or_insert(WrongPixel { x, y, drawn, expected: met.color() });
+        match clear_color(solids, camera, frame, [x, y]) {
+            Some(expected) => {
+                counts.wrong += 1;
+                first.get_or_insert(WrongPixel { x, y, drawn, expected });
+            }
+            None => counts.in_doubt += 1,
         }
     }
     (counts, first)
 }
 
+/// The colour of a pixel; `None` if it is in doubt.
+pub fn clear_color(
+    solids: &Solids,
+    camera: &Camera,
+    frame: &Frame,
+    pixel: [u32; 2],
+) -> Option<Rgb> {
+    let met = meet(solids, camera, frame, pixel, [0.0; 2]);
+    let beside = [[-DOUBTFUL, 0.0], [DOUBTFUL, 0.0], [0.0, -DOUBTFUL], [0.0, DOUBTFUL]];
+    let is_same = |offset| meet(solids, camera, frame, pixel, offset) == met;
+    (!met.is_tied() && beside.into_iter().all(is_same)).then(|| met.color())
+}
+
+/// The hits of the line at an `offset` from the middle of a pixel.
+fn meet(solids: &Solids, camera: &Camera, frame: &Frame, pixel: [u32; 2], offset: [f64; 2]) -> Met {
+    let [x, y] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
+    solids.meet(direction(camera, frame, x, y))
+}
+
 /// The line through a point of a picture, whose component along the camera's direction is 1.
-pub fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
+fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let focal_length = width / 2.0 / camera.field_of_view.half_width();
     let horizon = height / 2.0 + (camera.pitch.slope() * focal_length).round();

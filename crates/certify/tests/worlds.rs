@@ -7,7 +7,7 @@ use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch, SpriteId};
-use cellcaster_certify::{DOUBTFUL, Solids, direction};
+use cellcaster_certify::{Solids, clear_color};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -429,22 +429,9 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     renderer.keep_surfaces(true);
     renderer.render(&world, &camera, &mut with_surfaces);
     for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
-        let meet_beside = |right: f64, down: f64| {
-            let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
-            solids.meet(direction(&camera, &frame, x, y))
-        };
-        let met = meet_beside(0.0, 0.0);
-        let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
-        if !met.is_tied() && beside.into_iter().all(|(right, down)| meet_beside(right, down) == met)
-        {
-            prop_assert_eq!(frame.pixel(x, y), met.color(), "at ({}, {}): {:?}", x, y, met);
-            prop_assert_eq!(
-                with_surfaces.pixel(x, y),
-                met.color(),
-                "with surfaces at ({}, {})",
-                x,
-                y
-            );
+        if let Some(color) = clear_color(&solids, &camera, &frame, [x, y]) {
+            prop_assert_eq!(frame.pixel(x, y), color, "at ({}, {})", x, y);
+            prop_assert_eq!(with_surfaces.pixel(x, y), color, "with surfaces at ({}, {})", x, y);
         }
     }
     Ok(())
