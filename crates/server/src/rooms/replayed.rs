@@ -253,12 +253,8 @@ impl RoomReplay {
     /// Takes the next step of the round.
     fn advance(&mut self) {
         let Self { record, room, round, last } = self;
-        room.advance();
-        let entries = record.entries(*round, room.step());
-        for entry in entries {
-            room.apply(entry);
-        }
-        if !entries.is_empty() {
+        record.advance(Cursor { step: room.step(), part: *round }, room);
+        if !record.entries(*round, room.step()).is_empty() {
             *last = room.step();
         }
     }
