@@ -24,7 +24,7 @@ use crate::numeric::DoubleDouble;
 use crate::world::{Cell, PillarRadius};
 
 /// The chord of a pillar on the line of a ray.
-pub(super) struct Chord {
+pub(crate) struct Chord {
     /// The `t` of the ray at its start; `None` if that is behind the ray's origin.
     start: Option<f64>,
     /// The `t` of the ray at its end.
@@ -37,7 +37,7 @@ pub(super) struct Chord {
 
 impl Chord {
     /// The chord on the line of `ray`; `None` if the line misses the pillar.
-    pub(super) fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
+    pub(crate) fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
         let (center, radius) = (cell.center(), radius.cells());
         let (direction, _) = ray.scaled_direction();
         if is_clearly_beside(center - ray.origin(), direction, radius) {
@@ -137,7 +137,7 @@ impl Chord {
     }
 
     /// The hit of `ray`, from outside, on the pillar with this `radius` in `cell`.
-    pub(super) fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
+    pub(crate) fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
         let t = self.start?;
         let (direction, _) = ray.scaled_direction();
         let outward = direction.perp() * self.miss - direction * self.half_length;
@@ -145,7 +145,7 @@ impl Chord {
     }
 
     /// The `t` at which the ray leaves the pillar; `None` if that is behind the origin.
-    pub(super) fn end(&self) -> Option<f64> {
+    pub(crate) fn end(&self) -> Option<f64> {
         Some(self.end).filter(|&t| t >= 0.0)
     }
 }

@@ -228,7 +228,7 @@ fn speed_across(ray: &Ray, extent: DVec2) -> (f64, i32) {
 }
 
 /// The kind of grid line closest in direction to a surface with this `normal`.
-pub(super) fn facing(normal: DVec2) -> Side {
+pub(crate) fn facing(normal: DVec2) -> Side {
     if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
 }
 

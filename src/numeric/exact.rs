@@ -8,7 +8,6 @@
 //! - Double-double arithmetic (also by Dekker) has twice the digits of a double. It serves rays that
 //!   barely touch a pillar. A difference of two squares decides whether and where such a ray hits, and the
 //!   square root of that difference turns an error in the sixteenth digit into an error in the eighth.
-//!   Rejected: integers. The squares are products of four doubles, which exceed every integer type.
 //! - The orientation predicate tells on which side of a ray a point lies, with an exact sign. The cross
 //!   product of the vector to the point and the ray's direction is a difference of two products. A filter
 //!   comes first: the sign of the rounded result is right if the result exceeds its error bound (J. R.

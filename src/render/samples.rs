@@ -15,9 +15,10 @@ use std::num::NonZeroU32;
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
 use crate::raster::Band;
+use crate::visibility::Filter;
 
 /// The number of samples along both sides of a pixel.
-const SIDE: usize = 3;
+const SIDE: usize = Filter::AREA_SAMPLES.get() as usize;
 
 /// The most rows of pixels whose samples are in memory at once, for each thread.
 pub(crate) const MAX_SAMPLED_ROWS: NonZeroU32 = NonZeroU32::new(64).unwrap();

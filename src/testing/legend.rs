@@ -15,14 +15,14 @@ use crate::color::lab::Lab;
 use crate::tui::pixels::shown;
 
 /// The colour of each small letter: the colour of more than half of the cells in a family, if there is one.
-pub(super) struct ColorLegend {
+pub(crate) struct ColorLegend {
     colors: HashMap<char, Color>,
     /// The letters in use.
     used: Vec<char>,
 }
 
 impl ColorLegend {
-    pub(super) fn of(grid: &CellGrid) -> Self {
+    pub(crate) fn of(grid: &CellGrid) -> Self {
         let mut cells: HashMap<Color, usize> = HashMap::new();
         for color in grid.0.content.iter().flat_map(|cell| [cell.fg, cell.bg]) {
             *cells.entry(color).or_default() += 1;
@@ -41,7 +41,7 @@ impl ColorLegend {
     }
 
     /// Reads a line: a letter, a name and, if there is one, the colour. `None` if it is something else.
-    pub(super) fn read(&mut self, line: &str) -> Option<()> {
+    pub(crate) fn read(&mut self, line: &str) -> Option<()> {
         let mut words = line.split_whitespace();
         let letter = words.next()?.parse().ok()?;
         if let Some(color) = words.nth(1) {
@@ -51,7 +51,7 @@ impl ColorLegend {
     }
 
     /// A letter for each run of a colour, and the colours that are listed.
-    pub(super) fn plane_row(&self, colors: impl Iterator<Item = Color>) -> (String, Vec<String>) {
+    pub(crate) fn plane_row(&self, colors: impl Iterator<Item = Color>) -> (String, Vec<String>) {
         let mut listed = Vec::new();
         let mut before = None;
         let columns = colors.map(|color| {
@@ -69,7 +69,7 @@ impl ColorLegend {
     }
 
     /// The colours of a row of a plane.
-    pub(super) fn read_row(&self, columns: &str, listed: &[&str]) -> Result<Vec<Color>, String> {
+    pub(crate) fn read_row(&self, columns: &str, listed: &[&str]) -> Result<Vec<Color>, String> {
         let mut listed = listed.iter();
         let mut color = None;
         let mut colors = Vec::new();
@@ -114,7 +114,7 @@ impl fmt::Display for ColorLegend {
 }
 
 /// `#rrggbb`, the number of an indexed colour, or a name.
-pub(super) fn color_text(color: Color) -> String {
+pub(crate) fn color_text(color: Color) -> String {
     match color {
         Color::Rgb(red, green, blue) => Rgb::new(red, green, blue).to_string(),
         other => other.to_string(),

@@ -218,6 +218,9 @@ impl Filter {
     /// All filters, the default first.
     pub const ALL: [Self; 3] = [Self::Mip, Self::Nearest, Self::Area];
 
+    /// The number of samples of [`Filter::Area`] along both sides of each pixel.
+    pub(crate) const AREA_SAMPLES: NonZeroU32 = NonZeroU32::new(3).unwrap();
+
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
@@ -229,11 +232,10 @@ impl Filter {
 
     /// The number of samples along both sides of each pixel, for a frame of `size`.
     pub(crate) fn samples(self, size: FrameSize) -> NonZeroU32 {
-        const SAMPLES: NonZeroU32 = NonZeroU32::new(3).unwrap();
         /// Larger frames would have more samples than a `u32` can count.
-        const MAX_SIDE: u32 = u32::MAX / SAMPLES.get();
+        const MAX_SIDE: u32 = u32::MAX / Filter::AREA_SAMPLES.get();
         let are_countable = size.width.get().max(size.height.get()) <= MAX_SIDE;
-        if self == Self::Area && are_countable { SAMPLES } else { NonZeroU32::MIN }
+        if self == Self::Area && are_countable { Self::AREA_SAMPLES } else { NonZeroU32::MIN }
     }
 
     /// The level of detail for a pixel that covers an area of this many texels.

@@ -19,7 +19,7 @@ const KEY: usize = 16;
 
 impl Frames {
     /// Writes the animated SVG.
-    pub(super) fn encode_svg(
+    pub(crate) fn encode_svg(
         &self,
         cell: CellSize,
         palette: &IndexedPalette,
