@@ -11,21 +11,18 @@
 //! a scene never runs the loops of the kinds that it lacks, and no pixel needs a branch.
 
 mod band;
-mod column_batch;
-mod direct_columns;
 mod faces;
 mod layers;
 mod pieces;
 mod planes;
-mod shaded_texels;
 mod sky;
 mod span;
 mod span_pair;
 mod target;
 mod texel_runs;
+mod texture_columns;
 
 pub(crate) use band::Band;
-use column_batch::BatchMemory;
 use planes::PlaneMemory;
 pub(crate) use sky::{SkyMemory, SkyView};
 pub(crate) use target::{SurfaceBuffer, Target};
@@ -36,7 +33,6 @@ use crate::visibility::{DrawList, FrameContext};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RasterMemory {
     planes: PlaneMemory,
-    batch: BatchMemory,
 }
 
 /// Draws the rows of `list` that `target` covers.
@@ -48,6 +44,6 @@ pub(crate) fn draw(
     target: &mut Target<'_>,
 ) {
     planes::draw(scene, list, sky, &mut memory.planes, target);
-    faces::draw(scene, list, &mut memory.batch, target);
+    faces::draw(scene, list, target);
     layers::draw(scene, list, target);
 }

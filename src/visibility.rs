@@ -40,7 +40,7 @@ pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::StatsCounter;
 pub use stats::{FrameStats, Pass, PassStats, WalkStats};
 pub use surface::Surface;
-pub(crate) use texture_stepper::{FaceTexels, TextureStepper};
+pub(crate) use texture_stepper::FaceTexels;
 
 use crate::cast::DynCaster;
 use crate::world::{Camera, World};

@@ -86,24 +86,6 @@ impl<'a> Band<'a> {
         self.pixels.get_mut(start + x as usize..end).unwrap_or_default()
     }
 
-    /// Passes the pixels of `N` columns from `x` on in these rows, which are in the band, to
-    /// `draw`, row by row.
-    #[inline]
-    pub(crate) fn for_each_in_block<const N: usize>(
-        &mut self,
-        x: u32,
-        rows: Range<u32>,
-        mut draw: impl FnMut(&mut [Rgb; N]),
-    ) {
-        let first = self.places(rows.clone()).start + x as usize;
-        let mut rest = self.pixels.get_mut(first..).unwrap_or_default();
-        for _ in rows {
-            let Some(pixels) = rest.first_chunk_mut() else { return };
-            draw(pixels);
-            rest = rest.get_mut(self.width..).unwrap_or_default();
-        }
-    }
-
     /// The range of the pixels of `rows` in the band's pixels.
     #[inline]
     fn places(&self, rows: Range<u32>) -> Range<usize> {

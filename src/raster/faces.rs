@@ -11,9 +11,9 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::column_batch::{BatchMemory, ColumnBatch};
-use super::direct_columns::{self, DirectColumns};
+use super::Band;
 use super::target::Target;
+use super::texture_columns::{self, TextureColumns};
 use crate::cast::Side;
 use crate::color::Rgb;
 use crate::visibility::{
@@ -24,26 +24,26 @@ use crate::world::texture::MipLevel;
 use crate::world::{FaceLight, Glass, Paint, Texture, TextureId};
 
 /// Draws the faces of `list` that hide what is behind them.
-pub(crate) fn draw(
-    scene: FrameContext<'_>,
-    list: &DrawList,
-    memory: &mut BatchMemory,
-    target: &mut Target<'_>,
-) {
-    let are_direct = direct_columns::are_for(scene, target.band_mut());
+pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target<'_>) {
     for face in &list.faces {
-        let Material::Opaque(paint) = face.material else { continue };
-        let shown = ShownFace::new(scene, list, face);
-        shown.record(paint, target);
-        let is_fully_lit = face.light == FaceLight::FULL && scene.world.fog().is_none();
-        if let Some(side) = shown.side().filter(|_| is_fully_lit) {
-            let batch = &mut ColumnBatch::new(memory, target, are_direct);
-            shown.draw::<_>(paint, batch, |_| SideLit(side));
-            batch.draw();
-        } else {
-            let batch = &mut ColumnBatch::new(memory, target, are_direct);
-            shown.draw::<_>(paint, batch, |index| shown.lighting(index));
-            batch.draw();
+        if let Material::Opaque(paint) = face.material {
+            ShownFace::new(scene, list, face).record(paint, target);
+        }
+    }
+    let band = target.band_mut();
+    let Range { start, end } = band.rows();
+    let at_once = texture_columns::rows_at_once(band.width()) as u32;
+    for first in (start..end).step_by(at_once as usize) {
+        let rows = first..end.min(first + at_once);
+        for face in &list.faces {
+            let Material::Opaque(paint) = face.material else { continue };
+            let shown = ShownFace::new(scene, list, face);
+            let is_fully_lit = face.light == FaceLight::FULL && scene.world.fog().is_none();
+            if let Some(side) = shown.side().filter(|_| is_fully_lit) {
+                shown.draw(paint, &rows, band, |_| SideLit(side));
+            } else {
+                shown.draw(paint, &rows, band, |index| shown.lighting(index));
+            }
         }
     }
 }
@@ -133,28 +133,25 @@ impl<'a> ShownFace<'a> {
         }
     }
 
+    /// Draws `rows` of the face in `paint`.
     fn draw<L: Lighting>(
         &self,
         paint: Paint,
-        batch: &mut ColumnBatch<'_, '_, 'a, L>,
+        rows: &Range<u32>,
+        band: &mut Band<'_>,
         lighting: impl Fn(usize) -> L,
     ) {
         match paint {
             Paint::Color(color) => {
-                let rows = &batch.target_mut().rows();
                 for (index, (x, column)) in self.face.columns.clone().zip(self.columns).enumerate()
                 {
-                    let rows = column.rows.within(rows);
-                    if !rows.is_empty() {
-                        batch.queue_color(x, rows, color, lighting(index));
-                    }
+                    let color = lighting(index).apply(color);
+                    band.column_mut(x, column.rows.within(rows)).for_each(|pixel| *pixel = color);
                 }
             }
-            Paint::Texture(id) => {
-                self.for_each_level(id, |level, range| {
-                    self.draw_level(level, range, batch, &lighting);
-                });
-            }
+            Paint::Texture(id) => self.for_each_level(id, |level, range| {
+                self.draw_level(level, range, rows, band, &lighting);
+            }),
         }
     }
 
@@ -191,17 +188,18 @@ impl<'a> ShownFace<'a> {
         other
     }
 
-    /// Draws the columns of `range`, which show `level`.
+    /// Draws `rows` of the columns of `range`, which show `level`.
     #[inline]
     fn draw_level<L: Lighting>(
         &self,
-        level: &'a MipLevel,
+        level: &MipLevel,
         range: Range<usize>,
-        batch: &mut ColumnBatch<'_, '_, 'a, L>,
+        rows: &Range<u32>,
+        band: &mut Band<'_>,
         lighting: impl Fn(usize) -> L,
     ) {
         let texels = self.texels(level);
-        let x = self.face.columns.start;
+        let is_horizon_near = self.scene.projection.is_horizon_near();
         let mut first = range.start;
         while first < range.end {
             let of_first = lighting(first);
@@ -210,13 +208,14 @@ impl<'a> ShownFace<'a> {
             } else {
                 (first + 1..range.end).find(|&it| lighting(it) != of_first).unwrap_or(range.end)
             };
-            batch.draw_columns(&DirectColumns {
+            let columns = TextureColumns {
                 level,
                 texels,
                 lighting: of_first,
-                x: x + first as u32,
+                x: self.face.columns.start + first as u32,
                 columns: &self.columns[first..end],
-            });
+            };
+            columns.draw(rows, is_horizon_near, band);
             first = end;
         }
     }

@@ -5,7 +5,6 @@
 //! accumulates and a step is one addition. Rejected: counting in doubles. A conversion and a floor for each
 //! pixel took half the time of a whole frame.
 
-use std::iter;
 use std::ops::Range;
 
 use crate::numeric::rounding::{ceil, floor, rounded, rounded_to_even};
@@ -135,60 +134,6 @@ impl TextureStepper {
         (if is_first { texel } else { texel.rem_euclid(self.count) }) as usize
     }
 
-    /// The texels at the centres of `rows`, counted from the top of the uppermost texture; `None` if there is
-    /// no row or the positions overflow.
-    #[inline]
-    pub(crate) fn places(self, rows: &Range<u32>) -> Option<Range<i64>> {
-        let further_down = i64::from(rows.end.checked_sub(rows.start + 1)?);
-        let first = self.place(rows.start);
-        let last = first.checked_add(self.step.checked_mul(further_down)?)?;
-        Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
-    }
-
-    /// Returns true if the face shows only the uppermost texture.
-    #[inline]
-    pub(crate) fn is_one_texture(self) -> bool {
-        let (uppermost, lowest) = self.range;
-        uppermost >= 0 && lowest < self.count
-    }
-
-    /// Returns true if all `places` are on the face.
-    #[inline]
-    fn has(self, places: &Range<i64>) -> bool {
-        let (uppermost, lowest) = self.range;
-        uppermost <= places.start && places.end <= lowest + 1
-    }
-
-    /// The part of the texture's `texels` at `places`, if all of it is on the face and in the
-    /// uppermost texture.
-    #[inline]
-    pub(crate) fn slice<'t, T>(self, texels: &'t [T], places: &Range<i64>) -> Option<&'t [T]> {
-        let range = places.start as usize..places.end as usize;
-        if self.has(places) { texels.get(range) } else { None }
-    }
-
-    /// The part of the texture's `texels` at `places`, in pieces.
-    #[inline]
-    pub(crate) fn pieces<T>(self, texels: &[T], places: Range<i64>) -> impl Iterator<Item = &[T]> {
-        let Range { mut start, end } = places;
-        iter::from_fn(move || {
-            let (first, count) = (start < end).then(|| self.texels_at(start..end))?;
-            start += count as i64;
-            Some(&texels[first..first + count])
-        })
-    }
-
-    /// The texel of the texture at the first of `places`, and the number of `places` that are contiguous in the
-    /// texture from there.
-    #[inline]
-    fn texels_at(self, places: Range<i64>) -> (usize, usize) {
-        let (uppermost, lowest) = self.range;
-        let first = self.texel_at(places.start);
-        let is_on_face = (uppermost..=lowest).contains(&places.start);
-        let end = if is_on_face { places.end.min(lowest + 1) } else { places.start + 1 };
-        (first, (end - places.start).min(self.count - first as i64) as usize)
-    }
-
     /// The position at the centre of `row` and the step to the next row. Both are shifted so that the uppermost
     /// `BITS` bits are the texel modulo 2 to the power of `BITS`.
     #[inline]
@@ -252,8 +197,8 @@ mod tests {
             for height_of_row in of_face {
                 let half_rows = 2.0 * rows as f64;
                 let texels = stepper(1, (WALL, at_eye), half_rows, height_of_row);
-                let Range { start, end } = texels.places(&(0..1)).unwrap();
-                assert!(-1 <= start && end <= 2, "{rows}, {height_of_row}: {start}");
+                let texel = texels.place(0) >> TEXEL_BITS;
+                assert!((-1..2).contains(&texel), "{rows}, {height_of_row}: {texel}");
             }
         }
     }
