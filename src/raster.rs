@@ -19,7 +19,6 @@ mod sky;
 mod span;
 mod span_pair;
 mod target;
-mod texel_runs;
 mod texture_columns;
 
 pub(crate) use band::Band;

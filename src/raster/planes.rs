@@ -43,19 +43,8 @@ pub(crate) struct PlaneMemory {
 struct SpanMemory {
     /// The first column of the current span of each row of the band.
     starts: Vec<usize>,
-    mappings: RowMappings,
     /// The light of the columns of a span.
     lights: Vec<LitColumns>,
-}
-
-/// The mappings of the rows of a band to planes at one height.
-#[derive(Clone, Debug, Default)]
-struct RowMappings {
-    height: f64,
-    /// The number of the current height. A row's mapping with another number belongs to another
-    /// height.
-    current: u32,
-    rows: Vec<(u32, Option<SpanMapping>)>,
 }
 
 /// The rows of planes with the same look, joined in each column.
@@ -174,7 +163,6 @@ impl SpanMemory {
     /// Prepares for the planes of a band of `rows` rows and `columns` columns.
     fn begin(&mut self, rows: usize, columns: usize) {
         self.starts.resize(rows, 0);
-        self.mappings.begin(rows);
         self.lights.clear();
         self.lights.reserve(columns);
     }
@@ -224,34 +212,6 @@ impl JoinedRows {
             self.columns.start.min(columns.start)..self.columns.end.max(columns.end)
         };
         true
-    }
-}
-
-impl RowMappings {
-    fn begin(&mut self, rows: usize) {
-        if self.rows.len() < rows {
-            self.rows.resize(rows, (0, None));
-        }
-        self.rows.iter_mut().for_each(|row| row.0 = 0);
-        (self.current, self.height) = (0, f64::NAN);
-    }
-
-    fn set_height(&mut self, height: f64) {
-        if height != self.height {
-            self.current += 1;
-            self.height = height;
-        }
-    }
-
-    /// The mapping of `row`, which is one of `rows`.
-    #[inline]
-    fn of(&mut self, scene: FrameContext<'_>, row: u32, rows: &Range<u32>) -> &SpanMapping {
-        let (number, mapping) = &mut self.rows[(row - rows.start) as usize];
-        if *number != self.current {
-            *number = self.current;
-            *mapping = None;
-        }
-        mapping.get_or_insert_with(|| scene.projection.mapping_at(row, self.height))
     }
 }
 
@@ -395,13 +355,12 @@ impl<'a> PlaneDrawing<'a> {
         let (floor, ceiling) =
             if self.side == PlaneSide::Floor { (self, other) } else { (other, self) };
         let (Some(of_floor), Some(of_ceiling)) = (floor.even, ceiling.even) else { return };
-        let SpanMemory { starts, mappings, .. } = memory;
-        mappings.set_height(floor.plane.height);
         let mut pairs = SpanPairs::new(self.scene, [of_ceiling, of_floor]);
         let rows = target.rows();
         let (first, columns) = floor.rows(joined);
-        for_each_span(first, columns, &rows, starts, |row, columns| {
-            pairs.draw((row, columns), mappings.of(self.scene, row, &rows), target);
+        for_each_span(first, columns, &rows, &mut memory.starts, |row, columns| {
+            let mapping = self.scene.projection.mapping_at(row, floor.plane.height);
+            pairs.draw((row, columns), &mapping, target);
         });
     }
 
@@ -412,8 +371,7 @@ impl<'a> PlaneDrawing<'a> {
         memory: &mut SpanMemory,
         target: &mut Target<'_>,
     ) {
-        let SpanMemory { starts, mappings, lights } = memory;
-        mappings.set_height(self.plane.height);
+        let SpanMemory { starts, lights } = memory;
         let (first, columns) = self.rows(joined);
         let rows = target.rows();
         let image = self.mirrored();
@@ -422,9 +380,8 @@ impl<'a> PlaneDrawing<'a> {
                 sky.draw(row, columns, image, target);
                 return;
             }
-            let direct = mappings.of(self.scene, row, &rows);
-            let on_map = image.map(|image| direct.seen_in_mirrors(image));
-            let mapping = on_map.as_ref().unwrap_or(direct);
+            let direct = self.scene.projection.mapping_at(row, self.plane.height);
+            let mapping = &image.map_or(direct, |image| direct.seen_in_mirrors(image));
             if let Some(DrawnPlane { light, covering, .. }) = self.even {
                 lights.clear();
                 lights.push((columns, light));

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::pieces;
 use super::target::Target;
-use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::color::srgb::mean_of_two;
 use crate::visibility::{FrameContext, Pass, SpanMapping, TexelPlaces};
@@ -61,10 +60,7 @@ pub(crate) fn draw<'p>(
 /// Draws `level` on `pixels`.
 pub(crate) fn draw_level(level: &MipLevel, places: TexelPlaces, pixels: &mut [Rgb]) {
     match level.by_shifts() {
-        Some(level) => match TexelRuns::of(level, &places, pixels.len()) {
-            Some(runs) => runs.draw(level, pixels),
-            None => draw_by_shifts(level, places, pixels),
-        },
+        Some(level) => draw_by_shifts(level, places, pixels),
         None => {
             for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
                 *pixel = level.at_fraction(x, y);

@@ -10,7 +10,6 @@ use std::ops::Range;
 use super::planes::DrawnPlane;
 use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
-use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::visibility::{Faded, FrameContext, Lighting, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
@@ -132,9 +131,6 @@ impl<'a> TexturePair<'a> {
             _ => *self.levels.insert(LevelPair::new(self.textures, lod)?),
         };
         let places = mapping.places(pair.columns.start, per_cell);
-        if TexelRuns::of(levels.upper, &places, pair.columns.len()).is_some() {
-            return None;
-        }
         match levels.lower.len() {
             16384 => draw_texels::<16384>(levels, places, pair, target),
             4096 => draw_texels::<4096>(levels, places, pair, target),

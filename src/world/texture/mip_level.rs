@@ -122,7 +122,6 @@ impl MipLevel {
             mask_x: (self.width.get() - 1) << height,
             shift_y: (u32::BITS - height).min(u32::BITS - 1),
             mask_y: self.height.get() - 1,
-            bits: [width, height],
         })
     }
 }
@@ -136,8 +135,6 @@ pub(crate) struct MipLevelByShifts<'a> {
     mask_x: u32,
     shift_y: u32,
     mask_y: u32,
-    /// The number of bits of the index that depend on the position along each axis.
-    bits: [u32; 2],
 }
 
 impl<'a> MipLevelByShifts<'a> {
@@ -152,16 +149,6 @@ impl<'a> MipLevelByShifts<'a> {
     pub(crate) fn index(self, x: u64, y: u64) -> u32 {
         let (x, y) = ((x >> u32::BITS) as u32, (y >> u32::BITS) as u32);
         x >> self.shift_x & self.mask_x | y >> self.shift_y & self.mask_y
-    }
-
-    /// The bits of the index that depend on the position along each axis.
-    pub(crate) fn masks(self) -> [u32; 2] {
-        [self.mask_x, self.mask_y]
-    }
-
-    /// The number of index bits that depend on the position along each axis.
-    pub(crate) fn bits(self) -> [u32; 2] {
-        self.bits
     }
 
     /// The texel at an index.
