@@ -12,7 +12,6 @@
 //! depend on the kinds of tile, which never change, and not on the cells.
 
 pub(crate) mod art;
-mod beam_table;
 mod camera;
 mod distance_field;
 mod door;
@@ -34,7 +33,6 @@ mod tile_facts;
 use std::sync::Arc;
 
 use crate::color::Rgb;
-pub(crate) use beam_table::{BeamTable, Beams, FRACTION_BITS, STRIP};
 pub use camera::{Camera, FieldOfView, Heading, Pitch};
 pub(crate) use distance_field::DistanceField;
 use door::PartlyOpenDoors;

@@ -8,10 +8,10 @@
 //! contrast, has to know which line it crossed before it can find the next.
 //!
 //! The traversal need not stop at every line. A ray that crosses n lines changes its band by at
-//! most n, so it may leap as far as the [distance field](crate::world::DistanceField) says. On a
-//! large map, [beams](crate::world::BeamTable) take the ray across a strip of the map, or to the
-//! line at which something solid begins in the beam. There the ray reads the distance field, and
-//! leaps by it until the beam is clear again.
+//! most n, so it may leap as far as the [distance field](crate::world::DistanceField) says.
+//! Rejected: a table of the clear way ahead for every position and slope. On a plain of 4096×4096
+//! cells with a pillar in one cell of 4096, a frame took 33 instead of 181 µs. The table took 350
+//! lines and two bytes a cell.
 //!
 //! Positions are integers in units of 2⁻³² of a cell: the position of the start, plus a slope for
 //! each line. Rounding moves them by less than a unit a line. If a position is so close to the edge
@@ -25,7 +25,7 @@ use glam::DVec2;
 
 use super::order::decide;
 use super::{Crossing, Ray, Side};
-use crate::world::{BeamTable, Beams, Cell, DistanceField, FRACTION_BITS, Grid, STRIP, TileId};
+use crate::world::{Cell, DistanceField, Grid, TileId};
 
 /// The solid cells that a ray enters, in the exact order.
 #[derive(Clone)]
@@ -71,6 +71,8 @@ struct IntegerRay {
 
 /// The largest number of lines for which units are fine enough.
 const MAX_LINES: u32 = 1 << 16;
+/// The number of bits of a position after the cell.
+const FRACTION_BITS: u32 = 32;
 /// The number of units in a cell.
 const UNITS: i64 = 1 << FRACTION_BITS;
 /// A bound on the rounding of a position, in units: one for each line, and eight for the start.
@@ -178,12 +180,7 @@ impl MajorAxisTraversal<'_> {
     #[inline(never)]
     fn leap(mut self) -> (Self, Option<Crossing>) {
         let distance_field = self.grid.distance_field();
-        let met = match distance_field.beam_tables() {
-            Some(beam_tables) => {
-                self.advance(|path, at| path.leap_along_beams(distance_field, beam_tables, at))
-            }
-            None => self.advance(|path, at| path.leap(distance_field, at)),
-        };
+        let met = self.advance(|path, at| path.leap(distance_field, at));
         (self, met)
     }
 }
@@ -242,73 +239,6 @@ impl IntegerRay {
             if clear < 2 && (clear == 0 || !distance_field.is_clear(ahead - self.line_stride)) {
                 return (band_before, TraversalProgress { line, band, lookups });
             }
-        }
-    }
-
-    /// The same as [`IntegerRay::leap`], but also leaps across everything that is clear in a beam.
-    #[inline]
-    fn leap_along_beams(
-        self,
-        distance_field: &DistanceField,
-        [along_rows, along_columns]: &[BeamTable; 2],
-        from: TraversalProgress,
-    ) -> (i64, TraversalProgress) {
-        let table = match self.side {
-            Side::X => along_rows,
-            Side::Y => along_columns,
-        };
-        let beams = table.beams(self.slope * self.step, self.step < 0);
-        let TraversalProgress { mut line, mut band, mut lookups } = from;
-        let mut clear = 1;
-        loop {
-            line += clear;
-            // The beam is read one line back, because behind `line` the ray may have entered
-            // another band.
-            let (end, beams_read) = self.end_of_beam(beams, line - 1);
-            let is_past_beam = end >= line;
-            line = line.max(end);
-            lookups += beams_read + 1;
-            let mut band_before = band;
-            band = self.band_at(self.position + self.slope * line, line);
-            if is_past_beam {
-                // The beam is wider than the cell, so the neighbouring cell is clear, too.
-                band_before = band;
-            } else {
-                let along = self.start + self.step * line;
-                clear = distance_field.lines_of_block([along, band], self.block_strides);
-                if clear >= FAR {
-                    continue;
-                }
-            }
-            let ahead = self.corner + self.line_stride * line + self.band_stride * band;
-            clear = distance_field.lines_at(ahead);
-            let is_clear_beside =
-                || is_past_beam || clear >= 2 || distance_field.is_clear(ahead - self.line_stride);
-            if clear == 0 || !is_clear_beside() {
-                return (band_before, TraversalProgress { line, band, lookups });
-            }
-        }
-    }
-
-    /// The first line from `line` on that no beam crosses, and the number of beams read.
-    #[inline]
-    fn end_of_beam(self, beams: Beams<'_>, mut line: i64) -> (i64, u64) {
-        let along = self.start + self.step * line;
-        let within = along.rem_euclid(STRIP);
-        let mut within = if self.step > 0 { within } else { STRIP - 1 - within };
-        let mut strip = along.div_euclid(STRIP);
-        let mut position = self.position + self.slope * (line + STRIP / 2 - within);
-        let mut beams_read = 0;
-        loop {
-            beams_read += 1;
-            let ahead = beams.lines_ahead(strip, within, position);
-            line += ahead;
-            if ahead < STRIP - within {
-                return (line, beams_read);
-            }
-            within = 0;
-            strip += self.step;
-            position += self.slope * STRIP;
         }
     }
 

@@ -11,17 +11,12 @@
 //! Fields with distances have a second level, the minimum of each block of 8×8 cells. On a large
 //! map, the blocks fit into the cache and the cells do not.
 //!
-//! Large maps with few solid cells also have a [beam table](BeamTable), which says how far the way
-//! ahead is clear.
-//!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
 //! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Rejected: skipping
 //! only empty blocks, and blocks of blocks. A ray would stop at the edge of each block, and one
 //! pillar fills all blocks that contain it.
 
 use std::fmt;
-
-use super::BeamTable;
 
 /// For each cell and the border, the number of grid lines that a ray in it may cross at once,
 /// because no nearer cell is solid or may become so. 0 if the cell itself may be solid.
@@ -35,8 +30,6 @@ pub(crate) struct DistanceField {
     blocks: Vec<CodedDistance>,
     /// The number of blocks in a row.
     width_in_blocks: usize,
-    /// The beam tables for rays along rows and along columns.
-    beam_tables: Option<Box<[BeamTable; 2]>>,
 }
 
 /// The number of cells of a block along each axis.
@@ -92,26 +85,18 @@ impl DistanceField {
             cells.push(CodedDistance::NONE);
         }
         cells.resize(width * height, CodedDistance::NONE);
-        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0, beam_tables: None }
+        Self { cells, width, blocks: Vec::new(), width_in_blocks: 0 }
     }
 
     /// The size in memory, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let of_beams =
-            self.beam_tables().into_iter().flatten().map(BeamTable::bytes).sum::<usize>();
-        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_beams
+        size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 
-    /// The field with distances, and with beam tables, if each pays off.
+    /// The field with distances, if they pay off.
     pub(crate) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
-        if !measured.is_worthwhile() {
-            self
-        } else if measured.are_beams_worthwhile() {
-            measured.with_beams()
-        } else {
-            measured
-        }
+        if measured.is_worthwhile() { measured } else { self }
     }
 
     /// The field with distances. Two passes suffice, because the nearest solid cell comes either
@@ -143,35 +128,7 @@ impl DistanceField {
         });
         let blocks = blocks.collect();
         let cells = cells.into_iter().map(CodedDistance::new).collect();
-        Self { cells, width, blocks, width_in_blocks, beam_tables: None }
-    }
-
-    /// The field with beam tables.
-    pub(crate) fn with_beams(self) -> Self {
-        let [columns, rows] = self.size();
-        let along_rows = BeamTable::new([columns, rows], self.solid());
-        let swapped = self.solid().map(|[column, row]| [row, column]);
-        let along_columns = BeamTable::new([rows, columns], swapped);
-        Self { beam_tables: Some(Box::new([along_rows, along_columns])), ..self }
-    }
-
-    fn are_beams_worthwhile(&self) -> bool {
-        let solid = self.cells.iter().filter(|&&cell| cell == CodedDistance::NONE).count();
-        BeamTable::are_worthwhile(self.size(), solid as i64)
-    }
-
-    /// The columns and rows of the map.
-    fn size(&self) -> [i64; 2] {
-        [self.width as i64 - 2, (self.cells.len() / self.width) as i64 - 2]
-    }
-
-    /// The columns and rows of cells that may be solid, the border included.
-    fn solid(&self) -> impl Iterator<Item = [i64; 2]> {
-        let rows = self.cells.chunks_exact(self.width).zip(-1..);
-        rows.flat_map(|(cells, row)| {
-            let solid = cells.iter().zip(-1..).filter(|&(&cell, _)| cell == CodedDistance::NONE);
-            solid.map(move |(_, column)| [column, row])
-        })
+        Self { cells, width, blocks, width_in_blocks }
     }
 
     /// Returns whether the mean of the distances is large enough for distances to pay off.
@@ -235,12 +192,6 @@ impl DistanceField {
     #[inline]
     pub(crate) fn is_measured(&self) -> bool {
         !self.blocks.is_empty()
-    }
-
-    /// The beam tables for rays along rows and along columns, if there are any.
-    #[inline]
-    pub(crate) fn beam_tables(&self) -> Option<&[BeamTable; 2]> {
-        self.beam_tables.as_deref()
     }
 }
 

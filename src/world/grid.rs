@@ -143,12 +143,6 @@ impl Grid {
         self.distance_field = Arc::new(self.near(may_become_solid).measured());
     }
 
-    /// Computes the distance field as [`Grid::measure_distances`] does, with beam tables.
-    #[cfg(test)]
-    pub(crate) fn measure_with_beams(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
-        self.distance_field = Arc::new(self.near(may_become_solid).measured().with_beams());
-    }
-
     /// The distance field of zeros and ones.
     fn near(&self, may_become_solid: impl Fn(TileId) -> bool) -> DistanceField {
         let may_be_solid = |&tile: &TileId| self.is_solid_tile(tile) || may_become_solid(tile);

@@ -18,7 +18,7 @@ use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
-/// The sides of the open maps: of a usual map, of the smallest map with a beam table, and of the
+/// The sides of the open maps: of a usual map, of a large map, and of the
 /// largest map.
 pub const SIDES: [u32; 3] = [64, 1024, 4096];
 /// The numbers of things in a crowded map.

@@ -1,6 +1,5 @@
-//! A million rays on maps of 4096 × 4096 cells, on which rays leap by the distance field and the
-//! beam tables. Pillars stand on the borders of blocks and strips, where a leap that is one cell
-//! too long passes them.
+//! A million rays on maps of 4096 × 4096 cells, on which rays leap by the distance field. Pillars
+//! stand on the borders of blocks, where a leap that is one cell too long passes them.
 //!
 //! The oracle tests every face of every pillar in integers of 128 bits, from the definition of a
 //! hit. A few hundred rays have longer integers. They are compared with rational arithmetic, which
@@ -21,7 +20,7 @@ const PILLARS: usize = 100;
 /// The start cell, which a map must have.
 const START: (i64, i64) = (1, 2);
 
-/// The world of a map with these pillars. A distance field and beam tables exist only in a world.
+/// The world of a map with these pillars. A distance field exists only in a world.
 fn world(pillars: &[(i64, i64)]) -> World {
     let side = SIDE as usize;
     let mut cells = vec![vec![b'.'; side]; side];
