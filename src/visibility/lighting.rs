@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use crate::cast::Side;
 use crate::color::Rgb;
+use crate::numeric::rounding::rounded;
 use crate::world::texture::MipLevel;
 use crate::world::{Fog, Light};
 
@@ -131,7 +132,7 @@ impl Faded {
 
     fn new(light: u32, fog: Option<Fog>, distance: f64) -> Self {
         let Some(fog) = fog else { return Self { own: light, fog: Rgb::BLACK, share: 0 } };
-        let clear = (fog.clearness(distance) * f64::from(FULL)).round() as u32;
+        let clear = rounded(fog.clearness(distance) * f64::from(FULL)) as u32;
         Self { own: light * clear / FULL, fog: fog.color, share: FULL - clear }
     }
 }

@@ -11,6 +11,7 @@
 
 use super::{Cell, TextureId, Tile, TileKind, World};
 use crate::color::Rgb;
+use crate::numeric::rounding::rounded;
 
 /// The light on a surface, in 256ths of full brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,13 +49,13 @@ impl Light {
     #[must_use]
     pub(crate) fn towards(self, other: Self, share: f64) -> Self {
         let (from, to) = (f64::from(self.0), f64::from(other.0));
-        Self((from + (to - from) * share).round() as u16)
+        Self(rounded(from + (to - from) * share) as u16)
     }
 
     /// The light multiplied by a share from 0 to 1.
     #[must_use]
     pub(crate) fn dimmed(self, share: f64) -> Self {
-        Self((f64::from(self.0) * share).round() as u16)
+        Self(rounded(f64::from(self.0) * share) as u16)
     }
 }
 
