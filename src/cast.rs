@@ -36,6 +36,7 @@ mod major_axis;
 mod order;
 mod pillar;
 mod ray;
+mod segment;
 mod through;
 mod walk;
 
@@ -49,6 +50,7 @@ pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
 pub(crate) use ray::{along_line, cell_before, from_left, is_from_left};
+pub(crate) use segment::Segment;
 pub(crate) use through::Intersection;
 #[cfg(feature = "tui")]
 pub(crate) use walk::Crossed;

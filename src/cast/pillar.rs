@@ -180,13 +180,13 @@ fn integer_and_exponent(value: f64) -> (i64, i32) {
 }
 
 /// The exponent of a power of two of which all `values` are multiples. At least one is not 0.
-fn unit_of(values: &[f64]) -> i32 {
+pub(crate) fn unit_of(values: &[f64]) -> i32 {
     let exponents = values.iter().filter(|&&it| it != 0.0).map(|&it| integer_and_exponent(it).1);
     exponents.min().expect("a length or a direction that is not 0")
 }
 
 /// `value` in units of 2^`unit`, of which it is a multiple.
-fn in_units(value: f64, unit: i32) -> BigInt {
+pub(crate) fn in_units(value: f64, unit: i32) -> BigInt {
     let (integer, exponent) = integer_and_exponent(value);
     if integer == 0 { BigInt::ZERO } else { BigInt::from(integer) << (exponent - unit) }
 }

@@ -95,16 +95,16 @@ fn meet_leaf(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit
 const UNCERTAINTY: f64 = 1e-11;
 
 /// The part of a leaf that is not inside the jamb.
-struct Leaf {
+pub(crate) struct Leaf {
     /// The kind of line that contains the leaf.
     side: Side,
     /// The north or west end, at the jamb into which the leaf slides.
-    start: DVec2,
-    end: DVec2,
+    pub(crate) start: DVec2,
+    pub(crate) end: DVec2,
 }
 
 impl Leaf {
-    fn new(grid: &Grid, cell: Cell, opening: Opening) -> Self {
+    pub(crate) fn new(grid: &Grid, cell: Cell, opening: Opening) -> Self {
         let (column, row) = (f64::from(cell.column), f64::from(cell.row));
         let length = 1.0 - opening.part();
         // A door has solid jambs on two sides, and open cells on the other two.

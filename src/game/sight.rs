@@ -1,9 +1,9 @@
 //! Lines of sight between two points at given heights.
 //!
 //! The walk follows a line through the cells in the exact order in which the line enters them. In
-//! each cell the line has to stay in one gap between a floor and a ceiling. A door hides everything
-//! behind its leaf, and a shape everything behind it. Glass and masks hide nothing. Smoke hides
-//! everything inside and behind it.
+//! each cell the line has to stay in one gap between a floor and a ceiling. The leaf of a door or a
+//! shape hides one end from the other if the line meets it, by an exact predicate ([`Segment`]).
+//! Glass and masks hide nothing. Smoke hides everything inside and behind it.
 //!
 //! Rejected: the rays of the casters. They end at the first solid cell whatever its height, and do
 //! not know where the line ends.
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Game;
 use super::guards::GuardView;
-use crate::cast::{Ray, RayWalk};
-use crate::world::{Cell, Gap, TileId, TileKind, World};
+use crate::cast::{Ray, RayWalk, Segment};
+use crate::world::{Cell, Gap, TileId, World};
 
 /// A position and a height, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,32 +117,44 @@ struct SightLine<'a> {
     to: Point,
 }
 
+/// The walk may miss a cell that the line touches at this distance, in cells, from a corner.
+const NEAR: f64 = 1e-9;
+
 impl SightLine<'_> {
     /// The fraction of the line up to the cell in which it is hidden; 1 if it is free.
     fn free_part(&self) -> f64 {
         let grid = self.world.grid();
-        let way = self.to.position - self.from.position;
-        let Ok(ray) = Ray::new(self.from.position, way) else {
+        let (from, to) = (self.from.position, self.to.position);
+        if self.meets_what_stands_around(from) {
+            return 0.0;
+        }
+        let Ok(ray) = Ray::new(from, to - from) else {
             return if self.is_in_one_gap() { 1.0 } else { 0.0 };
         };
         let mut walk = RayWalk::new(grid, &ray);
         let Some(mut position) = walk.cell(grid) else { return 0.0 };
         let (mut height, mut entered) = (self.from.height, 0.0);
         loop {
-            if self.is_hidden_by_what_stands(&walk, position) {
-                return entered;
-            }
             let crossed = walk.cross(grid);
-            let end = walk.distance(&crossed).clamp(0.0, 1.0);
+            let (end, along) = walk.meeting(&crossed);
+            let end = end.clamp(0.0, 1.0);
             let is_last = end >= 1.0 || crossed.into.is_none();
             let next = if is_last { self.to.height } else { self.height_at(end) };
             if self.gap_with(position.1, height, next).is_none() {
                 return entered;
             }
             height = next;
-            match crossed.into {
-                Some(into) if !is_last => (position, entered) = (into, end),
-                _ => return end,
+            let Some(into) = crossed.into.filter(|_| !is_last) else {
+                return if self.meets_what_stands_around(to) { entered } else { end };
+            };
+            let is_hidden = if (NEAR..1.0 - NEAR).contains(&along) {
+                self.meets_what_stands(into)
+            } else {
+                self.meets_what_stands_around(ray.at(end))
+            };
+            (position, entered) = (into, end);
+            if is_hidden {
+                return entered;
             }
         }
     }
@@ -164,20 +176,22 @@ impl SightLine<'_> {
         tile.gaps().find(|gap| gap.holds(one) && gap.holds(other))
     }
 
-    /// Whether the leaf of a door or a shape in the cell hides the line.
-    fn is_hidden_by_what_stands(
-        &self,
-        walk: &RayWalk,
-        (cell, TileId(tile)): (Cell, TileId),
-    ) -> bool {
-        let tile = &self.world.tiles()[usize::from(tile)];
-        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_)) {
-            return false;
-        }
-        let passage = walk.standing(self.world, cell, tile.kind);
-        let top = tile.top_of_what_stands();
-        let ts = [passage.hit.map(|hit| hit.t), passage.end];
-        ts.into_iter().flatten().any(|t| t <= 1.0 && self.height_at(t) <= top)
+    /// Whether the line meets the leaf of a door or a shape in a cell that contains or touches `point`.
+    fn meets_what_stands_around(&self, point: DVec2) -> bool {
+        let [columns, rows] = [point.x, point.y]
+            .map(|place| (place - NEAR).floor() as i64..=(place + NEAR).floor() as i64);
+        let mut cells = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
+        cells.any(|(column, row)| {
+            let cell = self.world.grid().cell(column, row);
+            cell.is_some_and(|it| self.meets_what_stands(it))
+        })
+    }
+
+    /// Whether the line meets the leaf of a door or a shape in the cell.
+    fn meets_what_stands(&self, (cell, TileId(tile)): (Cell, TileId)) -> bool {
+        let ends = [self.from.position, self.to.position];
+        let segment = Segment { ends, heights: [self.from.height, self.to.height] };
+        segment.meets(self.world, cell, &self.world.tiles()[usize::from(tile)])
     }
 }
 

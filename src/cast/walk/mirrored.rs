@@ -12,8 +12,8 @@ use glam::DVec2;
 
 use super::{Axis, Order};
 use crate::cast::ray::meeting;
-use crate::cast::{ExactOrder, Intersection, Ray, Side};
-use crate::world::{Cell, Grid, TileId, TileKind, World};
+use crate::cast::{ExactOrder, Ray, Side};
+use crate::world::{Cell, Grid, TileId};
 
 /// The place of all rays from one origin that have crossed the same lines, reflections included.
 ///
@@ -23,7 +23,6 @@ use crate::world::{Cell, Grid, TileId, TileKind, World};
 pub(crate) struct Course {
     x: Axis,
     y: Axis,
-    transform: MirrorTransform,
     column: OnMap,
     row: OnMap,
 }
@@ -77,16 +76,17 @@ impl RayWalk {
         }
     }
 
-    /// The distance along the ray to a line that it has just crossed, as in
-    /// [`Hit`](crate::cast::Hit).
+    /// The distance along the ray to a line that it has just crossed, as in [`Hit`](crate::cast::Hit), and the
+    /// distance from the north or west end of the cell's face to that point.
     #[inline]
-    pub(crate) fn distance(&self, crossed: &Crossed) -> f64 {
-        meeting(&self.ray, crossed.side, self.course.corner(crossed)).0
+    pub(crate) fn meeting(&self, crossed: &Crossed) -> (f64, f64) {
+        meeting(&self.ray, crossed.side, self.course.corner(crossed))
     }
 
-    /// The intersection of the ray with the object in `cell`, where the ray is now.
-    pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Intersection {
-        Intersection::of_tile(&self.course.on_map(&self.ray), world, cell, kind)
+    /// The ray.
+    #[cfg(feature = "tui")]
+    pub(crate) fn ray(&self) -> &Ray {
+        &self.ray
     }
 }
 
@@ -98,7 +98,6 @@ impl Course {
         let x = Axis::new(origin.x, direction.x, grid.width());
         let y = Axis::new(origin.y, direction.y, grid.height());
         Self {
-            transform: MirrorTransform::default(),
             column: OnMap { index: x.index, step: x.step },
             row: OnMap { index: y.index, step: y.step },
             x,
@@ -143,7 +142,6 @@ impl Course {
         Self {
             column: on_map(column, x.step, transform.x),
             row: on_map(row, y.step, transform.y),
-            transform,
             x,
             y,
         }
@@ -196,12 +194,6 @@ impl Course {
             Side::X => DVec2::new(crossed.line, self.y.index as f64),
             Side::Y => DVec2::new(self.x.index as f64, crossed.line),
         }
-    }
-
-    /// `ray` on the map after all reflections, as if it had been straight.
-    pub(crate) fn on_map(&self, ray: &Ray) -> Ray {
-        let Self { transform, .. } = self;
-        Ray::moved(transform.to_map(ray.origin()), transform.direction_to_map(ray.direction()))
     }
 }
 

@@ -16,7 +16,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::cast::{Crossed, Crossing, Ray, RayWalk, Side, WalkFromInside, distance_on_entry};
+use crate::cast::{
+    Crossed, Crossing, Intersection, Ray, RayWalk, Side, WalkFromInside, distance_on_entry,
+};
 use crate::generate::Site;
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
@@ -271,7 +273,7 @@ impl Observer<'_> {
         let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {
             let SightRay { walk, position, from } = &mut line;
-            let t = walk.distance(&crossed);
+            let t = walk.meeting(&crossed).0;
             let through_gap = self.slopes_through(gap, t);
             if let Some((cell, tile)) = *position {
                 let floor =
@@ -350,7 +352,7 @@ impl Observer<'_> {
         if !is_opaque_inside(tile) {
             return None;
         }
-        let hit = walk.standing(self.world, cell, tile.kind).hit?;
+        let hit = Intersection::of_tile(walk.ray(), self.world, cell, tile.kind).hit?;
         Some((hit.t, tile.top_of_what_stands()))
     }
 

@@ -20,7 +20,7 @@ proptest! {
             let hit = Hit::entering(&ray, crossing.cell, crossing.side);
             prop_assert_eq!(crossed.into, Some((crossing.cell, crossing.tile)));
             prop_assert_eq!(crossed.side, crossing.side);
-            prop_assert_eq!(mirrored.distance(&crossed), hit.t);
+            prop_assert_eq!(mirrored.meeting(&crossed).0, hit.t);
         }
         prop_assert!(mirrored.cross(&grid).into.is_none());
     }
