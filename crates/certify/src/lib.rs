@@ -26,15 +26,12 @@
 
 mod solids;
 
-use std::num::NonZero;
-use std::ops::{Add, Range};
-use std::panic::resume_unwind;
-use std::{fmt, thread};
+use std::fmt;
+use std::ops::AddAssign;
 
 use cellcaster::color::Rgb;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, Figure, Heading, SpriteId, World};
-use glam::DVec3;
+use cellcaster::world::{Camera, Figure, SpriteId, World};
 
 pub use solids::{Met, Solids};
 
@@ -80,54 +77,20 @@ pub fn draw(world: &World, camera: &Camera, size: FrameSize) -> Frame {
 pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option<WrongPixel>) {
     let world = without_player(world, camera);
     let solids = Solids::of(&world, camera);
-    let threads = thread::available_parallelism().map_or(1, NonZero::get) as u32;
-    let height = frame.height();
-    let parts = (0..threads).map(|part| height * part / threads..height * (part + 1) / threads);
-    let results: Vec<_> = thread::scope(|scope| {
-        let workers: Vec<_> =
-            parts.map(|rows| scope.spawn(|| compare_rows(&solids, camera, frame, rows))).collect();
-        workers
-            .into_iter()
-            .map(|worker| worker.join().unwrap_or_else(|it| resume_unwind(it)))
-            .collect()
-    });
-    let counts =
-        results.iter().fold(Counts { frames: 1, ..Counts::default() }, |sum, it| sum + it.0);
-    (counts, results.iter().find_map(|it| it.1))
-}
-
-/// The world with an invisible figure at the camera, in place of the player that mirrors would show.
-fn without_player(world: &World, camera: &Camera) -> World {
-    let mut world = world.clone();
-    let player = Figure {
-        sprite: SpriteId(0),
-        position: camera.position(),
-        base: 0.0,
-        heading: Heading::default(),
-        frame: 0,
-        opacity: 0,
-    };
-    let figures = world.figures().to_vec();
-    world.set_figures(figures.into_iter().chain([player]));
-    world
-}
-
-/// Compares the pixels of `rows`.
-fn compare_rows(
-    solids: &Solids,
-    camera: &Camera,
-    frame: &Frame,
-    rows: Range<u32>,
-) -> (Counts, Option<WrongPixel>) {
-    let mut counts = Counts::default();
-    let mut first = None;
-    for (x, y) in rows.flat_map(|y| (0..frame.width()).map(move |x| (x, y))) {
+    let (mut counts, mut first) = (Counts { frames: 1, ..Counts::default() }, None);
+    for (x, y) in (0..frame.height()).flat_map(|y| (0..frame.width()).map(move |x| (x, y))) {
         counts.pixels += 1;
-        let (met, drawn) = (meet(solids, camera, frame, [x, y], [0.0; 2]), frame.pixel(x, y));
-        if are_alike(drawn, met.color()) {
+        let drawn = frame.pixel(x, y);
+        let color = meet(&solids, camera, frame, [x, y], [0.0; 2]).color;
+        if drawn
+            .channels()
+            .iter()
+            .zip(color.channels())
+            .all(|(one, other)| one.abs_diff(other) <= 1)
+        {
             continue;
         }
-        match clear_color(solids, camera, frame, [x, y]) {
+        match clear_color(&solids, camera, frame, [x, y]) {
             Some(expected) => {
                 counts.wrong += 1;
                 first.get_or_insert(WrongPixel { x, y, drawn, expected });
@@ -136,6 +99,17 @@ fn compare_rows(
         }
     }
     (counts, first)
+}
+
+/// The world with an invisible figure at the camera, in place of the player that mirrors would show.
+fn without_player(world: &World, camera: &Camera) -> World {
+    let mut world = world.clone();
+    let (position, heading) = (camera.position(), camera.heading);
+    let sprite = SpriteId(0);
+    let player = Figure { sprite, position, base: 0.0, heading, frame: 0, opacity: 0 };
+    let figures = world.figures().to_vec();
+    world.set_figures(figures.into_iter().chain([player]));
+    world
 }
 
 /// The colour of a pixel; `None` if it is in doubt.
@@ -148,38 +122,25 @@ pub fn clear_color(
     let met = meet(solids, camera, frame, pixel, [0.0; 2]);
     let beside = [[-DOUBTFUL, 0.0], [DOUBTFUL, 0.0], [0.0, -DOUBTFUL], [0.0, DOUBTFUL]];
     let is_same = |offset| meet(solids, camera, frame, pixel, offset) == met;
-    (!met.is_tied() && beside.into_iter().all(is_same)).then(|| met.color())
+    (!met.is_tied && beside.into_iter().all(is_same)).then(|| met.color)
 }
 
-/// The hits of the line at an `offset` from the middle of a pixel.
+/// The hits of the line at an `offset` from the middle of a pixel. The component of its direction along the camera's is 1.
 fn meet(solids: &Solids, camera: &Camera, frame: &Frame, pixel: [u32; 2], offset: [f64; 2]) -> Met {
     let [x, y] = [0, 1].map(|axis| f64::from(pixel[axis]) + 0.5 + offset[axis]);
-    solids.meet(direction(camera, frame, x, y))
-}
-
-/// The line through a point of a picture, whose component along the camera's direction is 1.
-fn direction(camera: &Camera, frame: &Frame, x: f64, y: f64) -> DVec3 {
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     let focal_length = width / 2.0 / camera.field_of_view.half_width();
     let horizon = height / 2.0 + (camera.pitch.slope() * focal_length).round();
     let across = camera.direction() + camera.plane() * (2.0 * x / width - 1.0);
-    across.extend((horizon - y) / focal_length)
+    solids.meet(across.extend((horizon - y) / focal_length))
 }
 
-fn are_alike(one: Rgb, other: Rgb) -> bool {
-    one.channels().into_iter().zip(other.channels()).all(|(one, other)| one.abs_diff(other) <= 1)
-}
-
-impl Add for Counts {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self {
-            frames: self.frames + other.frames,
-            pixels: self.pixels + other.pixels,
-            in_doubt: self.in_doubt + other.in_doubt,
-            wrong: self.wrong + other.wrong,
-        }
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.frames += other.frames;
+        self.pixels += other.pixels;
+        self.in_doubt += other.in_doubt;
+        self.wrong += other.wrong;
     }
 }
 

@@ -52,7 +52,7 @@ fn no_pixel_of_the_games_that_win_is_wrong() {
         for (step, (_, intents)) in script.iter().enumerate() {
             game.step(intents);
             if step % STEPS_BETWEEN == 0 {
-                sum = sum + counts(game.world(), &game.camera(FieldOfView::default()));
+                sum += counts(game.world(), &game.camera(FieldOfView::default()));
             }
         }
     }
