@@ -51,19 +51,6 @@ pub struct Counts {
     pub wrong: u64,
 }
 
-/// A pixel that differs from the calculation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WrongPixel {
-    /// Its column, from the left.
-    pub x: u32,
-    /// Its row, from the top.
-    pub y: u32,
-    /// The colour in the frame.
-    pub drawn: Rgb,
-    /// The colour by the calculation.
-    pub expected: Rgb,
-}
-
 /// Draws what `camera` sees of `world`, as [`compare`] expects it.
 pub fn draw(world: &World, camera: &Camera, size: FrameSize) -> Frame {
     let mut frame = Frame::new(size, PixelAspect::SQUARE);
@@ -73,8 +60,8 @@ pub fn draw(world: &World, camera: &Camera, size: FrameSize) -> Frame {
     frame
 }
 
-/// Compares every pixel of `frame`, which shows `world` as `camera` sees it. Also returns the first wrong pixel.
-pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option<WrongPixel>) {
+/// Compares every pixel of `frame`, which shows `world` as `camera` sees it. Also describes the first wrong pixel.
+pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option<String>) {
     let world = without_player(world, camera);
     let solids = Solids::of(&world, camera);
     let (mut counts, mut first) = (Counts { frames: 1, ..Counts::default() }, None);
@@ -93,7 +80,7 @@ pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option
         match clear_color(&solids, camera, frame, [x, y]) {
             Some(expected) => {
                 counts.wrong += 1;
-                first.get_or_insert(WrongPixel { x, y, drawn, expected });
+                first.get_or_insert_with(|| format!("{drawn} instead of {expected} at {x},{y}"));
             }
             None => counts.in_doubt += 1,
         }

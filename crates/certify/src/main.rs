@@ -62,12 +62,12 @@ fn of_file(file: &Path, every: usize) -> Result<Counts, Box<dyn Error>> {
         let (counts, wrong) = compare(world, camera, &draw(world, camera, size));
         total += counts;
         if let Some(wrong) = wrong {
-            println!("{name}: frame {place}: {} wrong, such as {wrong:?}", counts.wrong);
+            println!("{name}: frame {place}: {} wrong, such as {wrong}", counts.wrong);
         }
     };
     if file.extension().is_some_and(|it| it == "script") {
-        let content = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
-        let script = Script::from_bytes(content, &file.display().to_string())?;
+        let content = fs::read(file).map_err(|error| format!("{name}: {error}"))?;
+        let script = Script::from_bytes(content, &name)?;
         let mut game = Game::with_rules(level_of(&script, file)?, script.header().rules());
         for (step, (_, intents)) in script.iter().enumerate() {
             game.step(intents);
@@ -79,9 +79,9 @@ fn of_file(file: &Path, every: usize) -> Result<Counts, Box<dyn Error>> {
         // A game puts the guards into the world.
         let game = Game::new(map::load(file)?);
         for eighth in 0..8_u32 {
+            let heading = Heading::from_degrees(f64::from(eighth) * 45.0 + 11.0);
             let mut camera = game.camera(field_of_view);
-            let degrees = f64::from(eighth) * 45.0 + 11.0;
-            camera.heading = Heading::from_degrees(degrees).unwrap_or_default();
+            camera.heading = heading.unwrap_or_default();
             add(game.world(), &camera, eighth as usize);
         }
     }
@@ -91,12 +91,8 @@ fn of_file(file: &Path, every: usize) -> Result<Counts, Box<dyn Error>> {
 /// The level that `script` names: a built-in one, or a map file beside it.
 fn level_of(script: &Script, file: &Path) -> Result<World, Box<dyn Error>> {
     let level = script.header().level.as_ref().filter(|level| level.floor().is_none());
-    let level = level.ok_or_else(|| {
-        format!(
-            "{}: the script names no level: add a line such as \"level museum\" at its top",
-            file.display()
-        )
-    })?;
+    let missing = "a script names its level in a line at its top, such as \"level museum\"";
+    let level = level.ok_or_else(|| format!("{}: {missing}", file.display()))?;
     Ok(match builtin::LEVELS.iter().find(|it| it.name == level.as_str()) {
         Some(level) => level.world()?,
         None => map::load(&file.with_file_name(level.as_str()))?,

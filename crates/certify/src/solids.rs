@@ -35,7 +35,10 @@ struct Solid<'a> {
     bottom: Covering,
     /// The light of its top and its bottom.
     light: Light,
-    side_light: SideLight,
+    /// The light of its sides. Without it, each cell in front lights its own part.
+    side_light: Option<Light>,
+    /// Whether that light is blended between cells that are open to each other.
+    is_blended: bool,
     /// The kind of its tile, if that changes its sides.
     kind: Option<TileKind>,
 }
@@ -52,15 +55,6 @@ enum Form<'a> {
     Panel(DVec2, DVec2, Option<f64>),
     /// A picture that faces the camera, and whether light and fog dim it.
     Picture(&'a Sprite, Figure, bool),
-}
-
-#[derive(Clone, Copy)]
-enum SideLight {
-    Fixed(Light),
-    /// Each cell in front of it lights its own part.
-    OfCells,
-    /// The same, blended between cells that are open to each other.
-    Blended,
 }
 
 /// A line of sight, and its viewer: the camera, or an image of the camera in mirrors.
@@ -99,19 +93,17 @@ pub struct Met {
     pub is_tied: bool,
 }
 
-/// The face by which a line enters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Face {
-    X,
-    Y,
-    /// A face along neither axis.
-    Slanted,
-    Top,
-    Bottom,
-}
+/// The axis across the face by which a line enters.
+type Face = usize;
+/// A top or a bottom.
+const FLAT: Face = 2;
+/// A face that is parallel to no axis.
+const SLANTED: Face = 3;
 
 /// The distance along a line at which it enters a solid, and the face.
 type Entry = (f64, Face);
+/// A colour and its opacity.
+type Texel = (Rgb, u8);
 
 impl<'a> Solids<'a> {
     /// The solids of `world` that `camera` may see.
@@ -138,10 +130,8 @@ impl<'a> Solids<'a> {
             let sprite = world.sprite(shown.sprite);
             Form::Picture(sprite, shown, !sprite.glows)
         });
-        let pictures = things.chain(figures).map(|form| {
-            let heights = Gap { bottom: -FAR, top: FAR };
-            Solid::new(form, heights, Paint::Color(Rgb::BLACK), Light::FULL)
-        });
+        let (anywhere, black) = (Gap { bottom: -FAR, top: FAR }, Paint::Color(Rgb::BLACK));
+        let pictures = things.chain(figures).map(|it| Solid::new(it, anywhere, black, Light::FULL));
         let solids = cells.flat_map(|cell| solids_in(world, cell)).chain(ground_around(world));
         Self { world, camera, all: solids.chain(pictures).collect() }
     }
@@ -158,33 +148,28 @@ impl<'a> Solids<'a> {
             });
             let mut entries: Vec<_> = entries.collect();
             entries.sort_by(|one, other| one.0.total_cmp(&other.0));
-            let (mut seen, mut mirror) = (0, None);
-            for &(t, index, face) in &entries {
+            let mut mirror = None;
+            let last = entries.iter().position(|&(t, index, face)| {
                 let solid = &self.all[index];
                 let (color, mut alpha) = self.color(solid, face, &sight, t);
                 if let (Form::Block(_), Some(TileKind::Mirror(tint))) = (solid.form, solid.kind)
                     && tint.opacity < u8::MAX
                     && bounces < MAX_BOUNCES
-                    && let Some(axis) = axis_of(face)
+                    && face < FLAT
                 {
-                    (mirror, alpha) = (Some((axis, t)), tint.opacity);
+                    (mirror, alpha) = (Some((face, t)), tint.opacity);
                 }
                 met.faces.push((index, face));
                 layers.push((color, alpha));
-                seen += 1;
-                if mirror.is_some() || alpha == u8::MAX {
-                    break;
-                }
-            }
+                mirror.is_some() || alpha == u8::MAX
+            });
             // One more hit may be as near as the last one.
-            entries.truncate(seen + 1);
-            let pictures =
-                entries.iter().map(|it| matches!(self.all[it.1].form, Form::Picture(..)));
-            let pictures: Vec<bool> = pictures.collect();
+            entries.truncate(last.map_or(usize::MAX, |last| last + 2));
+            let is_picture =
+                |it: &(f64, usize, Face)| matches!(self.all[it.1].form, Form::Picture(..));
             met.is_tied |= entries
                 .windows(2)
-                .zip(pictures.windows(2))
-                .any(|(pair, pictures)| pictures == [true; 2] && pair[1].0 - pair[0].0 < 1e-9);
+                .any(|pair| pair.iter().all(is_picture) && pair[1].0 - pair[0].0 < 1e-9);
             let Some((axis, t)) = mirror else { break };
             sight.reflect(axis, t);
         }
@@ -200,15 +185,14 @@ impl<'a> Solids<'a> {
             Form::Block(corners) => block_entry(sight, corners, heights),
             Form::Cube(corners, tile) => {
                 let (t, face) = block_entry(sight, corners, heights)?;
-                let axis = axis_of(face)?;
-                let mut before = sight.at(t).truncate();
-                before[axis] -= sight.direction[axis].signum() / 2.0;
-                let DVec2 { x, y } = before.floor();
+                let mut before = sight.at(t);
+                before[face] -= sight.direction[face].signum() / 2.0;
+                let DVec3 { x, y, .. } = before.floor();
                 let is_inside = self.world.grid().tile(x as i64, y as i64) == Some(tile);
                 let is_clear = matches!(solid.kind, Some(TileKind::Glass(it)) if it.opacity == 0);
                 // A mirror beside the cube reflects the line into it, through no side.
                 let is_reflected_here = sight.from > 0.0 && t - sight.from < 1e-9;
-                (!is_inside && !is_clear && !is_reflected_here).then_some((t, face))
+                (face < FLAT && !is_inside && !is_clear && !is_reflected_here).then_some((t, face))
             }
             Form::Pillar(center, radius) => pillar_entry(sight, center, radius, heights),
             Form::Panel(start, way, _) => panel_entry(sight, start, way, heights),
@@ -216,32 +200,31 @@ impl<'a> Solids<'a> {
                 // The component of the direction along the viewer's direction is 1.
                 let forward = self.camera.direction() * sight.signs;
                 let t = (shown.position - sight.origin.truncate()).dot(forward);
-                let place = sight.at(t);
-                let (_, alpha) = self.texel_of(sprite, &shown, place, sight)?;
+                let (_, alpha) = self.texel_of(sprite, &shown, sight, t)?;
                 // Nothing is drawn behind the edge of the map.
-                let is_on_map = self.tile_at(place.truncate()).is_some();
-                (t >= NEAREST && is_on_map && alpha > 0).then_some((t, Face::Slanted))
+                let is_on_map = self.tile_at(sight.at(t).truncate()).is_some();
+                (t >= NEAREST && is_on_map && alpha > 0).then_some((t, SLANTED))
             }
         };
         entry.filter(|&(t, _)| t >= sight.from)
     }
 
     /// The colour and the opacity of a solid at the point where `sight` meets it, at `t`.
-    fn color(&self, solid: &Solid, face: Face, sight: &Sight, t: f64) -> (Rgb, u8) {
-        let place = sight.at(t);
+    fn color(&self, solid: &Solid, face: Face, sight: &Sight, t: f64) -> Texel {
         if let Form::Picture(sprite, shown, is_dimmed) = solid.form {
-            let (color, alpha) =
-                self.texel_of(sprite, &shown, place, sight).unwrap_or((Rgb::BLACK, 0));
+            let texel = self.texel_of(sprite, &shown, sight, t);
+            let (color, alpha) = texel.unwrap_or((Rgb::BLACK, 0));
             let alpha = (u32::from(alpha) * u32::from(shown.opacity) + 127) / 255;
             let on_map = self.tile_at(shown.position).map(|_| self.light_at(shown.position));
             let light = on_map.or(self.world.ground().light).unwrap_or(Light::FULL);
             let color = if is_dimmed { self.lit(color, light, DVec2::X, t) } else { color };
             return (color, alpha as u8);
         }
-        let ((color, own_alpha), light, normal) = match face {
-            Face::Top => (self.texel_of_plane(solid.top, place), solid.light, DVec2::X),
-            Face::Bottom => (self.texel_of_plane(solid.bottom, place), solid.light, DVec2::X),
-            _ => self.side(solid, face, sight, place),
+        let ((color, own_alpha), light, normal) = if face == FLAT {
+            let covering = if sight.direction.z > 0.0 { solid.bottom } else { solid.top };
+            (self.texel_of_plane(covering, sight.at(t)), solid.light, DVec2::X)
+        } else {
+            self.side(solid, face, sight, t)
         };
         let alpha = match (solid.form, solid.kind) {
             (Form::Cube(..), Some(TileKind::Glass(glass))) => glass.opacity,
@@ -251,15 +234,10 @@ impl<'a> Solids<'a> {
         (self.lit(color, light, normal, t), alpha)
     }
 
-    /// The texel, the light and the normal of a side of `solid` at `place`.
-    fn side(
-        &self,
-        solid: &Solid,
-        face: Face,
-        sight: &Sight,
-        place: DVec3,
-    ) -> ((Rgb, u8), Light, DVec2) {
-        let (height, place, direction) = (place.z, place.truncate(), sight.direction.truncate());
+    /// The texel, the light and the normal of a side of `solid`.
+    fn side(&self, solid: &Solid, face: Face, sight: &Sight, t: f64) -> (Texel, Light, DVec2) {
+        let (place, height) = (sight.at(t).truncate(), sight.at(t).z);
+        let direction = sight.direction.truncate();
         // The distance to the cell in front, the normal, and the texture coordinate from the left.
         let (reach, normal, u) = match solid.form {
             Form::Pillar(center, radius) => {
@@ -270,43 +248,33 @@ impl<'a> Solids<'a> {
             Form::Panel(start, way, opening) => {
                 let along = (place - start).dot(way) / way.length();
                 let along = opening.map_or(along / way.length(), |opening| along + opening);
-                let u = if direction.perp_dot(way) > 0.0 { along } else { -along };
-                (1.0, way.perp().normalize(), u)
+                (1.0, way.perp().normalize(), along * direction.perp_dot(way).signum())
             }
-            _ if face == Face::X => (0.5, DVec2::X, place.y * direction.x.signum()),
+            _ if face == 0 => (0.5, DVec2::X, place.y * direction.x.signum()),
             _ => (0.5, DVec2::Y, place.x * -direction.y.signum()),
         };
         let front = place - normal * (direction.dot(normal).signum() * reach);
-        let light = match solid.side_light {
-            SideLight::Fixed(light) => light,
-            SideLight::OfCells => self.light_at(front),
-            SideLight::Blended => self.blended_light(front, normal.perp().abs()),
-        };
-        let jamb = self.tile_at(front).and_then(|tile| match (solid.kind, tile.kind) {
-            (Some(TileKind::Wall(_)), TileKind::Door(door) | TileKind::Doorway(door)) => {
-                Some(door.jamb)
-            }
-            _ => None,
+        let light = solid.side_light.unwrap_or_else(|| {
+            let axis = normal.perp().abs();
+            if solid.is_blended { self.blended_light(front, axis) } else { self.light_at(front) }
         });
+        let paint = match (solid.kind, self.tile_at(front).map(|it| it.kind)) {
+            (Some(TileKind::Wall(_)), Some(TileKind::Door(it) | TileKind::Doorway(it))) => it.jamb,
+            _ => solid.sides,
+        };
         // Textures start at whole heights.
-        (self.texel(jamb.unwrap_or(solid.sides), u, -height), light, normal)
+        (self.texel(paint, u, -height), light, normal)
     }
 
-    /// The texel at a position in a picture's plane.
-    fn texel_of(
-        &self,
-        sprite: &Sprite,
-        shown: &Figure,
-        place: DVec3,
-        sight: &Sight,
-    ) -> Option<(Rgb, u8)> {
+    /// The texel of a picture at a point in its plane.
+    fn texel_of(&self, sprite: &Sprite, shown: &Figure, sight: &Sight, t: f64) -> Option<Texel> {
         let to_viewer = sight.origin.truncate() - shown.position;
         let picture = sprite.picture_of(shown.frame, shown.heading, to_viewer);
         let right = self.camera.direction().perp() * sight.signs;
-        let beside = (place.truncate() - shown.position).dot(right) / sprite.width();
+        let beside = (sight.at(t).truncate() - shown.position).dot(right) / sprite.width();
         // A mirror shows the mirror image of a picture that faces the image of the viewer.
         let beside = beside * sight.signs.element_product() + 0.5;
-        let down = 1.0 - (place.z - shown.base) / sprite.height.cells();
+        let down = 1.0 - (sight.at(t).z - shown.base) / sprite.height.cells();
         let is_on_it = (0.0..1.0).contains(&beside) && (0.0..1.0).contains(&down);
         is_on_it.then(|| texel_at(picture, beside, down))
     }
@@ -373,7 +341,7 @@ impl<'a> Solids<'a> {
     }
 
     /// The colour and the opacity of a floor or a ceiling at a position.
-    fn texel_of_plane(&self, Covering { pattern, scale }: Covering, place: DVec3) -> (Rgb, u8) {
+    fn texel_of_plane(&self, Covering { pattern, scale }: Covering, place: DVec3) -> Texel {
         let place = place / scale.cells();
         let is_odd = |place: f64| place.floor() % 2.0 != 0.0;
         let paint = match pattern {
@@ -386,14 +354,14 @@ impl<'a> Solids<'a> {
 
     /// The colour and the opacity of `paint` at a position, given as distances in cells from its
     /// left and its top.
-    fn texel(&self, paint: Paint, x: f64, y: f64) -> (Rgb, u8) {
+    fn texel(&self, paint: Paint, x: f64, y: f64) -> Texel {
         let Paint::Texture(id) = paint else { return (self.world.mean_color(paint), u8::MAX) };
         texel_at(self.world.texture(id), x, y)
     }
 }
 
 /// The texel of a repeated texture, whose width and height are 1.
-fn texel_at(texture: &Texture, x: f64, y: f64) -> (Rgb, u8) {
+fn texel_at(texture: &Texture, x: f64, y: f64) -> Texel {
     let index = |place: f64, count: u32| {
         let fraction = place - place.floor();
         ((fraction * f64::from(count)) as u32).min(count - 1)
@@ -425,16 +393,8 @@ fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
 impl<'a> Solid<'a> {
     fn new(form: Form<'a>, heights: Gap, sides: Paint, light: Light) -> Self {
         let (top, bottom) = (sides.into(), sides.into());
-        Self {
-            form,
-            heights,
-            sides,
-            top,
-            bottom,
-            light,
-            side_light: SideLight::Blended,
-            kind: None,
-        }
+        let (side_light, is_blended, kind) = (None, true, None);
+        Self { form, heights, sides, top, bottom, light, side_light, is_blended, kind }
     }
 }
 
@@ -444,15 +404,13 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
     let corners = [corner, corner + DVec2::ONE];
     let id = world.grid().tile(cell.column.into(), cell.row.into()).unwrap();
     let tile = world.tile(id);
-    let (light, own_light) = (world.light_in(cell), tile.light.map(SideLight::Fixed));
-    let of_cells = own_light.unwrap_or(SideLight::OfCells);
-    let side_light = match tile.kind {
-        TileKind::Open | TileKind::Doorway(_) => SideLight::Blended,
-        TileKind::Door(_) => of_cells,
-        _ => own_light.unwrap_or(SideLight::Blended),
-    };
+    let light = world.light_in(cell);
+    let is_blended = !matches!(tile.kind, TileKind::Door(_));
+    let is_open = matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+    let side_light = tile.light.filter(|_| !is_open);
     let solid = |form, bottom, top, sides| Solid {
         side_light,
+        is_blended,
         ..Solid::new(form, Gap { bottom, top }, sides, light)
     };
     let mut gaps = tile.gaps();
@@ -479,7 +437,7 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
                 Outline::Pillar(radius) => Form::Pillar(cell.center(), radius.cells()),
                 Outline::Line(line) => Form::Panel(line.start(cell), line.stretch(), None),
             };
-            let side_light = own_light.unwrap_or(SideLight::Fixed(light));
+            let side_light = side_light.or(Some(light));
             Some(Solid { side_light, ..stand(form, shape.paint) })
         }
         TileKind::Door(door) => {
@@ -509,23 +467,17 @@ fn ground_around<'a>(world: &World) -> impl Iterator<Item = Solid<'a>> {
         let form = Form::Block(corners.map(DVec2::from));
         let light = ground.light.unwrap_or(Light::FULL);
         let solid = Solid::new(form, Gap { bottom: -FAR, top: 0.0 }, ground.riser, light);
-        Solid { top, side_light: SideLight::OfCells, ..solid }
+        Solid { top, is_blended: false, ..solid }
     })
-}
-
-/// The axis across a side of a block.
-fn axis_of(face: Face) -> Option<usize> {
-    [Face::X, Face::Y].iter().position(|it| *it == face)
 }
 
 /// The distance at which a line enters a block, and the face.
 fn block_entry(sight: &Sight, corners: [DVec2; 2], heights: Gap) -> Option<Entry> {
     let &Sight { origin, direction, from, .. } = sight;
     let [low, high] = [corners[0].extend(heights.bottom), corners[1].extend(heights.top)];
-    let mut enters = (f64::NEG_INFINITY, Face::X);
+    let mut enters = (f64::NEG_INFINITY, 0);
     let mut leaves = f64::INFINITY;
-    let flat = if direction.z > 0.0 { Face::Bottom } else { Face::Top };
-    for (axis, face) in [Face::X, Face::Y, flat].into_iter().enumerate() {
+    for axis in 0..=FLAT {
         if direction[axis] == 0.0 {
             if !(low[axis]..=high[axis]).contains(&origin[axis]) {
                 return None;
@@ -534,7 +486,7 @@ fn block_entry(sight: &Sight, corners: [DVec2; 2], heights: Gap) -> Option<Entry
         }
         let [one, other] = [low, high].map(|it| (it[axis] - origin[axis]) / direction[axis]);
         if one.min(other) > enters.0 {
-            enters = (one.min(other), face);
+            enters = (one.min(other), axis);
         }
         leaves = leaves.min(one.max(other));
     }
@@ -554,9 +506,9 @@ fn pillar_entry(sight: &Sight, center: DVec2, radius: f64, heights: Gap) -> Opti
     let to_top = (heights.top - origin.z) / direction.z;
     let is_on_top = (start + along * to_top).length() <= radius;
     if enters >= from && heights.holds(origin.z + direction.z * enters) {
-        Some((enters, Face::Slanted))
+        Some((enters, SLANTED))
     } else {
-        (direction.z < 0.0 && to_top >= from && is_on_top).then_some((to_top, Face::Top))
+        (direction.z < 0.0 && to_top >= from && is_on_top).then_some((to_top, FLAT))
     }
 }
 
@@ -568,5 +520,5 @@ fn panel_entry(sight: &Sight, start: DVec2, way: DVec2, heights: Gap) -> Option<
     let place = -from.perp_dot(along) / across;
     let is_met =
         across != 0.0 && t >= 0.0 && (0.0..=1.0).contains(&place) && heights.holds(sight.at(t).z);
-    is_met.then_some((t, Face::Slanted))
+    is_met.then_some((t, SLANTED))
 }
