@@ -45,7 +45,7 @@ use crate::render::DynCaster;
 #[derive(Debug, Parser)]
 #[command(
     name = "cellcaster",
-    version,
+    version = crate::VERSION,
     long_about = help::about(),
     after_help = help::WHERE_TO_READ_ON,
     after_long_help = help::more(play::EXAMPLES, &commands()),

@@ -19,7 +19,7 @@ use clap::Parser;
 /// read.
 #[derive(Parser)]
 #[command(
-    version,
+    version = cellcaster::VERSION,
     after_long_help = "\
 Examples:
   cellcaster-certify maps/scripts/museum.hard.script

@@ -21,11 +21,9 @@ use clap::{Args, ValueEnum};
 
 use crate::casters::Method;
 use crate::report::Table;
-use crate::speed::textured_scene;
 use cellcaster::cli::options::{seed, within};
 use cellcaster::cli::parse::ValidValues;
 use cellcaster::game::{FRICTION, STEPS_PER_SECOND};
-use cellcaster::map::builtin;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::World;
 use rays::Trial;
@@ -63,7 +61,7 @@ pub struct Plan {
 /// A part of the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// Rays, and the pixels that they change.
+    /// Rays.
     #[value(help = None)]
     Rays,
     /// Pictures, compared with the mean over the area of each pixel.
@@ -94,33 +92,25 @@ fn steps_per_second(text: &str) -> Result<f64, ValidValues> {
 }
 
 /// The tables for `plan`; `None` if no set has the requested name. Rays and pictures use `map`.
-/// Without a map, rays use four ordinary scenes and the stiff sets. Calls `progress` with each part
+/// Without a map, rays use two scenes and the stiff sets, and pictures all built-in levels. Calls `progress` with each part
 /// before it begins.
 pub fn report(
     plan: &Plan,
     map: Option<&World>,
     mut progress: impl FnMut(Part),
 ) -> Option<Vec<Table>> {
-    let museum;
-    let world = if let Some(map) = map {
-        map
-    } else {
-        // The built-in level with the most features.
-        museum = builtin::LEVELS.iter().find(|level| level.name == "museum")?.world().ok()?;
-        &museum
-    };
     let parts = if plan.parts.is_empty() { Part::value_variants() } else { &plan.parts };
     let mut tables = Vec::new();
     for &part in parts {
         progress(part);
         match part {
             Part::Rays => tables.extend(ray_tables(plan, map)?),
-            Part::Pictures => tables.push(areas::table(world, plan.seed, plan.rounds)),
+            Part::Pictures => tables.push(areas::table(map, plan.rounds)),
             Part::Motion => tables.extend([
                 motion::motions(plan.friction, plan.steps_per_second, plan.rounds),
                 motion::orders(),
             ]),
-            Part::Features => tables.push(features::table(world, plan.seed, plan.rounds)),
+            Part::Features => tables.push(features::table(plan.seed, plan.rounds)),
         }
     }
     Some(tables)
@@ -135,8 +125,10 @@ pub fn set_names() -> Vec<&'static str> {
 
 fn ray_tables(plan: &Plan, map: Option<&World>) -> Option<Vec<Table>> {
     let &Plan { rays: count, seed, rounds, .. } = plan;
-    let methods = if plan.methods.is_empty() { Method::all().into() } else { plan.methods.clone() };
-    let mut pictured = None;
+    let methods = match plan.methods.as_slice() {
+        [] => Method::at_all_parameters(),
+        named => named.to_vec(),
+    };
     let sets_of_rays = match (plan.set.as_deref(), map) {
         (Some("plain-4096"), _) => vec![plain(seed, count)],
         (Some(name), _) => {
@@ -144,18 +136,18 @@ fn ray_tables(plan: &Plan, map: Option<&World>) -> Option<Vec<Table>> {
             vec![all.find(|set| set.name == name)?]
         }
         (None, Some(map)) => {
-            pictured = Some(map);
             let grid = map.grid().clone();
             let mut random = SplitMix64::new(seed);
             let rays = (0..count).map(|_| random_ray(&grid, &mut random)).collect();
             vec![Set { name: "map", grid, rays }]
         }
-        (None, None) => ordinary(seed, count).into_iter().chain([plain(seed, count)]).collect(),
+        (None, None) => {
+            let rooms = ordinary(seed, count).into_iter().take(1);
+            rooms.chain([plain(seed, count)]).collect()
+        }
     };
     let trials: Vec<Trial> = sets_of_rays.into_iter().map(Trial::new).collect();
-    let pictured = pictured.cloned().unwrap_or_else(textured_scene);
-    let mut tables =
-        vec![rays::scenes(&trials, &methods, rounds), rays::pixels(&pictured, &methods, seed)];
+    let mut tables = vec![rays::scenes(&trials, &methods, rounds)];
     if plan.set.is_none() && map.is_none() {
         tables.push(rays::stiff(sets(seed).into_iter().map(Trial::new)));
     }
@@ -165,6 +157,7 @@ fn ray_tables(plan: &Plan, map: Option<&World>) -> Option<Vec<Table>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cellcaster::map::builtin;
 
     fn plan() -> Plan {
         Plan {
@@ -185,7 +178,7 @@ mod tests {
         let mut parts = Vec::new();
         let tables = report(&plan(), Some(&world), |part| parts.push(part)).unwrap();
         let names: Vec<&str> = tables.iter().map(|table| table.name).collect();
-        assert_eq!(names, ["rays", "pixels"]);
+        assert_eq!(names, ["rays"]);
         assert_eq!(tables[0].rows.len(), 2);
         let rows = tables.iter().flat_map(|table| table.rows.iter().map(move |row| (table, row)));
         for (table, row) in rows {

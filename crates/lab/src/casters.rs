@@ -80,6 +80,16 @@ impl Method {
         Self::NAMES.map(|name| name.parse().expect("these are the names of all methods"))
     }
 
+    /// All methods, those with a parameter at several of its values.
+    ///
+    /// # Panics
+    /// Never: a test parses the names.
+    pub fn at_all_parameters() -> Vec<Self> {
+        let names = "exact dda dda32 accumulate fixed:6 fixed:10 fixed:16 fixed:22 table:480 table:1920 table:7680 \
+                     table:61440 march:0.1 march:0.01 march:0.001";
+        names.split(' ').map(|name| name.parse().expect("it is the name of a method")).collect()
+    }
+
     /// Passes the caster to `visitor`.
     pub fn accept<V: Visitor>(&self, visitor: V) -> V::Output {
         match self {

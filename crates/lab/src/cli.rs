@@ -16,7 +16,7 @@ use crate::load;
 
 /// Measurements of Cellcaster
 #[derive(Debug, Parser)]
-#[command(name = "cellcaster-lab", version, max_term_width = 80)]
+#[command(name = "cellcaster-lab", version = cellcaster::VERSION, max_term_width = 80)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

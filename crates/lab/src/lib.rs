@@ -42,7 +42,7 @@
 //! # The flow
 //!
 //! ```text
-//! scenes, rays, scripts ─ accuracy, speed, wire ─▶ Table ─ report ─▶ text, Markdown, JSON, CSV, SVG
+//! scenes, rays, scripts ─ accuracy, speed, wire ─▶ Table ─ report ─▶ Markdown, JSON, CSV, SVG
 //! ```
 //!
 //! Every measurement is a [`report::Table`], so one writer for each format serves all. Errors and counts are the same

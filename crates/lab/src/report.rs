@@ -3,8 +3,8 @@
 //! Every measurement is a [`Table`] of the same shape, so one writer for each format serves all
 //! tables and leaves none out. A row has three keys: the problem, the method, and the method's
 //! parameter. A [`Diagram`] names two columns. It has a panel for each problem, and a line for each
-//! method, joined through the parameter, like the work-precision diagrams of `SciML`
-//! (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five
+//! method over its parameter, like the work-precision diagrams of `SciML`, with the error across and
+//! the cost up (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five
 //! formats needed code for each of them, and CSV and the plots left most of them out.
 
 mod formats;
@@ -55,17 +55,16 @@ pub enum Value {
     Share(f64),
     /// Any other number.
     Number(f64),
-    /// A time with its quartiles.
-    Time(Timing),
+    /// The median of several values, with its quartiles.
+    Spread(Spread),
 }
 
-/// A plot of one column over another: an error over its cost. Both axes are logarithmic.
+/// A plot of one column over another, such as a time over an error. Both axes are logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diagram {
     /// The indices of the columns across and up.
     pub columns: [usize; 2],
-    /// The smallest and the largest error that matter. Errors outside the range are drawn at the
-    /// end of the axis.
+    /// The smallest and the largest value across that matters. The plot names the methods of points outside.
     pub range: [f64; 2],
 }
 
@@ -100,8 +99,21 @@ impl Value {
             Self::None => None,
             Self::Count(count) => Some(count as f64),
             Self::Share(number) | Self::Number(number) => Some(number),
-            Self::Time(timing) => Some(timing.median),
+            Self::Spread(spread) => Some(spread.median),
         }
+    }
+
+    /// The number, as if there were several.
+    fn spread(self) -> Option<Spread> {
+        match self {
+            Self::Spread(spread) => Some(spread),
+            other => other.number().map(|number| Spread::of(vec![number]).unwrap_or_default()),
+        }
+    }
+
+    /// The spread of `values`.
+    pub(crate) fn of(values: Vec<f64>) -> Self {
+        Spread::of(values).map_or(Self::None, Self::Spread)
     }
 
     /// `number`, if there is one.
@@ -116,24 +128,20 @@ impl Value {
 }
 
 impl Diagram {
-    /// The range of diagrams that show every error.
+    /// The range of diagrams that show every point.
     pub(crate) const ALL: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
 
-    /// The cost and the error of `row`, with the error clamped to the range; `None` if there is no
-    /// such point.
-    fn point(&self, row: &Row) -> Option<(f64, f64)> {
-        let [cost, error] = self.columns.map(|index| row.values.get(index)?.number());
-        let (cost, error) = (cost?, error?);
-        (cost > 0.0 && !error.is_nan()).then(|| (cost, error.clamp(self.range[0], self.range[1])))
+    /// The values of `row` across and up.
+    fn point(&self, row: &Row) -> Option<[Spread; 2]> {
+        let [across, up] = self.columns.map(|index| row.values.get(index)?.spread());
+        Some([across?, up?])
     }
 }
 
-// Times of candidates that take turns.
-
-/// The time of a candidate over several rounds.
+/// The median of several values, and its quartiles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Timing {
-    /// The median over all rounds.
+pub struct Spread {
+    /// The median.
     pub median: f64,
     /// The lower quartile.
     pub lower_quartile: f64,
@@ -141,14 +149,14 @@ pub struct Timing {
     pub upper_quartile: f64,
 }
 
-impl Timing {
-    fn of(mut times: Vec<f64>) -> Option<Self> {
-        times.sort_unstable_by(f64::total_cmp);
-        let last = times.len().checked_sub(1)?;
-        // Between two times, their weighted mean.
+impl Spread {
+    fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_unstable_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        // Between two values, their weighted mean.
         let at = |share: f64| {
             let place = share * last as f64;
-            let (below, above) = (times[place.floor() as usize], times[place.ceil() as usize]);
+            let (below, above) = (values[place.floor() as usize], values[place.ceil() as usize]);
             below + (above - below) * place.fract()
         };
         Some(Self { median: at(0.5), lower_quartile: at(0.25), upper_quartile: at(0.75) })
@@ -170,8 +178,7 @@ pub(crate) fn time_in_rounds(
             times.push(time(index));
         }
     }
-    let value = |times| Timing::of(times).map_or(Value::None, Value::Time);
-    times.into_iter().map(value).collect()
+    times.into_iter().map(Value::of).collect()
 }
 
 /// The duration of `work`, in seconds.
@@ -183,7 +190,7 @@ pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
 
 /// The median of `values`; 0 if there are none.
 pub(crate) fn median(values: Vec<f64>) -> f64 {
-    Timing::of(values).unwrap_or_default().median
+    Spread::of(values).unwrap_or_default().median
 }
 
 #[cfg(test)]
@@ -191,23 +198,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_are_clamped_to_the_range() {
-        let diagram = Diagram { columns: [0, 1], range: [0.5, 8.0] };
-        let point = |cost, error| diagram.point(&Row::new([""; 3], vec![cost, error]));
-        let count = Value::Count(3);
-        assert_eq!(point(count, Value::Number(0.0)), Some((3.0, 0.5)));
-        assert_eq!(point(count, Value::Number(f64::INFINITY)), Some((3.0, 8.0)));
-        assert_eq!(point(count, Value::Share(0.75)), Some((3.0, 0.75)));
-        assert_eq!(point(count, Value::Number(f64::NAN)), None);
-        assert_eq!(point(Value::None, count), None);
-    }
-
-    #[test]
     fn quartiles_are_in_order() {
-        let Timing { median, lower_quartile, upper_quartile } =
-            Timing::of(vec![5.0, 1.0, 4.0, 2.0, 3.0]).unwrap();
+        let Spread { median, lower_quartile, upper_quartile } =
+            Spread::of(vec![5.0, 1.0, 4.0, 2.0, 3.0]).unwrap();
         assert_eq!((lower_quartile, median, upper_quartile), (2.0, 3.0, 4.0));
-        let even = Timing::of(vec![4.0, 1.0, 2.0, 3.0]).unwrap();
+        let even = Spread::of(vec![4.0, 1.0, 2.0, 3.0]).unwrap();
         assert_eq!((even.lower_quartile, even.median, even.upper_quartile), (1.75, 2.5, 3.25));
     }
 

@@ -14,7 +14,6 @@ mod growth;
 mod pipeline;
 
 pub use drawing::measure_drawing;
-pub(crate) use drawing::size;
 pub(crate) use footprint::measure_footprint;
 pub use growth::{CROWDS, Ground, SIDES, Vista, crossing_rays};
 pub(crate) use growth::{measure_crowds, measure_maps};

@@ -44,8 +44,8 @@ pub struct WirePlan<'a> {
 }
 
 /// Plays the script of `plan`, and compares ratatui's encoder (`stock`) with Cellcaster's at each
-/// fidelity: by search, by a greedy choice (`greedy`), and by search with repeated characters and a
-/// defined palette (`+`).
+/// fidelity: by search (`ours`), by a greedy choice (`greedy`), and by search with repeated characters and a
+/// defined palette (`ours+`).
 pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
     let kinds = [(Effort::Search, false), (Effort::Greedy, false), (Effort::Search, true)];
     let ours = kinds.into_iter().flat_map(|(effort, extensions)| {
@@ -55,15 +55,15 @@ pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
         plan.fidelities.iter().filter(has_choice).map(move |&fidelity| {
             let mut encoder = Encoder::ours(plan.size, plan.depth, fidelity, extensions);
             encoder.set_effort(effort);
-            let suffix = match effort {
-                Effort::Greedy => " greedy",
-                Effort::Search if extensions => "+",
-                Effort::Search => "",
+            let name = match effort {
+                Effort::Greedy => "greedy",
+                Effort::Search if extensions => "ours+",
+                Effort::Search => "ours",
             };
-            (format!("{fidelity}{suffix}"), encoder)
+            ((name, fidelity.to_string()), encoder)
         })
     });
-    let mut runs: Vec<EncoderRun> = std::iter::once(("stock".to_owned(), Encoder::stock()))
+    let mut runs: Vec<EncoderRun> = std::iter::once((("stock", String::new()), Encoder::stock()))
         .chain(ours)
         .map(|(name, encoder)| EncoderRun::new(name, encoder, plan.script))
         .collect();
@@ -89,9 +89,12 @@ pub fn report(plan: &WirePlan, replay: &mut Replay) -> Table {
             "{frames} frames of {}×{} cells, {} a second, after a first one that paints everything",
             plan.size.width, plan.size.height, plan.frames_per_second
         ),
-        keys: ["section", "encoder", ""],
+        keys: ["section", "encoder", "fidelity"],
         columns: headings(COLUMNS),
         rows: rows.collect(),
-        diagrams: vec![Diagram { columns: [1, 12], range: [0.01, 100.0] }],
+        diagrams: vec![
+            Diagram { columns: [12, 1], range: [0.01, 100.0] },
+            Diagram { columns: [12, 6], range: [0.01, 100.0] },
+        ],
     }
 }

@@ -1,18 +1,12 @@
-//! The tables of rays: ordinary scenes, stiff and extreme sets, and whole pictures.
+//! The tables of rays: ordinary scenes, and stiff and extreme sets.
 
 use std::hint::black_box;
 
 use super::{Set, Truth, cast};
 use crate::casters::{Method, Visitor};
 use crate::report::{Diagram, Row, Table, Value, headings, seconds, time_in_rounds};
-use crate::speed::size;
 use cellcaster::cast::{Caster, Hit, Ray};
-use cellcaster::render::{DynCaster, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::rng::SplitMix64;
-use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
-
-/// The largest relative error of a distance that is correctly rounded to a double: 2⁻⁵³.
-const ROUNDING: f64 = f64::EPSILON / 2.0;
+use cellcaster::world::Grid;
 
 /// The table of `trials`, each timed in `rounds` rounds.
 pub(crate) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Table {
@@ -24,9 +18,9 @@ pub(crate) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Tab
             let errors = trial.errors(method);
             let values = vec![
                 errors.share_of_wrong(),
+                Value::Number(errors.distances / errors.rays.max(1) as f64),
                 Value::Number(errors.worst_distance),
                 Value::Number(errors.worst_ulps),
-                Value::maybe(instructions(name, method)),
                 time,
             ];
             row_of(name, method, values)
@@ -39,16 +33,15 @@ pub(crate) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Tab
         keys: ["scene", "method", "parameter"],
         columns: headings([
             "wrong rays",
-            "worst relative error of distances",
+            "mean relative error of distances",
+            "worst relative error",
             "worst error of right rays, ulp",
-            "instructions, a ray",
             "time, ns a ray",
         ]),
         rows: rows.collect(),
         diagrams: vec![
-            Diagram { columns: [4, 1], range: [ROUNDING, 10.0] },
-            Diagram { columns: [4, 0], range: [1e-4, 1.0] },
-            Diagram { columns: [3, 1], range: [ROUNDING, 10.0] },
+            Diagram { columns: [1, 4], range: [1e-18, 10.0] },
+            Diagram { columns: [0, 4], range: [1e-6, 1.0] },
         ],
     }
 }
@@ -79,25 +72,10 @@ pub(crate) fn stiff(trials: impl Iterator<Item = Trial>) -> Table {
     }
 }
 
-// The number of instructions that each method takes for a ray, counted by Callgrind.
-//
-// A program cannot count its own instructions without help from the system, and a time differs from
-// run to run. Therefore a file stores the counts of the ordinary scenes, and `.ci/accuracy count`
-// writes it. The counts are for [`SEED`] and [`RAYS`] rays, or a tenth of that number on the plain.
-
-/// The seed of the counted rays.
+/// The seed of the rays.
 pub const SEED: u64 = 1;
-/// The number of counted rays in a scene.
+/// The number of rays in a scene.
 pub const RAYS: usize = 2000;
-
-/// A line for each scene and method: their names, and the number of instructions for a ray.
-const COUNTS: &str = include_str!("instructions/counts");
-
-/// The number of instructions for a ray in the scene with this name, if it is stored.
-fn instructions(scene: &str, method: &Method) -> Option<f64> {
-    let counted = format!("{scene} {method} ");
-    COUNTS.lines().find_map(|line| line.strip_prefix(&counted)?.parse().ok())
-}
 
 // The errors of a method over rays with known exact hits.
 
@@ -119,7 +97,9 @@ pub(crate) struct Trial {
 struct Errors {
     rays: usize,
     wrong: usize,
-    /// The largest relative error of the distance.
+    /// The sum of the relative errors of the distances.
+    distances: f64,
+    /// The largest relative error of a distance.
     worst_distance: f64,
     /// The largest error of the distance in units of its last place.
     worst_ulps: f64,
@@ -144,7 +124,9 @@ impl Trial {
         let mut errors = Errors { rays: self.set.rays.len(), ..Errors::default() };
         for (ray, truth) in self.set.rays.iter().zip(&self.truths) {
             let hit = caster.cast(&self.set.grid, ray);
-            errors.worst_distance = errors.worst_distance.max(distance_error(truth.as_ref(), hit));
+            let error = distance_error(truth.as_ref(), hit);
+            errors.distances += error;
+            errors.worst_distance = errors.worst_distance.max(error);
             match (truth, hit) {
                 (None, None) => {}
                 (Some(truth), Some(hit)) if truth.is_met_by(&hit) => {
@@ -213,102 +195,10 @@ fn cast_all<C: Caster>(caster: &C, grid: &Grid, rays: &[Ray]) {
     }
 }
 
-// The fraction of wrong pixels in whole pictures.
-
-/// The number of pictures, and the size of each in pixels.
-const PICTURES: usize = 4;
-const PICTURE: FrameSize = size(160, 90);
-
-/// The number of wrong pixels in pictures of `world`: one from its start, the others from random
-/// positions.
-pub(crate) fn pixels(world: &World, methods: &[Method], seed: u64) -> Table {
-    let reference = DynCaster::new(Reference);
-    let pictures: Vec<(Camera, Frame)> = cameras(world, seed)
-        .take(PICTURES)
-        .map(|camera| (camera, draw(world, &camera, &reference)))
-        .collect();
-    let pixels = PICTURES * PICTURE.width.get() as usize * PICTURE.height.get() as usize;
-    let row = |method: &Method| {
-        let caster = method.caster();
-        let wrong =
-            |(camera, truth): &(Camera, Frame)| different(&draw(world, camera, &caster), truth);
-        let wrong = pictures.iter().map(wrong).sum();
-        row_of("", method, vec![Value::share(wrong, pixels)])
-    };
-    Table {
-        name: "pixels",
-        title: format!(
-            "Wrong pixels of each method in {PICTURES} pictures of {}x{}",
-            PICTURE.width, PICTURE.height
-        ),
-        keys: ["", "method", "parameter"],
-        columns: headings(["wrong pixels"]),
-        rows: methods.iter().map(row).collect(),
-        diagrams: Vec::new(),
-    }
-}
-
-/// The number of pixels that differ between two pictures of the same size.
-fn different(one: &Frame, other: &Frame) -> usize {
-    one.rows().flatten().zip(other.rows().flatten()).filter(|(one, other)| one != other).count()
-}
-
-/// Casts in rational arithmetic. It is never wrong, and thousands of times slower than the casters.
-#[derive(Debug)]
-struct Reference;
-
-impl Caster for Reference {
-    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        let truth = cast(grid, ray)?;
-        Some(Hit { cell: truth.cell, side: truth.side, t: truth.t.to_f64(), u: truth.u.to_f64() })
-    }
-}
-
-/// The cameras of the pictures: the start of `world`, and then random positions.
-pub(crate) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
-    let mut random = SplitMix64::new(seed);
-    let start = world.start_camera(FieldOfView::default());
-    std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut random)))
-}
-
-/// A random camera on open floor.
-fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
-    let grid = world.grid();
-    let on_floor = |random: &mut SplitMix64| {
-        let column = random.whole(0, grid.width() as i32 - 1);
-        let row = random.whole(0, grid.height() as i32 - 1);
-        let cell = Cell { column: column as u32, row: row as u32 };
-        (!grid.is_solid(column as i64, row as i64)).then_some(cell)
-    };
-    // There is open floor, because the start is on it.
-    let cell = std::iter::repeat_with(|| on_floor(random)).flatten().next();
-    let heading = Heading::default().turned(random.between(0.0, std::f64::consts::TAU));
-    Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
-}
-
-fn draw(world: &World, camera: &Camera, caster: &DynCaster) -> Frame {
-    let mut frame = Frame::new(PICTURE, PixelAspect::SQUARE);
-    let caster = DynCaster::new(OnlyWalls(caster.clone()));
-    Renderer::with_caster(caster).render(world, camera, &mut frame);
-    frame
-}
-
-/// Treats doors and transparent cubes as walls, as most methods do. The pictures then differ only
-/// where rays end differently.
-#[derive(Debug)]
-struct OnlyWalls(DynCaster);
-
-impl Caster for OnlyWalls {
-    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        self.0.cast(grid, ray)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::ordinary;
     use super::*;
-    use cellcaster::map;
 
     fn trials() -> impl Iterator<Item = Trial> {
         ordinary(1, 200).into_iter().map(Trial::new)
@@ -332,18 +222,7 @@ mod tests {
         for trial in trials() {
             let exact = trial.errors(&Method::Exact);
             assert!((0.4..2.0).contains(&exact.worst_ulps), "{exact:?}");
-            assert!(exact.worst_distance > ROUNDING / 4.0, "{exact:?}");
+            assert!(exact.worst_distance > f64::EPSILON / 8.0, "{exact:?}");
         }
-    }
-
-    #[test]
-    fn only_coarse_pictures_have_wrong_pixels() {
-        let museum = include_str!("../../../../tests/maps/museum.toml");
-        let world = map::parse_str(museum).unwrap();
-        let methods = ["exact", "march:0.2"].map(|name| name.parse().unwrap());
-        let rows = pixels(&world, &methods, 7).rows;
-        let [exact, coarse] = &rows[..] else { panic!("{rows:?}") };
-        assert_eq!(exact.values, [Value::Share(0.0)]);
-        assert!(coarse.values[0].number().unwrap() > 0.0);
     }
 }

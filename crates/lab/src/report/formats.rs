@@ -1,4 +1,4 @@
-//! Reports as text, Markdown, CSV and JSON, with the machine, the program and the command that
+//! Reports as Markdown, CSV and JSON, with the machine, the program and the command that
 //! produced them.
 
 use std::env;
@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
 
 use super::plot::svg;
-use super::{Row, Table, Timing, Value};
+use super::{Row, Spread, Table, Value};
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::today;
 
@@ -18,7 +18,6 @@ use cellcaster::cli::machine::today;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     #[default]
-    Table,
     Markdown,
     Json,
     Csv,
@@ -42,19 +41,11 @@ impl Report<'_> {
 
     pub(crate) fn write(&self, format: Format, output: &mut impl Write) -> io::Result<()> {
         match format {
-            Format::Table => self.write_text(output),
             Format::Markdown => self.write_markdown(output),
             Format::Json => self.write_json(output),
             Format::Csv => output.write_all(self.csv().as_bytes()),
             Format::Svg => output.write_all(svg(self).as_bytes()),
         }
-    }
-
-    fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
-        for table in self.tables {
-            write_aligned(table, output)?;
-        }
-        writeln!(output, "{}", self.origin.sentence())
     }
 
     fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
@@ -106,32 +97,6 @@ pub fn markdown(table: &Table) -> String {
     line(&lines[0]) + &rule + &rows.iter().map(line).collect::<String>()
 }
 
-/// Writes a table for a terminal, with an empty line after it and between problems that have
-/// several rows.
-fn write_aligned(table: &Table, output: &mut impl Write) -> io::Result<()> {
-    let (labels, lines) = cells(table);
-    let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
-    let widths: Vec<usize> = (0..lines[0].len()).map(|it| width(it).unwrap_or_default()).collect();
-    let problems = || table.rows.chunk_by(|one, other| one.keys[0] == other.keys[0]);
-    let is_grouped = problems().any(|rows| rows.len() > 1);
-    let ends = problems().scan(0, |end, rows| {
-        *end += rows.len();
-        Some(*end)
-    });
-    let ends: Vec<usize> = ends.filter(|&end| is_grouped && end < table.rows.len()).collect();
-    writeln!(output, "{}: {}.\n", table.name, table.title)?;
-    for (index, cells) in lines.iter().enumerate() {
-        let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
-            if column < labels { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        writeln!(output, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())?;
-        if ends.contains(&index) {
-            writeln!(output)?;
-        }
-    }
-    writeln!(output)
-}
-
 /// The number of key columns, and the headings and all rows as text.
 fn cells(table: &Table) -> (usize, Vec<Vec<String>>) {
     let keys: Vec<usize> = (0..3).filter(|&key| !table.keys[key].is_empty()).collect();
@@ -162,7 +127,7 @@ fn json_figure(value: Value) -> Json {
         // JSON has no infinity.
         Value::Share(number) | Value::Number(number) if !number.is_finite() => "inf".into(),
         Value::Share(number) | Value::Number(number) => number.into(),
-        Value::Time(Timing { median, lower_quartile, upper_quartile }) => json!({
+        Value::Spread(Spread { median, lower_quartile, upper_quartile }) => json!({
             "median": median,
             "lower_quartile": lower_quartile,
             "upper_quartile": upper_quartile,
@@ -189,8 +154,8 @@ fn csv_fields(value: Value) -> [String; 3] {
         Value::None => one(String::new()),
         Value::Count(count) => one(count.to_string()),
         Value::Share(number) | Value::Number(number) => one(number.to_string()),
-        Value::Time(Timing { median, lower_quartile, upper_quartile }) => {
-            [median, lower_quartile, upper_quartile].map(|time| format!("{time:.2}"))
+        Value::Spread(Spread { median, lower_quartile, upper_quartile }) => {
+            [median, lower_quartile, upper_quartile].map(|value| value.to_string())
         }
     }
 }
@@ -202,8 +167,8 @@ fn figure(value: Value) -> String {
         Value::Count(count) => count.to_string(),
         Value::Share(number) => share(number),
         Value::Number(value) => number(value),
-        Value::Time(Timing { median, lower_quartile, upper_quartile }) => {
-            format!("{median:.1} ({lower_quartile:.1}–{upper_quartile:.1})")
+        Value::Spread(Spread { median, lower_quartile, upper_quartile }) => {
+            format!("{median:.2} ({lower_quartile:.2}–{upper_quartile:.2})")
         }
     }
 }
@@ -240,7 +205,7 @@ fn number(number: f64) -> String {
 /// The origin of a report.
 pub(crate) struct Origin {
     machine: String,
-    /// The version, and the commit if the build knows it.
+    /// The version and the commit, and the compiler.
     program: String,
     command: String,
     /// The date in UTC, such as 2026-11-22.
@@ -250,13 +215,11 @@ pub(crate) struct Origin {
 impl Origin {
     /// The origin of a report of this process.
     pub(crate) fn this() -> Self {
-        let version = env!("CARGO_PKG_VERSION");
-        let commit = option_env!("CELLCASTER_COMMIT").unwrap_or("unknown");
         let (date, _) = today();
         let (year, month, day) = (date / 10_000, date / 100 % 100, date % 100);
         Self {
             machine: machine(),
-            program: format!("{version}, commit {commit}"),
+            program: format!("{} by {}", cellcaster::VERSION, cellcaster::BUILD),
             command: command(env::args().skip(1)),
             date: format!("{year}-{month:02}-{day:02}"),
         }
@@ -275,7 +238,7 @@ impl Origin {
     }
 }
 
-/// The processor, if the system reports it, the number of its cores, and the platform.
+/// The processor, if the system reports it, the number of its cores, the load of the last minute, and the system.
 fn machine() -> String {
     let cores = available_parallelism().map_or(1, Into::into);
     let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -283,7 +246,9 @@ fn machine() -> String {
         information.lines().find_map(|line| line.strip_prefix("model name")?.split(": ").nth(1));
     let processor = model.unwrap_or("unknown processor").trim();
     let cores = if cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
-    format!("{processor}, {cores}, {} {}", env::consts::OS, env::consts::ARCH)
+    let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().filter(|it| !it.is_empty()).unwrap_or("unknown");
+    format!("{processor}, {cores}, load {load}, {}", env::consts::OS)
 }
 
 /// The command line with these arguments.
@@ -312,14 +277,6 @@ mod tests {
             ],
             diagrams: Vec::new(),
         }
-    }
-
-    #[test]
-    fn words_align_left_and_figures_align_right() {
-        let mut bytes = Vec::new();
-        write_aligned(&fruit(), &mut bytes).unwrap();
-        let text = "fruit: Fruit in kilograms.\n\nkind      kg\napples     7\nfigs    12.5\n\n";
-        assert_eq!(String::from_utf8(bytes).unwrap(), text);
     }
 
     #[test]

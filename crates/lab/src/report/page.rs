@@ -1,7 +1,7 @@
 //! Pages whose tables a command writes, and whose other text is written by hand.
 //!
 //! A table stands between two lines of the page, such as `<!-- accuracy rays -->` and `<!-- end -->`. The run that
-//! produced it is named below the table. Its plot is a file beside the page, from the same run.
+//! produced them is named below the last table. Its plot is a file beside the page, from the same run.
 
 use std::fs;
 use std::io::Write;
@@ -21,8 +21,9 @@ pub(crate) fn update_page(path: &Path, command: &str, tables: &[Table]) -> Resul
     let name = path.display();
     let mut page = fs::read_to_string(path)
         .map_err(|error| Error::mistake(format!("{name} can't be read: {error}")))?;
-    for table in tables {
-        page = replaced(&page, command, origin, table).ok_or_else(|| {
+    for (index, table) in tables.iter().enumerate() {
+        let origin_below = (index + 1 == tables.len()).then_some(origin);
+        page = replaced(&page, command, origin_below, table).ok_or_else(|| {
             Error::mistake(format!(
                 "{name} has no place for the table \"{}\": add a line \"{}\" and below it a line \"{END}\"",
                 table.name,
@@ -50,7 +51,7 @@ fn plot_of(command: &str, table: &Table) -> String {
 }
 
 /// Returns `page` with the new `table`; `None` if it has no place for it.
-fn replaced(page: &str, command: &str, origin: &Origin, table: &Table) -> Option<String> {
+fn replaced(page: &str, command: &str, origin: Option<&Origin>, table: &Table) -> Option<String> {
     let begin = begin(command, table);
     let (before, after) = page.split_once(&begin)?;
     let (_, after) = after.split_once(END)?;
@@ -60,8 +61,8 @@ fn replaced(page: &str, command: &str, origin: &Origin, table: &Table) -> Option
     } else {
         format!("\n![{}]({})\n", table.title, plot_of(command, table))
     };
-    let sentence = origin.sentence();
-    Some(format!("{before}{begin}\n{plot}\n{block}\n{sentence}\n\n{END}{after}"))
+    let sentence = origin.map_or(String::new(), |origin| format!("{}\n\n", origin.sentence()));
+    Some(format!("{before}{begin}\n{plot}\n{block}\n{sentence}{END}{after}"))
 }
 
 #[cfg(test)]
@@ -84,11 +85,11 @@ mod tests {
     fn a_table_replaces_the_text_between_its_markers() {
         let run = Origin::this();
         let page = "Text.\n\n<!-- accuracy few -->\nold\n<!-- end -->\n\nMore.\n";
-        let new = replaced(page, "accuracy", &run, &table()).unwrap();
+        let new = replaced(page, "accuracy", Some(&run), &table()).unwrap();
         assert!(new.starts_with("Text.\n\n<!-- accuracy few -->\n"), "{new}");
         assert!(new.ends_with("\n<!-- end -->\n\nMore.\n"), "{new}");
         assert!(new.contains("| method | rays |\n|---|---:|\n| dda | 3 |\n"), "{new}");
-        assert_eq!(replaced(&new, "accuracy", &run, &table()).unwrap(), new);
-        assert!(replaced("Text.", "accuracy", &run, &table()).is_none());
+        assert_eq!(replaced(&new, "accuracy", Some(&run), &table()).unwrap(), new);
+        assert!(replaced("Text.", "accuracy", Some(&run), &table()).is_none());
     }
 }

@@ -1,23 +1,24 @@
-//! Diagrams of a report as SVG: an error over a cost, both logarithmic.
+//! Diagrams of a report as SVG: a cost over an error, both logarithmic.
 //!
 //! Each diagram of a table is a row of panels, one for each problem; diagrams with one panel share
 //! a row. In a panel, a method is a line of points, joined in the order of its parameter; bars are
-//! the quartiles of times. Dots of later methods are smaller, so that no dot hides another. The
+//! the quartiles along both axes. Dots of later methods are smaller, so that no dot hides another. A
+//! line of text names the methods of points that are not on the axes, such as errors of 0. The
 //! description in the file contains the whole report as CSV, so a plot holds the same data as the
 //! tables. The background is white, so that it looks the same on a light and on a dark page.
 //!
-//! Rejected: a charting library. Labels that avoid each other, and quartiles as bars, take more
-//! code with a library than without.
+//! Rejected: a charting library, which takes more code for quartiles along both axes. Rejected: the
+//! parameter beside each point. It hides bars, and the table has it.
 
 use std::fmt::{self, Write};
 
-use super::{Diagram, Report, Table, Value};
+use super::{Diagram, Report, Spread, Table};
 use cellcaster::color::Rgb;
 
 /// The width of the page.
 const WIDTH: f64 = 1200.0;
 /// The height of a panel with its margins.
-const PANEL_HEIGHT: f64 = 300.0;
+const PANEL_HEIGHT: f64 = 312.0;
 /// The distance between lines of text.
 const LINE: f64 = 18.0;
 const MARGIN: f64 = 20.0;
@@ -25,10 +26,10 @@ const MARGIN: f64 = 20.0;
 const CHARACTER: f64 = 8.0;
 
 /// The margins of a panel.
-const LEFT: f64 = 70.0;
+const LEFT: f64 = 85.0;
 const RIGHT: f64 = 15.0;
 const TOP: f64 = 52.0;
-const BOTTOM: f64 = 40.0;
+const BOTTOM: f64 = 52.0;
 
 /// The colours of methods, in the order of the table. They have similar lightness and high chroma.
 const COLORS: [Rgb; 7] = [
@@ -97,18 +98,12 @@ fn put_panels(panels: &[Panel<'_>], mut y: f64, page: &mut Page) -> f64 {
 /// The diagram of one problem.
 struct Panel<'a> {
     problem: &'a str,
-    title: String,
-    points: Vec<Sample<'a>>,
-}
-
-struct Sample<'a> {
-    /// The index of the method.
-    method: usize,
-    parameter: &'a str,
-    cost: f64,
-    /// The quartiles, if the cost is a time.
-    quartiles: Option<(f64, f64)>,
-    error: f64,
+    /// The names of both axes.
+    names: [&'a str; 2],
+    /// The index of the method and the values of each point on the axes.
+    points: Vec<(usize, [Spread; 2])>,
+    /// The methods of the other points.
+    outside: Vec<&'a str>,
 }
 
 impl<'a> Panel<'a> {
@@ -120,34 +115,39 @@ impl<'a> Panel<'a> {
 
     /// The panel of `problem`; `None` if it has no points.
     fn new(table: &'a Table, diagram: &Diagram, problem: &'a str) -> Option<Self> {
-        let methods = table.distinct(1);
-        let rows = table.rows.iter().filter(|row| row.keys[0] == problem);
-        let mut points: Vec<Sample> = rows
-            .filter_map(|row| {
-                let (cost, error) = diagram.point(row)?;
-                let quartiles = match row.values[diagram.columns[0]] {
-                    Value::Time(timing) => Some((timing.lower_quartile, timing.upper_quartile)),
-                    _ => None,
-                };
-                let method = methods.iter().position(|method| *method == row.keys[1])?;
-                Some(Sample { method, parameter: &row.keys[2], cost, quartiles, error })
-            })
-            .collect();
+        let range = diagram.range[0]..=diagram.range[1];
+        let names = diagram.columns.map(|index| table.columns[index].as_str());
+        let (mut points, mut outside) = (Vec::new(), Vec::new());
         // Lines join the points of a method, but a table may list them by parameter.
-        points.sort_by_key(|point| point.method);
-        let [across, up] = diagram.columns.map(|index| &table.columns[index]);
-        let title = format!("{up} over {across}");
-        (!points.is_empty()).then_some(Self { problem, title, points })
+        for (index, method) in table.distinct(1).into_iter().enumerate() {
+            let of_method = |keys: &[String; 3]| keys[0] == problem && keys[1] == method;
+            for row in table.rows.iter().filter(|row| of_method(&row.keys)) {
+                match diagram.point(row) {
+                    Some(point) if range.contains(&point[0].median) && point[1].median > 0.0 => {
+                        points.push((index, point));
+                    }
+                    Some(_) if outside.last() != Some(&method) => outside.push(method),
+                    _ => {}
+                }
+            }
+        }
+        (!points.is_empty()).then_some(Self { problem, names, points, outside })
     }
 
     /// Draws the panel with its top left corner at `corner`.
     fn draw(&self, corner: Point, width: f64, page: &mut Page) {
         let (left, right) = (corner.0 + LEFT, corner.0 + width - RIGHT);
         let (top, bottom) = (corner.1 + TOP, corner.1 + PANEL_HEIGHT - BOTTOM);
-        let across = Axis::around(self.points.iter().map(|point| point.cost), (left, right));
-        let up = Axis::around(self.points.iter().map(|point| point.error), (bottom, top));
+        let values = |axis: usize| self.points.iter().map(move |(_, point)| point[axis]);
+        let across = Axis::around(values(0), (left, right));
+        let up = Axis::around(values(1), (bottom, top));
         page.text((left, top - LINE - 14.0), "start", self.problem);
-        page.text((left, top - 14.0), "start", &self.title);
+        if !self.outside.is_empty() {
+            let outside = format!("not on the axes: {}", self.outside.join(", "));
+            page.text((left, top - 14.0), "start", &outside);
+        }
+        page.text((f64::midpoint(left, right), bottom + 2.0 * LINE), "middle", self.names[0]);
+        page.upward_text((corner.0 + LINE, f64::midpoint(top, bottom)), self.names[1]);
         for power in across.powers() {
             let x = across.place(10_f64.powi(power));
             page.line((x, top), (x, bottom), PALE);
@@ -158,52 +158,17 @@ impl<'a> Panel<'a> {
             page.line((left, y), (right, y), PALE);
             page.text((left - 8.0, y + 4.0), "end", &format!("1e{power}"));
         }
-        let at = |point: &Sample| (across.place(point.cost), up.place(point.error));
-        for pair in self.points.windows(2).filter(|pair| pair[0].method == pair[1].method) {
-            page.line(at(&pair[0]), at(&pair[1]), color(pair[0].method));
+        let at = |[x, y]: [Spread; 2]| (across.place(x.median), up.place(y.median));
+        for pair in self.points.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            page.line(at(pair[0].1), at(pair[1].1), color(pair[0].0));
         }
-        for point in &self.points {
-            if let Some((lower, upper)) = point.quartiles {
-                let y = up.place(point.error);
-                page.line((across.place(lower), y), (across.place(upper), y), color(point.method));
-            }
-            page.dot(at(point), radius(point.method), color(point.method));
-        }
-        let labels = self.points.iter().map(|point| (at(point), point.parameter));
-        put_labels(labels, (corner.0 + width, top), page);
-    }
-}
-
-/// Adds labels to points, left of `right` and below `top`. Labels that would overlap dots or each
-/// other are left out.
-fn put_labels<'a>(
-    points: impl Iterator<Item = (Point, &'a str)> + Clone,
-    (right, top): Point,
-    page: &mut Page,
-) {
-    const HEIGHT: f64 = 12.0;
-    const GAP: f64 = 9.0;
-    /// Left, right and middle.
-    type Extent = (f64, f64, f64);
-    let overlap = |one: &Extent, other: &Extent| {
-        one.0 < other.1 && other.0 < one.1 && (one.2 - other.2).abs() < HEIGHT
-    };
-    let mut taken: Vec<Extent> = points.clone().map(|((x, y), _)| (x - GAP, x + GAP, y)).collect();
-    for (own, ((x, y), label)) in points.enumerate().filter(|(_, (_, label))| !label.is_empty()) {
-        let width = CHARACTER * label.chars().count() as f64;
-        let lefts = [x + GAP, x - GAP - width, x - width / 2.0];
-        let mut candidates = [0.0, -14.0, 14.0]
-            .into_iter()
-            .flat_map(|below| lefts.map(|left| (left, left + width, y + below)));
-        let is_free = |candidate: &Extent| {
-            let mut others = taken.iter().enumerate();
-            candidate.1 < right
-                && candidate.2 >= top
-                && others.all(|(index, other)| index == own || !overlap(candidate, other))
-        };
-        if let Some(place) = candidates.find(is_free) {
-            taken.push(place);
-            page.text((place.0, place.2 + 4.0), "start", label);
+        for &(method, [x, y]) in &self.points {
+            let (place, color) = (at([x, y]), color(method));
+            let [low, high] = [x.lower_quartile, x.upper_quartile].map(|it| across.place(it));
+            page.line((low, place.1), (high, place.1), color);
+            let [low, high] = [y.lower_quartile, y.upper_quartile].map(|it| up.place(it));
+            page.line((place.0, low), (place.0, high), color);
+            page.dot(place, radius(method), color);
         }
     }
 }
@@ -230,10 +195,10 @@ impl Axis {
     /// The largest number of labelled powers of ten.
     const MAX_TICKS: usize = 6;
 
-    /// The axis between the powers of ten around `values`, which are not negative.
-    fn around(values: impl Iterator<Item = f64>, ends: (f64, f64)) -> Self {
-        // A time below the clock's resolution is 0.
-        let powers = values.map(|value| value.max(f64::MIN_POSITIVE).log10());
+    /// The axis between the powers of ten around the quartiles of `values`, whose medians are above 0.
+    fn around(values: impl Iterator<Item = Spread>, ends: (f64, f64)) -> Self {
+        let ends_of = |it: Spread| [it.lower_quartile.max(it.median / 10.0), it.upper_quartile];
+        let powers = values.flat_map(ends_of).map(f64::log10);
         let (low, high) = powers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), power| {
             (low.min(power), high.max(power))
         });
@@ -297,6 +262,15 @@ impl Page {
         let text = escaped(text);
         self.add(format_args!(
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n"
+        ));
+    }
+
+    /// Adds a text that is read upwards, with its middle at the position.
+    fn upward_text(&mut self, (x, y): Point, text: &str) {
+        let text = escaped(text);
+        self.add(format_args!(
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" \
+             transform=\"rotate(-90 {x:.1} {y:.1})\">{text}</text>\n"
         ));
     }
 

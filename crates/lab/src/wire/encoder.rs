@@ -136,7 +136,8 @@ pub(crate) const COLUMNS: [&str; 15] = [
 
 /// An encoder and its totals.
 pub(crate) struct EncoderRun {
-    name: String,
+    /// The method and its fidelity.
+    name: (&'static str, String),
     encoder: Encoder,
     streams: [Stream; 2],
     /// For each section of the script, its index in `parts`.
@@ -149,7 +150,7 @@ pub(crate) struct EncoderRun {
 }
 
 impl EncoderRun {
-    pub(crate) fn new(name: String, encoder: Encoder, script: &Script) -> Self {
+    pub(crate) fn new(name: (&'static str, String), encoder: Encoder, script: &Script) -> Self {
         let mut parts: Vec<PartTotals> = Vec::new();
         let places = script.sections().iter().map(|section| {
             let known = parts.iter().position(|sums| sums.name == section.name);
@@ -187,7 +188,7 @@ impl EncoderRun {
                 sum.0 += bytes;
                 sum.1 += time;
             }
-            sums.time += time;
+            sums.times.push(time);
             sums.difference.add(difference);
         }
     }
@@ -205,7 +206,7 @@ impl EncoderRun {
 
     /// The figures of a part. Ratatui's own encoder writes `stock` bytes per frame.
     pub(crate) fn row(&self, part: usize, stock: f64) -> Row {
-        let PartTotals { name, bytes, compressed, time, difference } = &self.parts[part];
+        let PartTotals { name, bytes, compressed, times, difference } = &self.parts[part];
         let mut bytes = bytes.clone();
         bytes.sort_unstable();
         let count = bytes.len().max(1) as f64;
@@ -217,7 +218,7 @@ impl EncoderRun {
             Value::maybe(Some(mean / stock).filter(|ratio| ratio.is_finite())),
         ];
         values.extend([50, 95, 100].map(|percent| Value::Count(share(&bytes, percent) as u64)));
-        values.push(micros(*time));
+        values.push(Value::of(times.iter().map(|time| time.as_secs_f64() * 1e6).collect()));
         for (bytes, time) in compressed {
             values.extend([Value::Number(*bytes as f64 / count), micros(*time)]);
         }
@@ -228,7 +229,7 @@ impl EncoderRun {
         ];
         values.extend(seen.map(Value::Number));
         values.push(Value::Count(self.first_frame as u64));
-        Row::new([name, &self.name, ""], values)
+        Row::new([name, self.name.0, &self.name.1], values)
     }
 }
 
@@ -237,7 +238,8 @@ struct PartTotals {
     name: String,
     bytes: Vec<usize>,
     compressed: [(usize, Duration); 2],
-    time: Duration,
+    /// The time of each frame.
+    times: Vec<Duration>,
     difference: Difference,
 }
 
@@ -247,7 +249,7 @@ impl PartTotals {
             name: name.to_owned(),
             bytes: Vec::new(),
             compressed: [(0, Duration::ZERO); 2],
-            time: Duration::ZERO,
+            times: Vec::new(),
             difference: Difference::default(),
         }
     }

@@ -87,7 +87,7 @@ pub fn report_glyphs(
         keys: ["", "glyphs", "fidelity"],
         columns: headings(["bytes a frame", "error, thousandths"]),
         rows: rows.collect(),
-        diagrams: vec![Diagram { columns: [0, 1], range: Diagram::ALL }],
+        diagrams: vec![Diagram { columns: [1, 0], range: Diagram::ALL }],
     }
 }
 
@@ -209,7 +209,7 @@ pub fn report_palettes<'a>(
         keys: ["level", "method", ""],
         columns: headings(COLUMNS),
         rows: rows.collect(),
-        diagrams: vec![Diagram { columns: [5, 3], range: Diagram::ALL }],
+        diagrams: vec![Diagram { columns: [3, 5], range: Diagram::ALL }],
     }
 }
 
