@@ -109,7 +109,7 @@ pub fn clear_color(
     let met = meet(solids, camera, frame, pixel, [0.0; 2]);
     let beside = [[-DOUBTFUL, 0.0], [DOUBTFUL, 0.0], [0.0, -DOUBTFUL], [0.0, DOUBTFUL]];
     let is_same = |offset| meet(solids, camera, frame, pixel, offset) == met;
-    (!met.is_tied && beside.into_iter().all(is_same)).then(|| met.color)
+    (!met.is_tied && beside.into_iter().all(is_same)).then_some(met.color)
 }
 
 /// The hits of the line at an `offset` from the middle of a pixel. The component of its direction along the camera's is 1.

@@ -23,7 +23,7 @@ fn line(name: &str, text: &str) -> String {
     let every = script.steps() as usize / FRAMES;
     let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
-    let mut sums = String::new();
+    let mut sums = Vec::new();
     for (step, (_, intents)) in script.iter().enumerate() {
         game.step(intents);
         if step % every == 0 && step / every < FRAMES {
@@ -33,10 +33,10 @@ fn line(name: &str, text: &str) -> String {
             let pixels = frame.rows().flatten();
             let words =
                 pixels.map(|it| it.channels().iter().fold(0, |sum, &it| sum << 8 | u64::from(it)));
-            sums += &format!(" {:08x}", hash(0, words) >> 32);
+            sums.push(format!("{:08x}", hash(0, words) >> 32));
         }
     }
-    format!("{name} {:016x}{sums}\n", game.checksum())
+    format!("{name} {:016x} {}\n", game.checksum(), sums.join(" "))
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn every_format_contains_every_figure() {
         |line: &&str| line.split('"').step_by(2).flat_map(|part| part.matches(',')).count();
     let figures_only = lines.iter().filter(|line| !line.starts_with("run,")).map(columns);
     assert_eq!(figures_only.collect::<BTreeSet<usize>>().len(), 1);
-    for word in ["exact", "march", "0.1", "wrong rays", "ulp", "commit"] {
+    for word in ["exact", "march", "0.1", "wrong rays", "ulp", "rustc"] {
         assert!(markdown.contains(word), "no {word} in\n{markdown}");
     }
     assert_eq!(markdown.lines().filter(|line| line.contains("march")).count(), 1);
