@@ -24,7 +24,7 @@ pub(crate) struct Segment {
     pub(crate) heights: [f64; 2],
 }
 
-/// What stands in a cell and does not fill it.
+/// An object that stands in a cell and does not fill it.
 #[derive(Clone, Copy, Debug)]
 enum Obstacle {
     Pillar {
