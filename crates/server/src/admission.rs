@@ -192,19 +192,6 @@ struct ConnectionSource {
     key: Option<AccountKey>,
 }
 
-impl Default for Limits {
-    fn default() -> Self {
-        Self {
-            connections: 1200,
-            per_address: 64,
-            per_key: 3,
-            startups: 200,
-            failures: 20,
-            forget: Duration::from_secs(10),
-        }
-    }
-}
-
 impl Admission {
     /// Creates an admission without connections and penalties.
     pub fn new(limits: Limits) -> Self {

@@ -96,7 +96,7 @@ fn clients_that_never_read_need_little_memory() {
     let key = HostKey::open(&folder).unwrap();
     fs::remove_dir_all(&folder).unwrap();
     let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
-    config.admission.per_address = 2 * CLIENTS as u32;
+    config.connections_per_address = 2 * CLIENTS as u32;
     (config.silence, config.stall) = (TIMEOUT, TIMEOUT);
     let runtime = Runtime::new().unwrap();
     let server = runtime.block_on(Server::bind(config, key)).unwrap();

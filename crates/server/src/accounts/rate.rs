@@ -30,12 +30,6 @@ pub struct Origin {
 /// In milliseconds.
 const HOUR: i64 = 60 * 60 * 1000;
 
-impl Default for AccountRate {
-    fn default() -> Self {
-        Self { per_hour: 20, at_once: 20 }
-    }
-}
-
 impl Origin {
     /// The origin of a visitor with this address, in a network with this rate.
     pub fn new(address: IpAddr, rate: AccountRate) -> Self {
@@ -103,7 +97,8 @@ mod tests {
 
         #[test]
         fn no_stored_time_blocks_a_network_for_long(known: i64, now: u64) {
-            let origin = Origin::new([192, 0, 2, 7].into(), AccountRate::default());
+            let rate = AccountRate { per_hour: 20, at_once: 20 };
+            let origin = Origin::new([192, 0, 2, 7].into(), rate);
             if let Err(AccountRefusal::TooManyAccounts { seconds }) =
                 origin.count(Some(known), UnixTime::new(now))
             {

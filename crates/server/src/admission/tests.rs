@@ -6,10 +6,18 @@ use proptest::prelude::*;
 use super::*;
 
 const START: Duration = Duration::ZERO;
+const LIMITS: Limits = Limits {
+    connections: 1200,
+    per_address: 64,
+    per_key: 3,
+    startups: 200,
+    failures: 20,
+    forget: Duration::from_secs(10),
+};
 
 /// An admission with small limits.
 fn admission() -> Admission {
-    Admission::new(Limits { per_address: 8, startups: 20, ..Limits::default() })
+    Admission::new(Limits { per_address: 8, startups: 20, ..LIMITS })
 }
 
 /// Forty people behind one address, or with addresses in one /64, read the host's fingerprint at the same
@@ -17,7 +25,7 @@ fn admission() -> Admission {
 #[test]
 fn a_classroom_gets_in_by_default() {
     for (seed, last) in (0..50).zip([0, 1].into_iter().cycle()) {
-        let mut admission = Admission::new(Limits::default());
+        let mut admission = Admission::new(LIMITS);
         let mut chance = SplitMix64::new(seed);
         let pupil = |number: u16| IpAddr::from([0x2001, 0xdb8, 0, 7, 0, 0, 0, number * last]);
         let ids: Vec<ConnectionId> = (1..=40)
@@ -41,7 +49,7 @@ fn a_classroom_gets_in_by_default() {
 /// nothing.
 fn logged_in_during(flood: u32, address_of: impl Fn(u32) -> IpAddr) -> f64 {
     const NEWCOMERS: u32 = 238;
-    let mut admission = Admission::new(Limits::default());
+    let mut admission = Admission::new(LIMITS);
     let mut chance = SplitMix64::new(1);
     let (mut arrivals, mut silent) = (0, VecDeque::new());
     let (mut newcomers, mut logged_in) = (VecDeque::new(), 0);
@@ -96,7 +104,7 @@ fn a_flood_from_one_wide_network_displaces_itself() {
 /// At each width, the busiest network makes room. Its oldest connection goes first.
 #[test]
 fn the_oldest_connection_of_the_busiest_network_makes_room() {
-    let limits = Limits { startups: 8, ..Limits::default() };
+    let limits = Limits { startups: 8, ..LIMITS };
     let (mut admission, mut chance) = (Admission::new(limits), SplitMix64::new(1));
     let addresses = [
         "192.0.2.1",
@@ -121,7 +129,7 @@ fn the_oldest_connection_of_the_busiest_network_makes_room() {
 
 #[test]
 fn a_displaced_connection_cannot_log_in() {
-    let limits = Limits { startups: 1, ..Limits::default() };
+    let limits = Limits { startups: 1, ..LIMITS };
     let (mut admission, mut chance) = (Admission::new(limits), SplitMix64::new(1));
     let first = admission.arrive(address(1, 1), START, &mut chance).unwrap();
     let second = admission.arrive(address(2, 1), START, &mut chance).unwrap();
@@ -135,7 +143,7 @@ fn a_displaced_connection_cannot_log_in() {
 /// nobody.
 #[test]
 fn silent_connections_do_not_displace_players() {
-    let limits = Limits { connections: 2, startups: 3, ..Limits::default() };
+    let limits = Limits { connections: 2, startups: 3, ..LIMITS };
     let (mut admission, mut chance) = (Admission::new(limits), SplitMix64::new(1));
     let mut arrive = |admission: &mut Admission, network| {
         admission.arrive(address(network, 1), START, &mut chance).map(|admitted| admitted.id)
@@ -165,7 +173,7 @@ fn an_ipv6_network_counts_as_one_address() {
 
 #[test]
 fn a_refusal_states_its_limit_in_one_sentence() {
-    let limits = Limits { per_key: 1, ..Limits::default() };
+    let limits = Limits { per_key: 1, ..LIMITS };
     for (refusal, part) in [
         (Refusal::Full, "at most 1200 connections at a time"),
         (Refusal::Address, "at most 64 connections from one address"),

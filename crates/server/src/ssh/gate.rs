@@ -70,7 +70,7 @@ struct State {
 impl Gate {
     pub(crate) fn new(config: LiveConfig, metrics: Arc<Metrics>) -> Self {
         let state = Mutex::new(State {
-            admission: Admission::new(config.get().admission),
+            admission: Admission::new(config.get().admission()),
             chance: SplitMix64::new(getrandom::u64().unwrap_or_default()),
             explanations: Explanations::default(),
             logged: Throttle::default(),
@@ -129,7 +129,7 @@ impl Gate {
     /// # Errors
     /// If the gate refuses the connection: the sentence for its client, or `None` to close it silently.
     pub(crate) fn admit(&self, peer: SocketAddr) -> Result<AdmittedConnection, Option<String>> {
-        let (limits, now, address) = (self.config.get().admission, self.begun.elapsed(), peer.ip());
+        let (limits, now, address) = (self.config.get().admission(), self.begun.elapsed(), peer.ip());
         locked(&self.state, |state| {
             state.admission.set_limits(limits);
             match state.admission.arrive(address, now, &mut state.chance) {
@@ -170,7 +170,7 @@ impl Gate {
 
     /// The sentence for a client refused for `reason`.
     pub(crate) fn sentence(&self, reason: Refusal) -> String {
-        reason.sentence(&self.config.get().admission)
+        reason.sentence(&self.config.get().admission())
     }
 
     /// Counts a connection as authenticated, with `key` or as a guest.

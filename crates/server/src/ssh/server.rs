@@ -115,7 +115,7 @@ impl Server {
                     }
                     Ok((socket, proxy)) => {
                         let config = config.get();
-                        if headers.len() < config.admission.startups as usize {
+                        if headers.len() < config.startups as usize {
                             let time = config.handshake.min(VERSION_TIMEOUT);
                             headers.spawn(read_header(socket, proxy, time));
                         } else {

@@ -65,8 +65,8 @@ impl Counted {
     fn start() -> Self {
         let folder = folder();
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
-        config.admission.per_address = 1000;
-        config.admission.startups = 1000;
+        config.connections_per_address = 1000;
+        config.startups = 1000;
         config.bytes_per_second = 1 << 20;
         config.silence = Duration::from_secs(3);
         // This test is not about clients that never read.

@@ -247,7 +247,7 @@ impl Shared {
         is_remembered: bool,
     ) -> Result<Option<CountedVisit>, (String, Departure)> {
         let Some(rooms) = &self.cluster else { return Ok(None) };
-        let limits = self.config.get().admission;
+        let limits = self.config.get().admission();
         let new_visit = NewVisit {
             key,
             per_key: limits.per_key,

@@ -495,7 +495,7 @@ impl Driver {
             return self.notify(SessionEvent::Named(Ok(login::line(&name))));
         }
         let (key, account) = (self.key, self.account.clone());
-        let origin = Origin::new(self.address, self.shared.config.get().accounts);
+        let origin = Origin::new(self.address, self.shared.config.get().accounts());
         let known = self.shared.known.clone();
         let is_accepted = self.call_store(move |store| {
             let result = login::choose_name(store, &origin, key, account, &name);

@@ -98,7 +98,7 @@ impl Drop for GameServer {
 impl Running {
     fn start(folder: &std::path::Path) -> Self {
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
-        config.admission.per_address = 1000;
+        config.connections_per_address = 1000;
         config.drain = Duration::from_secs(4);
         let key = HostKey::open(folder).unwrap();
         let store = HostStore::open(folder).unwrap();

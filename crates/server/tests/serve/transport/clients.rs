@@ -120,7 +120,7 @@ fn commands_and_subsystems_are_refused() {
 
 #[test]
 fn a_visitor_over_the_address_limit_sees_the_limit() {
-    let house = House::open_with(|config| config.admission.per_address = 2);
+    let house = House::open_with(|config| config.connections_per_address = 2);
     let players = [(); 2].map(|()| house.visitor(&[]));
     for _ in 0..5 {
         let (_, error, status) = house.run(&[], &["-tt", "ann@127.0.0.1"]);
@@ -137,7 +137,7 @@ fn a_visitor_over_the_address_limit_sees_the_limit() {
 /// The visitor's `ssh` waits for a passphrase meanwhile.
 #[test]
 fn a_displaced_visitor_is_told_why() {
-    let house = House::open_with(|config| config.admission.startups = 1);
+    let house = House::open_with(|config| config.startups = 1);
     let key = house.user_key("locked", "");
     let mut keygen = Command::new("ssh-keygen");
     let locked = keygen.args(["-q", "-p", "-P", "", "-N", "secret", "-f", &key]).output();

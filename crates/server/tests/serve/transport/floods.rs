@@ -73,7 +73,7 @@ fn a_client_that_reads_nothing_is_disconnected() {
 /// In a flood of refused connections, few clients are told the reason, and all are closed.
 #[test]
 fn few_clients_in_a_refused_flood_are_told_the_reason() {
-    let house = House::open_with(|config| config.admission.per_address = 1);
+    let house = House::open_with(|config| config.connections_per_address = 1);
     let player = house.visitor(&[]);
     let told = (0..200).filter(|_| {
         let mut stream = TcpStream::connect(house.address).unwrap();

@@ -42,7 +42,7 @@ impl House {
     pub(crate) fn open_with(change: impl FnOnce(&mut Config)) -> Self {
         let folder = folder();
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
-        config.admission.per_address = 1000;
+        config.connections_per_address = 1000;
         change(&mut config);
         let key = HostKey::open(&folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();

@@ -72,7 +72,7 @@ fn answer_beside(house: &House, bytes: &[u8]) -> String {
 #[test]
 fn visitors_behind_a_proxy_count_by_their_own_addresses() {
     const REFUSED: &str = "at most 1 connection from one address";
-    let house = behind_a_proxy(|config| config.admission.per_address = 1);
+    let house = behind_a_proxy(|config| config.connections_per_address = 1);
     Runtime::new().unwrap().block_on(async {
         let first = guest(&house, PROXY, &text("192.0.2.7")).await;
         let second = guest(&house, PROXY, &binary([192, 0, 2, 8])).await;
@@ -87,7 +87,7 @@ fn visitors_behind_a_proxy_count_by_their_own_addresses() {
 
 #[test]
 fn only_a_proxy_can_name_an_address() {
-    let house = behind_a_proxy(|config| config.admission.per_address = 1);
+    let house = behind_a_proxy(|config| config.connections_per_address = 1);
     let _player = house.visitor(&[]);
     let told = answer(&house, [127, 0, 0, 1], &text("192.0.2.7"));
     assert!(told.contains("at most 1 connection from one address"), "{told}");
@@ -96,8 +96,8 @@ fn only_a_proxy_can_name_an_address() {
 #[test]
 fn missing_headers_and_health_checks_do_not_lock_out_a_proxy() {
     let house = behind_a_proxy(|config| {
-        config.admission.failures = 2;
-        config.admission.forget = Duration::from_hours(1);
+        config.failures = 2;
+        config.forget = Duration::from_hours(1);
     });
     let told = answer(&house, PROXY, b"SSH-2.0-test\r\n");
     assert!(told.contains("expects a PROXY header from your address"), "{told}");
@@ -119,7 +119,7 @@ fn missing_headers_and_health_checks_do_not_lock_out_a_proxy() {
 #[test]
 fn connections_whose_headers_do_not_arrive_are_limited_and_closed() {
     let house = behind_a_proxy(|config| {
-        config.admission.startups = 2;
+        config.startups = 2;
         config.handshake = Duration::from_secs(2);
     });
     let slow = answer(&house, PROXY, b"PROXY TCP4 192.0.2.7");

@@ -100,7 +100,7 @@ fn garbage_is_refused() {
     let house = House::open_with(|config| {
         config.handshake = Duration::from_secs(2);
         // Otherwise, after four failures, an address is refused at random.
-        config.admission.failures = 1000;
+        config.failures = 1000;
     });
     let mut random = SplitMix64::new(1);
     house.beside_another(|| {
@@ -118,7 +118,7 @@ fn garbage_is_refused() {
 
 #[test]
 fn an_oversized_packet_is_refused() {
-    let house = House::open_with(|config| config.admission.failures = 1000);
+    let house = House::open_with(|config| config.failures = 1000);
     house.beside_another(|| {
         for length in [u32::MAX, 1 << 30, 300_000, 40_000, 0, 1] {
             let mut stream = connect(&house);
