@@ -15,6 +15,9 @@
 //! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
 //! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
+//! On a steady link, only every third frame asks for an answer. A frame without a request counts as in flight until its
+//! answer would have arrived at the latest. Each answer costs a server a packet, a decryption and a turn of the session.
+//!
 //! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The link
 //! limits the rate, and so may a [budget]. If frames still exceed the budget, there are fewer of them.
 //!
@@ -59,6 +62,8 @@ pub(crate) struct Flow {
     has_input: bool,
     /// The number of removed requests whose answers may still arrive.
     forgotten: usize,
+    /// The number of frames since the last request.
+    unasked: usize,
     is_remote: bool,
     link: Link,
     /// The estimated number of bytes that an exact frame of motion would take.
@@ -71,7 +76,7 @@ pub(crate) struct Flow {
 /// A request to the terminal, after a frame or alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
-    /// No request, because the terminal does not answer.
+    /// No request, because the terminal does not answer, or need not answer on a steady link.
     Nothing,
     /// A request for the terminal's status.
     Status,
@@ -114,6 +119,8 @@ const TIMEOUT_FACTOR: u32 = 4;
 const MIN_RATE: f64 = 16_000.0;
 /// A terminal counts as silent after this number of consecutive timeouts, with keys between them.
 const MAX_TIMEOUTS: u32 = 5;
+/// The most frames in a row without a request.
+const MAX_UNASKED: usize = 2;
 /// The time between two fences.
 const FENCE_INTERVAL: Duration = Duration::from_secs(5);
 
@@ -136,13 +143,16 @@ impl Flow {
         Self { is_remote, ..Self::default() }
     }
 
-    /// The request to send after the next frame.
-    pub(crate) fn request(&self, now: Duration) -> Request {
+    /// The request to send after the next frame, which has this number of bytes.
+    pub(crate) fn request(&self, now: Duration, bytes: usize) -> Request {
         match self.answers {
             Answers::Never => Request::Nothing,
             Answers::Given if self.timeouts > 0 => Request::Fence,
             Answers::Given if now.saturating_sub(self.fenced_at) >= FENCE_INTERVAL => {
                 Request::Fence
+            }
+            Answers::Given if self.unasked < MAX_UNASKED && self.link.is_steady(bytes) => {
+                Request::Nothing
             }
             Answers::Unknown | Answers::Given => Request::Status,
         }
@@ -165,8 +175,14 @@ impl Flow {
         if let Some(budget) = &mut self.budget {
             budget.sent(now, bytes);
         }
+        self.advance(now);
         self.in_flight.push_back(Sent { at: now, bytes, request });
-        self.active_at = now;
+        if request == Request::Nothing {
+            self.unasked += 1;
+        } else {
+            self.unasked = 0;
+            self.active_at = now;
+        }
         self.has_input = false;
     }
 
@@ -178,7 +194,7 @@ impl Flow {
         self.answers = Answers::Given;
         self.timeouts = 0;
         // The answers to these fences are lost: they would have arrived before this one.
-        while self.in_flight.front().is_some_and(|sent| sent.request == Request::Fence) {
+        while self.in_flight.front().is_some_and(|sent| sent.request != Request::Status) {
             self.in_flight.pop_front();
         }
         let Some(&sent) = self.in_flight.front() else { return };
@@ -254,13 +270,40 @@ impl Flow {
         self.timeouts = 0;
     }
 
+    /// Removes the frames that have arrived by `now`, although no request followed them.
+    pub(crate) fn advance(&mut self, now: Duration) {
+        while self.answers == Answers::Given
+            && self.in_flight.front().is_some_and(|sent| self.has_arrived(sent, now))
+        {
+            self.in_flight.pop_front();
+        }
+    }
+
+    /// Returns true if no answer to a frame can be expected, and it has arrived by `now`.
+    fn has_arrived(&self, sent: &Sent, now: Duration) -> bool {
+        self.arrives_at(sent).is_some_and(|time| time <= now)
+    }
+
+    /// The latest time at which a frame without a request arrives.
+    fn arrives_at(&self, sent: &Sent) -> Option<Duration> {
+        let is_unasked = sent.request == Request::Nothing && self.answers == Answers::Given;
+        self.link.latest_answer(sent.at, sent.bytes).filter(|_| is_unasked)
+    }
+
+    /// The time from which on [`Flow::may_send`] is true if no event comes before; `None` for never.
+    pub(crate) fn ready_at(&self, now: Duration) -> Option<Duration> {
+        let arrivals = self.in_flight.iter().filter_map(|sent| self.arrives_at(sent));
+        let mut times = [now].into_iter().chain(arrivals.map(|time| time.max(now)));
+        times.find(|&time| self.may_send(time))
+    }
+
     /// Returns true if a frame that is sent now would not wait behind others.
     pub(crate) fn may_send(&self, now: Duration) -> bool {
         match self.answers {
             Answers::Never => self.in_flight.is_empty(),
             Answers::Unknown => self.frames_in_flight() < FIRST_FRAMES || self.is_timed_out(now),
             Answers::Given if self.timeouts > 0 => self.has_input && self.is_timed_out(now),
-            Answers::Given => self.has_room() && !self.is_late(now) && !self.is_timed_out(now),
+            Answers::Given => self.has_room(now) && !self.is_late(now) && !self.is_timed_out(now),
         }
     }
 
@@ -288,7 +331,11 @@ impl Flow {
 
     /// Returns true while answers may arrive.
     pub(crate) fn awaits_answers(&self) -> bool {
-        self.answers != Answers::Never && !self.in_flight.is_empty()
+        self.answers != Answers::Never && self.oldest_request().is_some()
+    }
+
+    fn oldest_request(&self) -> Option<&Sent> {
+        self.in_flight.iter().find(|sent| sent.request != Request::Nothing)
     }
 
     /// The number of frames sent.
@@ -351,9 +398,10 @@ impl Flow {
         self.in_flight.iter().map(|sent| sent.bytes).sum()
     }
 
-    fn has_room(&self) -> bool {
-        let frames = self.frames_in_flight();
-        let occupied = self.link.time_for(self.bytes_in_flight());
+    fn has_room(&self, now: Duration) -> bool {
+        let in_flight = self.in_flight.iter().filter(|sent| !self.has_arrived(sent, now));
+        let frames = in_flight.clone().filter(|sent| sent.bytes > 0).count();
+        let occupied = self.link.time_for(in_flight.map(|sent| sent.bytes).sum());
         let round_trip = self.link.expected_round_trip();
         let longest = round_trip + self.link.jitter() + self.link.jitter_range();
         let needed = MAX_FRAMES_PER_SECOND * longest.as_secs_f64();
@@ -362,7 +410,7 @@ impl Flow {
 
     /// Returns true if the answer to the oldest frame should have arrived.
     fn is_late(&self, now: Duration) -> bool {
-        let oldest = self.in_flight.front();
+        let oldest = self.oldest_request();
         let latest = oldest.and_then(|sent| self.link.latest_answer(sent.at, sent.bytes));
         latest.is_some_and(|latest| latest < now)
     }
@@ -409,6 +457,8 @@ pub(crate) struct Link {
     /// The latest frame, if it took far longer than expected.
     outlier: Option<Transfer>,
     stalled_at: Option<Duration>,
+    /// The number of answers since the last outlier.
+    steady_answers: u32,
 }
 
 /// A frame, and the time for which it occupied the link.
@@ -432,6 +482,11 @@ const STALL_SECONDS: f64 = 1.0;
 /// instead of 20. Rejected: the whole margin (the line through the origin). Jitter then counts as slowness: at 1 Mbit/s
 /// with 0 to 50 ms of jitter, the largest error of frames is 41 instead of 21.
 const SLOPE_MARGIN: f64 = 1.5;
+/// The number of answers without an outlier after which a link is steady.
+const STEADY_ANSWERS: u32 = 20;
+/// The longest time for which a frame occupies a steady link, so that frames do not meet, and its most jitter.
+const STEADY_TRANSFER: Duration = Duration::from_millis(10);
+const STEADY_JITTER: Duration = Duration::from_millis(50);
 /// An answer is late after this number of standard deviations: Jacobson and Karels, RFC 6298.
 const LATE_DEVIATIONS: f64 = 4.0;
 /// The resolution of the times of answers.
@@ -473,9 +528,11 @@ impl Link {
         }
         let seconds = time.max(MIN_TRANSFER).as_secs_f64();
         let transfer = Transfer { bytes: bytes as f64, seconds };
+        self.steady_answers = self.steady_answers.saturating_add(1);
         match self.outlier.take() {
             None if self.is_outlier(transfer) => {
                 self.outlier = Some(transfer);
+                self.steady_answers = 0;
                 if seconds >= STALL_SECONDS {
                     self.stalled_at = Some(now);
                 }
@@ -499,6 +556,13 @@ impl Link {
     /// Returns true if the link has carried a frame.
     pub(crate) fn is_known(&self) -> bool {
         self.fit.mean().is_some()
+    }
+
+    /// Returns true if the time at which a frame of this number of bytes arrives is known well enough.
+    fn is_steady(&self, bytes: usize) -> bool {
+        self.steady_answers >= STEADY_ANSWERS
+            && self.time_for(bytes) <= STEADY_TRANSFER
+            && self.jitter_range() <= STEADY_JITTER
     }
 
     /// Returns true if an answer can arrive after so short a time.

@@ -258,6 +258,7 @@ impl Protocol {
     /// Interprets bytes from the terminal. They may be cut at any place.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) {
         self.received_at = now;
+        self.flow.advance(now);
         let mut inputs = Vec::new();
         self.decoder.feed(bytes, |input| inputs.push(input));
         for input in inputs {
@@ -521,6 +522,11 @@ impl Protocol {
         self.output.is_empty() && self.flow.may_send(now)
     }
 
+    /// The time from which on [`Protocol::is_ready`] is true if nothing arrives before. `None` means never.
+    pub fn ready_at(&self, now: Duration) -> Option<Duration> {
+        self.flow.ready_at(now).filter(|_| self.output.is_empty())
+    }
+
     /// Sets the fidelity of frames of motion. `None` means the best fidelity that the link allows.
     pub fn set_fidelity(&mut self, fidelity: Option<Fidelity>) {
         self.options.fidelity = fidelity;
@@ -637,7 +643,7 @@ impl Protocol {
 
     /// Adds the request after a frame of this number of bytes.
     fn queue_request(&mut self, bytes: usize, now: Duration) {
-        let request = self.flow.request(now);
+        let request = self.flow.request(now, bytes);
         match request {
             Request::Nothing => {}
             Request::Status => self.output.extend_from_slice(sequence::QUERY_STATUS.as_bytes()),

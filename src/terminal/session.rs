@@ -303,7 +303,9 @@ impl Session {
     /// The time at which to check again whether a frame may be sent, even without an event before. `None`
     /// means never.
     fn opens_at(&self) -> Option<Duration> {
-        if self.guard.has_written_all() { self.protocol.opens_at() } else { None }
+        let ready_at = self.protocol.ready_at(self.guard.now());
+        let times = self.protocol.opens_at().into_iter().chain(ready_at);
+        if self.guard.has_written_all() { times.min() } else { None }
     }
 
     /// Sends a fence alone after a timeout, to find out whether the terminal is still there.

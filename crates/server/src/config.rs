@@ -442,7 +442,9 @@ fn list<'de, T, D: Deserializer<'de>>(
     let texts = Vec::<String>::deserialize(from)?;
     if texts.len() > most {
         let count = texts.len();
-        return Err(D::Error::custom(format!("the list has {count} entries, and the limit is {most}")));
+        return Err(D::Error::custom(format!(
+            "the list has {count} entries, and the limit is {most}"
+        )));
     }
     texts.iter().map(|text| parsed(text, parse, what)).collect()
 }

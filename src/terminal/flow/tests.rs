@@ -31,7 +31,7 @@ fn answered_once() -> Flow {
 }
 
 fn send(flow: &mut Flow, now: Duration, bytes: usize) {
-    let request = flow.request(now);
+    let request = flow.request(now, bytes);
     flow.sent(now, bytes, request);
 }
 
@@ -77,7 +77,7 @@ fn a_key_wakes_a_terminal_that_has_stopped_answering() {
     send(&mut flow, SECOND, 1000);
     let mut now = SECOND;
     let mut frames = Vec::new();
-    while now < 60 * SECOND && flow.request(now) != Request::Nothing {
+    while now < 60 * SECOND && flow.request(now, 100) != Request::Nothing {
         if flow.probe_is_due(now) {
             flow.sent(now, 0, Request::Fence);
         }
@@ -93,7 +93,7 @@ fn a_key_wakes_a_terminal_that_has_stopped_answering() {
     flow.written(now);
     assert!(flow.may_send(now));
     flow.answered(now);
-    assert_ne!(flow.request(now), Request::Nothing, "it answers after all");
+    assert_ne!(flow.request(now, 100), Request::Nothing, "it answers after all");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_lost_answer_shifts_the_others_until_the_next_fence() {
     // The first answer is lost. After it, one frame is always in flight.
     for _ in 0..100 {
         now += 60 * MILLISECOND;
-        let request = flow.request(now);
+        let request = flow.request(now, 100);
         flow.sent(now, 1000, request);
         requests.push_back(request);
         now += 100 * MILLISECOND;
@@ -125,7 +125,7 @@ fn a_terminal_that_ignores_requests_is_not_asked_again() {
     flow.sent(Duration::ZERO, 0, Request::Status);
     flow.sent(Duration::ZERO, 0, Request::Fence);
     flow.fence_answered(MILLISECOND);
-    assert_eq!(flow.request(MILLISECOND), Request::Nothing);
+    assert_eq!(flow.request(MILLISECOND, 100), Request::Nothing);
     assert!(flow.may_send(MILLISECOND));
     send(&mut flow, MILLISECOND, 1000);
     assert!(!flow.may_send(1000 * MILLISECOND), "the system has not taken the frame yet");
@@ -148,7 +148,7 @@ fn a_silent_terminal_is_asked_once_or_twice() {
     let opens_at = flow.opens_at().unwrap();
     assert!(flow.may_send(opens_at));
     send(&mut flow, opens_at, 100);
-    assert_eq!(flow.request(opens_at), Request::Nothing);
+    assert_eq!(flow.request(opens_at, 100), Request::Nothing);
 }
 
 #[test]

@@ -27,14 +27,15 @@ impl Handler for Anyone {
 }
 
 /// Queries, and the answers of a terminal with true colours.
-const ANSWERS: [(&[u8], &[u8]); 4] = [
-    (STATUS, b"\x1b[0n"),
+const ANSWERS: [(&[u8], &[u8]); 5] = [
+    (FRAME_END, b""),
+    (b"\x1b[5n", b"\x1b[0n"),
     (b"\x1b[c", b"\x1b[?62;22c"),
     (b"\x1b[6n", b"\x1b[1;1R"),
     (b"\x1b[?u", b""),
 ];
-/// The query that follows each frame.
-const STATUS: &[u8] = b"\x1b[5n";
+/// The end of each frame.
+const FRAME_END: &[u8] = b"\x1b[?2026l";
 /// The interval at which the keyboard repeats a held key.
 const REPEAT: Duration = Duration::from_millis(33);
 /// The key that lights the lamp, or puts it out.
@@ -156,7 +157,7 @@ impl Client {
             read += start;
             let rest = &self.unread[read..];
             let Some((query, answer)) = ANSWERS.iter().find(|it| rest.starts_with(it.0)) else {
-                if rest.len() < 4 {
+                if rest.len() < FRAME_END.len() {
                     break;
                 }
                 read += 1;
@@ -166,7 +167,7 @@ impl Client {
                 self.answer_at = now + self.delay;
             }
             self.answers.extend_from_slice(answer);
-            self.tally.frames += u64::from(is_counting && *query == STATUS);
+            self.tally.frames += u64::from(is_counting && *query == FRAME_END);
             read += query.len();
         }
         let kept =

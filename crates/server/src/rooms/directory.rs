@@ -12,11 +12,13 @@ mod recording;
 mod tests;
 
 use std::collections::BTreeMap;
+use std::future::poll_fn;
 use std::sync::{Arc, Mutex, Weak};
+use std::task::Poll;
 use std::time::Duration;
 
 use tokio::sync::watch;
-use tokio::time::timeout;
+use tokio::time::{Instant, timeout};
 
 pub(crate) use self::recording::{CAST, PublicRecording, RecordingBounds, Recordings};
 use crate::accounts::Day;
@@ -26,7 +28,9 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
-use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
+use crate::rooms::sequencer::{
+    CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer, StepAlarm,
+};
 pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use cellcaster::rng::SplitMix64;
@@ -413,7 +417,9 @@ pub(crate) struct Place {
     seat: Option<u64>,
     /// Whether dropping the place marks the member away instead of leaving.
     is_kept: bool,
-    closed: watch::Receiver<Option<Arc<str>>>,
+    /// The number of snapshots at the last [`Place::view`].
+    seen: u64,
+    alarm: Arc<StepAlarm>,
 }
 
 #[derive(Debug)]
@@ -428,12 +434,12 @@ impl Place {
     }
 
     fn new(room: RoomId, role: Occupant, interface: Arc<RoomInterface>) -> Self {
-        let closed = interface.closed();
         let seat = match role {
             Occupant::Member(member) => interface.inbox.seat_number(member),
             Occupant::Watcher(_) => None,
         };
-        Self { room, role, interface, seat, is_kept: false, closed }
+        let (seen, alarm) = (interface.snapshots(), interface.alarm());
+        Self { room, role, interface, seat, is_kept: false, seen, alarm }
     }
 
     pub(crate) fn room(&self) -> RoomId {
@@ -455,13 +461,13 @@ impl Place {
 
     /// The latest snapshot; `None` after a fault of the room.
     pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
-        self.closed.mark_unchanged();
+        self.seen = self.interface.snapshots();
         self.interface.view()
     }
 
     /// The sentence that says why the room is closed to this visitor, if it is.
     pub(crate) fn closed(&self) -> Option<Arc<str>> {
-        let closed = self.closed.borrow().clone();
+        let closed = self.interface.closed().cloned();
         closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()))
     }
 
@@ -477,10 +483,15 @@ impl Place {
         self.is_kept = is_kept;
     }
 
-    /// Waits for a snapshot newer than the last [`Place::view`], or for the room to close.
-    pub(crate) async fn changed(&mut self) {
-        // This cannot fail, because the place owns the sender.
-        _ = self.closed.changed().await;
+    /// Waits until `due` and for a snapshot newer than the last [`Place::view`], or for the room to close.
+    pub(crate) async fn changed(&self, due: Instant) {
+        poll_fn(|context| {
+            self.alarm.set(due, context.waker());
+            let is_newer = self.interface.snapshots() != self.seen && Instant::now() >= due;
+            let is_over = is_newer || self.interface.closed().is_some();
+            if is_over { Poll::Ready(()) } else { Poll::Pending }
+        })
+        .await;
     }
 
     /// Submits a command to the room.
@@ -500,6 +511,7 @@ impl Place {
 
 impl Drop for Place {
     fn drop(&mut self) {
+        self.interface.remove_alarm(&self.alarm);
         match &self.role {
             Occupant::Member(_) if self.is_dismissed() => {}
             Occupant::Member(member) if self.is_kept => self.interface.inbox.part(*member),

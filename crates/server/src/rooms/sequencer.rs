@@ -16,8 +16,9 @@ use std::any::Any;
 use std::collections::VecDeque;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
+use std::task::Waker;
 use std::time::Duration;
 
 use tokio::sync::{Notify, watch};
@@ -54,14 +55,37 @@ pub(crate) struct RoomInterface {
     /// drawing from it at that moment. Rejected: a `watch` channel of snapshots. The channel would keep the
     /// snapshot alive, and every step would copy the game.
     view: Mutex<Option<Arc<RoomView>>>,
-    /// The reason why the room is closed, if it is. Each new snapshot also marks this channel as changed.
-    closed: watch::Sender<Option<Arc<str>>>,
+    /// The number of snapshots.
+    snapshots: AtomicU64,
+    /// The reason why the room is closed, if it is.
+    closed: OnceLock<Arc<str>>,
+    alarms: Mutex<Vec<Arc<StepAlarm>>>,
     /// How long the room stays open without members; `None` if it never closes.
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
     /// The number of watchers.
     watchers: AtomicUsize,
     /// The invitation code of a private room.
     pub(crate) code: Option<RoomCode>,
+}
+
+/// Wakes a visitor's driver at the first step from a time on, so that the members of a room are drawn one after the
+/// other, while the room is in the processor's cache. Rejected: a timer for each driver, which then waited for the
+/// next step. Each frame took two turns of the driver.
+#[derive(Debug, Default)]
+pub(crate) struct StepAlarm(Mutex<Option<(Instant, Waker)>>);
+
+impl StepAlarm {
+    /// Wakes `waker` at the first step from `due` on, or when the room closes.
+    pub(crate) fn set(&self, due: Instant, waker: &Waker) {
+        locked(&self.0, |alarm| *alarm = Some((due, waker.clone())));
+    }
+
+    fn ring(&self, now: Instant, is_closed: bool) {
+        let due = locked(&self.0, |alarm| alarm.take_if(|(due, _)| is_closed || *due <= now));
+        if let Some((_, waker)) = due {
+            waker.wake();
+        }
+    }
 }
 
 /// A room with its log. Only the sequencer changes them.
@@ -174,7 +198,9 @@ impl RoomInterface {
         Arc::new(Self {
             inbox: Inbox::new(mode, room.next_member()),
             view: Mutex::new(Some(Arc::new(room.view()))),
-            closed: watch::Sender::default(),
+            snapshots: AtomicU64::new(0),
+            closed: OnceLock::new(),
+            alarms: Mutex::default(),
             closes_after: watch::Sender::new(closes_after),
             watchers: AtomicUsize::new(0),
             code,
@@ -184,9 +210,8 @@ impl RoomInterface {
     /// Closes the room for everybody. `sentence` states the reason.
     pub(crate) fn close(&self, sentence: &str) {
         self.inbox.close();
-        self.closed.send_modify(|closed| {
-            closed.get_or_insert_with(|| sentence.into());
-        });
+        self.closed.get_or_init(|| sentence.into());
+        self.ring_alarms();
     }
 
     /// The latest snapshot. During a step, waits for the next one. `None` after a fault.
@@ -194,9 +219,30 @@ impl RoomInterface {
         locked(&self.view, |view| view.clone())
     }
 
-    /// A channel that changes with each snapshot and when the room closes.
-    pub(crate) fn closed(&self) -> watch::Receiver<Option<Arc<str>>> {
-        self.closed.subscribe()
+    /// The number of snapshots up to now.
+    pub(crate) fn snapshots(&self) -> u64 {
+        self.snapshots.load(Ordering::Acquire)
+    }
+
+    /// The reason why the room is closed, if it is.
+    pub(crate) fn closed(&self) -> Option<&Arc<str>> {
+        self.closed.get()
+    }
+
+    /// A new alarm.
+    pub(crate) fn alarm(&self) -> Arc<StepAlarm> {
+        let alarm = Arc::<StepAlarm>::default();
+        locked(&self.alarms, |alarms| alarms.push(Arc::clone(&alarm)));
+        alarm
+    }
+
+    pub(crate) fn remove_alarm(&self, alarm: &Arc<StepAlarm>) {
+        locked(&self.alarms, |alarms| alarms.retain(|it| !Arc::ptr_eq(it, alarm)));
+    }
+
+    fn ring_alarms(&self) {
+        let (now, is_closed) = (Instant::now(), self.closed.get().is_some());
+        locked(&self.alarms, |alarms| alarms.iter().for_each(|it| it.ring(now, is_closed)));
     }
 
     /// Runs `step` and replaces the snapshot with its result.
@@ -207,7 +253,8 @@ impl RoomInterface {
             *shown = Some(Arc::new(view));
             result
         });
-        self.closed.send_modify(|_| {});
+        self.snapshots.fetch_add(1, Ordering::AcqRel);
+        self.ring_alarms();
         result
     }
 

@@ -53,6 +53,7 @@ use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::load::Rate;
 use crate::rooms::room::RoomView;
+use crate::rooms::sequencer::STEP;
 use crate::rooms::summary::RoomId;
 use cellcaster::app::parts::Meter;
 use cellcaster::game::Intents;
@@ -265,7 +266,10 @@ impl Session {
     /// The time of the next [`wake`](Self::wake), and the next check whether a frame [is due](Self::is_due),
     /// if nothing happens before; `None` for never.
     pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
-        self.due_at(room, now).into_iter().chain(self.acts_at()).min()
+        // In a room, the next step wakes the driver, unless the room stands still.
+        let grace = if self.ui.stay.is_some() { STEP } else { Duration::ZERO };
+        let due_at = self.due_at(room, now).map(|due| due + grace);
+        due_at.into_iter().chain(self.acts_at()).min()
     }
 
     /// The time of the next [`wake`](Self::wake) if nothing happens before; `None` for never.
@@ -277,8 +281,8 @@ impl Session {
     /// The earliest time at which a newer snapshot may lead to a frame; `None` until the terminal replies or
     /// [`wakes_at`](Self::wakes_at) is reached.
     pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
-        let looks = self.ending == Ending::Not && self.protocol.is_ready(now);
-        looks.then(|| self.next_frame(self.answers_key.is_some()))
+        let ready_at = self.protocol.ready_at(now).filter(|_| self.ending == Ending::Not)?;
+        Some(self.next_frame(self.answers_key.is_some()).max(ready_at))
     }
 
     /// Limits the bytes per second that frames take on the wire. `None` means no limit.
@@ -299,9 +303,7 @@ impl Session {
 
     /// The time of the next frame; `None` if the picture has not changed or the terminal is not ready.
     fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
-        if self.ending != Ending::Not || !self.protocol.is_ready(now) {
-            return None;
-        }
+        let ready_at = self.protocol.ready_at(now).filter(|_| self.ending == Ending::Not)?;
         let stale_from = self.stale_from(room);
         if stale_from.is_none() && self.protocol.is_settled() {
             return None;
@@ -311,7 +313,7 @@ impl Session {
         let from = stale_from.unwrap_or_default();
         let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
-        Some(self.next_frame(is_prompt).max(from).max(now))
+        Some(self.next_frame(is_prompt).max(from).max(ready_at))
     }
 
     /// The time from which the picture on the screen is out of date; `None` if it is up to date.

@@ -129,7 +129,8 @@ impl Gate {
     /// # Errors
     /// If the gate refuses the connection: the sentence for its client, or `None` to close it silently.
     pub(crate) fn admit(&self, peer: SocketAddr) -> Result<AdmittedConnection, Option<String>> {
-        let (limits, now, address) = (self.config.get().admission(), self.begun.elapsed(), peer.ip());
+        let (limits, now, address) =
+            (self.config.get().admission(), self.begun.elapsed(), peer.ip());
         locked(&self.state, |state| {
             state.admission.set_limits(limits);
             match state.admission.arrive(address, now, &mut state.chance) {

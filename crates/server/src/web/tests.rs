@@ -321,7 +321,7 @@ fn a_live_picture_equals_the_snapshot_of_its_step() {
         let compare = async {
             while compared < 8 {
                 tokio::select! {
-                    () = ada.changed() => {
+                    () = ada.changed(Instant::now()) => {
                         let view = ada.view().unwrap();
                         views.insert(view.step as u32, view);
                     }

@@ -122,7 +122,7 @@ impl Simulation {
 
     /// Sends a frame of this number of bytes, and a request after it.
     fn send(&mut self, number: usize, bytes: f64, fidelity: Fidelity) {
-        let request = self.players[number].flow.request(self.now);
+        let request = self.players[number].flow.request(self.now, bytes as usize);
         self.put(number, bytes, fidelity, request);
     }
 
@@ -250,6 +250,7 @@ impl Player {
     }
 
     pub(crate) fn receive(&mut self, now: Duration, upward: Upward) {
+        self.flow.advance(now);
         match upward {
             Upward::Answer(Request::Status) => self.flow.answered(now),
             Upward::Answer(Request::Fence) => self.flow.fence_answered(now),

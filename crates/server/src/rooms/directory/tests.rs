@@ -69,7 +69,7 @@ async fn end_of(place: &mut Place) -> Arc<str> {
         if let Some(sentence) = place.closed() {
             return sentence;
         }
-        place.changed().await;
+        place.changed(Instant::now()).await;
     }
 }
 
@@ -95,7 +95,7 @@ fn a_panic_ends_only_its_own_room() {
         listed(&rooms, &[1]).await;
         assert_eq!(rooms.enter(RoomId(2), &name("Ada")).err(), Some(RoomRefusal::Gone));
         let before = ben.view().unwrap().step;
-        ben.changed().await;
+        ben.changed(Instant::now()).await;
         assert!(ben.view().unwrap().step > before);
         assert_eq!(
             rooms.open(&room_request(Mode::Tag), false, &name("Ada")).unwrap().room(),
@@ -115,7 +115,7 @@ fn a_standing_room_that_panics_is_reopened() {
         end_of(&mut ada).await;
         listed(&rooms, &[2]).await;
         let mut ada = rooms.enter(RoomId(2), &name("Ada")).unwrap();
-        ada.changed().await;
+        ada.changed(Instant::now()).await;
         assert_eq!(ada.closed(), None);
     });
 }

@@ -15,7 +15,7 @@ use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
 use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 use tokio::task::{block_in_place, spawn_blocking};
-use tokio::time::sleep_until;
+use tokio::time::{Instant, sleep_until};
 
 use super::login::{self, AccountData};
 use super::talk::{REPORT_BURST, REPORT_RATE, TALK_BURST, TALK_RATE};
@@ -108,6 +108,8 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(250);
 /// The interval at which a driver wakes while it sends, or while it is in a room but does not wait for
 /// snapshots. The visitor may become idle and the room may close even if nothing is read or acknowledged.
 const WAKE_INTERVAL: Duration = Duration::from_secs(1);
+/// The time after which a driver no longer waits for a step of the room.
+const PATIENCE: Duration = Duration::from_millis(50);
 /// The maximum number of bytes queued behind a frame. They are only queries, so a few hundred are usual.
 const MAX_WAITING_BYTES: usize = 64 << 10;
 /// The widest message of the day, in columns.
@@ -346,21 +348,20 @@ impl Driver {
     ) -> DriverEvent {
         let is_sending = self.is_sending;
         let now = self.shared.now();
-        let is_free = !is_sending && self.place.is_some();
-        let looks_at = self.session.looks_at(now).filter(|_| is_free);
-        let looks = looks_at.is_some_and(|time| time <= now);
-        let quiet_end = looks_at.filter(|_| !looks);
-        // In the other states, the driver is told of every change.
-        let is_patient = is_sending || self.place.is_some() && !looks;
-        let patience = is_patient.then_some(now + WAKE_INTERVAL);
         let drains_at = is_sending.then(|| self.session.needs_drain_at());
         let awaits_drain = drains_at.is_some_and(|time| time <= now);
         let drains_at = drains_at.filter(|_| !awaits_drain);
         let acts_at = drains_at.and_then(|_| self.after_wake(self.session.acts_at()));
-        let is_looking = !is_sending && self.place.is_none();
+        // The step of the room from which the next frame is drawn. It comes late only if the room stands still.
+        let looks_at = if is_sending { drains_at } else { self.session.looks_at(now) };
+        let looks_at = looks_at.filter(|_| self.place.is_some());
+        let drain_check = drains_at.map(|time| time + PATIENCE);
+        // Outside of a room, the driver is told of every change.
+        let is_patient = is_sending || self.place.is_some();
+        let patience = is_patient.then_some(now + WAKE_INTERVAL);
         let picture =
-            self.session.picture_time().filter(|_| is_looking).map(|interval| now + interval);
-        let times = [wakes_at, quiet_end, drains_at, acts_at, self.ends_at, patience, picture];
+            self.session.picture_time().filter(|_| !is_patient).map(|interval| now + interval);
+        let times = [wakes_at, drain_check, acts_at, self.ends_at, patience, picture];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
@@ -370,7 +371,7 @@ impl Driver {
             () = outbox.drained(), if awaits_drain => DriverEvent::Drained,
             Some(reply) = replied.recv() => DriverEvent::Replied(reply),
             notice = presence.notice() => DriverEvent::Notice(notice),
-            () = changed(place.as_mut()), if looks => DriverEvent::Time,
+            () = step(place.as_ref(), looks_at.map(|time| begun + time)) => DriverEvent::Time,
             Ok(()) = rooms.changed(), if *in_lobby => DriverEvent::RoomsChanged,
             Ok(()) = onlookers.changed(), if *in_lobby => DriverEvent::OnlookersChanged,
             () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => DriverEvent::Time,
@@ -833,10 +834,10 @@ fn host_name(name: &str) -> Line {
     line.expect("printable characters")
 }
 
-/// Waits for a newer snapshot.
-async fn changed(place: Option<&mut Place>) {
-    match place {
-        Some(place) => place.changed().await,
+/// Waits until `due` and for a newer snapshot.
+async fn step(place: Option<&Place>, due: Option<Instant>) {
+    match place.zip(due) {
+        Some((place, due)) => place.changed(due).await,
         None => std::future::pending().await,
     }
 }

@@ -24,6 +24,8 @@ pub(crate) struct Pace {
     paid_at: Duration,
 }
 
+/// Half of a step. A frame is drawn right after a step, up to this time early or late.
+const HALF_STEP: Duration = Duration::from_micros(8_333);
 /// The shortest interval between two frames.
 const MIN_FRAME_INTERVAL: Duration = Duration::from_millis(16);
 
@@ -49,14 +51,14 @@ impl Pace {
             let credit = self.paid_at.saturating_sub(self.frame_time);
             credit.max(drawn_at + MIN_FRAME_INTERVAL.min(self.frame_time))
         } else {
-            self.paid_at.max(drawn_at + self.frame_time)
+            self.paid_at.max(drawn_at + self.frame_time).saturating_sub(HALF_STEP)
         }
     }
 
     /// Records that a frame was drawn.
     pub(crate) fn drawn(&mut self, now: Duration) {
         self.drawn_at = Some(now);
-        self.paid_at = now.max(self.paid_at + self.frame_time);
+        self.paid_at = now.saturating_sub(HALF_STEP).max(self.paid_at + self.frame_time);
     }
 }
 
