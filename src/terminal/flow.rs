@@ -21,8 +21,9 @@
 //! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The link
 //! limits the rate, and so may a [budget]. If frames still exceed the budget, there are fewer of them.
 //!
-//! If the processor is short, frames are encoded greedily, which takes a third of the time and more bytes. If greedy
-//! frames would be coarser than low fidelity, they are searched all the same.
+//! If the processor is short, frames are encoded greedily, which takes a third of the time and more bytes. Rejected: a
+//! search if greedy frames would be coarser than low fidelity. On a busy server, each late answer then made frames more
+//! expensive.
 //!
 //! This module has neither a clock nor a terminal. Its functions receive events and their times, which are durations
 //! since any fixed moment.
@@ -134,8 +135,6 @@ const GREEDY_SAVING: f64 = 0.44;
 const DECAY: f64 = 0.99;
 /// The coarsest fidelity. Beyond it, fewer frames are better than coarser frames.
 const MIN_FIDELITY: Fidelity = Fidelity::new(48);
-/// The coarsest fidelity of greedy frames. Beyond it, the search is worth its time.
-const MIN_GREEDY_FIDELITY: Fidelity = Fidelity::LOW;
 
 impl Flow {
     /// Flow control for an unknown link. The link is a network if `is_remote`.
@@ -356,25 +355,16 @@ impl Flow {
     /// The fidelity at which the link and the budget carry the next frame in time, and the effort for it.
     pub(crate) fn quality(&self) -> (Fidelity, Effort) {
         if self.timeouts > 0 && self.answers == Answers::Given {
-            return (MIN_FIDELITY, Effort::Search);
+            return (MIN_FIDELITY, self.effort);
         }
         if self.is_remote && !self.link.is_known() {
-            return (FIRST_FIDELITY, self.effort_at(FIRST_FIDELITY));
+            return (FIRST_FIDELITY, self.effort);
         }
         let of_link =
             self.link.usable_rate().map(|rate| self.exact_bytes * FRAMES_PER_SECOND / rate);
         let of_budget = self.budget.map(|budget| budget.excess());
         let excess = of_link.into_iter().chain(of_budget).fold(0.0, f64::max);
-        let fidelity = fidelity_for(excess, self.effort);
-        match self.effort_at(fidelity) {
-            Effort::Greedy => (fidelity, Effort::Greedy),
-            Effort::Search => (fidelity_for(excess, Effort::Search), Effort::Search),
-        }
-    }
-
-    /// The effort for frames at `fidelity`.
-    pub(crate) fn effort_at(&self, fidelity: Fidelity) -> Effort {
-        if fidelity <= MIN_GREEDY_FIDELITY { self.effort } else { Effort::Search }
+        (fidelity_for(excess, self.effort), self.effort)
     }
 
     /// Records that a frame of motion was sent. The first frame does not count as motion, because it paints the whole

@@ -491,7 +491,7 @@ impl Protocol {
     /// [output](Protocol::output).
     pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) {
         let (fidelity, effort) = match self.options.fidelity {
-            Some(fidelity) => (fidelity, self.flow.effort_at(fidelity)),
+            Some(fidelity) => (fidelity, self.flow.quality().1),
             None => self.flow.quality(),
         };
         self.writer.set_fidelity(fidelity);

@@ -129,6 +129,8 @@ pub(crate) struct Governor {
     /// The rate in frames a second; [`f64::INFINITY`] for no limit.
     rate: f64,
     effort: Effort,
+    /// The mean busy share of about the last three seconds.
+    usual: f64,
 }
 
 /// The lowest rate, in frames a second.
@@ -144,23 +146,28 @@ const MAX_RISE: f64 = 1.05;
 const LATE: Duration = Duration::from_micros(16_667);
 /// The busy share from which frames are encoded greedily.
 const GREEDY_FROM: f64 = 0.6;
-/// The busy share below which they are encoded by search again. A frame takes up to 2.5 times as long then, so the
-/// share stays below [`GREEDY_FROM`].
+/// The usual busy share below which they are encoded by search again. A frame takes up to 2.5 times as long then, so
+/// the share stays below [`GREEDY_FROM`]. Rejected: the share of the last quarter of a second. If another program takes
+/// the processor for so long, the share is low.
 const SEARCH_BELOW: f64 = 0.2;
+/// The weight of the latest sample in the usual share.
+const WEIGHT: f64 = 0.08;
 
 impl Governor {
     /// A governor without a limit.
     pub(crate) fn new() -> Self {
-        Self { rate: f64::INFINITY, effort: Effort::Search }
+        Self { rate: f64::INFINITY, effort: Effort::Search, usual: 0.0 }
     }
 
     /// The rate of each session. `most` is the configured limit in frames a second.
     pub(crate) fn decide(&mut self, Sample { busy, lateness }: Sample, most: u32) -> Rate {
         let most = f64::from(most).max(MIN_RATE);
         let is_full = busy >= FULL || lateness >= LATE;
+        self.usual += (busy - self.usual) * WEIGHT;
         if is_full || busy >= GREEDY_FROM {
             self.effort = Effort::Greedy;
-        } else if busy < SEARCH_BELOW {
+            self.usual = self.usual.max(GREEDY_FROM);
+        } else if self.usual < SEARCH_BELOW {
             self.effort = Effort::Search;
         }
         let factor = if is_full { 0.8 } else { (TARGET / busy).min(MAX_RISE) };

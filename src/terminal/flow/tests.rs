@@ -359,20 +359,19 @@ fn a_budget_that_is_not_reached_changes_nothing() {
 }
 
 #[test]
-fn a_short_processor_makes_frames_greedy_only_where_they_can_be_fine() {
-    let efforts = [0, 200_000, 60_000, 10_000].map(|budget| {
+fn a_short_processor_makes_frames_greedy_on_any_budget() {
+    for budget in [0, 200_000, 60_000, 10_000] {
         let mut line = Simulation::of_one(MILLISECOND, UNLIMITED, Frames::CITADEL);
         line.players[0].flow.set_budget(NonZero::new(budget));
         line.walk(5 * SECOND);
         let flow = &mut line.players[0].flow;
-        let (finest, effort) = flow.quality();
+        let (searched, effort) = flow.quality();
         assert_eq!(effort, Effort::Search);
         flow.set_effort(Effort::Greedy);
         let (fidelity, effort) = flow.quality();
-        assert!(effort == Effort::Greedy || fidelity == finest);
-        effort
-    });
-    assert_eq!(efforts, [Effort::Greedy, Effort::Greedy, Effort::Greedy, Effort::Search]);
+        // At the same tolerance, greedy frames have larger errors.
+        assert!(effort == Effort::Greedy && fidelity <= searched, "{budget}");
+    }
 }
 
 /// The frames in flight when a link becomes slow arrive before any new frame. Without waiting for late answers, and

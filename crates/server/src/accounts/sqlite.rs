@@ -7,9 +7,8 @@
 //!   whose method has not returned.
 //! - **Other processes can read at the same time**, such as `cellcaster-server scores`.
 //! - **The log stays short.** Its content is copied into the file at each start and end.
-//! - **A damaged file is kept.** [`open`] checks the whole file, and refuses a damaged one. If the caller accepts the
-//!   loss, `open` renames the file to `host.db.damaged-1`, with its log, copies all readable rows into a new file, and
-//!   says so in a sentence. It never does this unasked, because names would be free to take, and bans would be gone.
+//! - **A damaged file is left alone.** [`open`] checks the whole file. Rejected: copying the readable rows into a new
+//!   file. SQLite's own program does that better.
 //! - **A file of another version or of another program is left alone.**
 //! - **No other user of the machine can read it**: the file has the mode 0600, and a new folder has the mode 0700.
 //!
@@ -38,26 +37,15 @@ const LOGS: [&str; 2] = ["-wal", "-shm"];
 /// The most time to wait for another process.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Opens the file in `folder` to read and write. A damaged file is an error, and stays unchanged. If the loss is
-/// accepted, a damaged file is put aside, its readable rows are copied into a new file, and the returned sentence says
-/// so.
-pub(crate) fn open(
-    folder: &Path,
-    accepts_loss: bool,
-) -> Result<(Connection, Option<String>), StoreFailure> {
-    match open_sound(folder) {
-        Ok(connection) => Ok((connection, None)),
-        Err(OpenFault::Failure(failure)) => Err(failure),
-        Err(OpenFault::Damaged) if accepts_loss => {
-            replace(folder).map(|(connection, sentence)| (connection, Some(sentence)))
-        }
-        Err(OpenFault::Damaged) => Err(StoreFailure::new(format!(
-            "{} is damaged: restore a backup, or start once with --accept-empty, which renames the file to {} \
-             and keeps the rows that can be read",
+/// Opens the file in `folder` to read and write. A damaged file is an error, and stays unchanged.
+pub(crate) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
+    open_sound(folder).map_err(|fault| match fault {
+        OpenFault::Failure(failure) => failure,
+        OpenFault::Damaged => StoreFailure::new(format!(
+            "{} is damaged: restore a backup, or move the file and its logs away to begin without accounts and bans",
             printable_path(&folder.join(FILE)),
-            free_name(folder)
-        ))),
-    }
+        )),
+    })
 }
 
 /// Opens the file in `folder`, or creates it.
@@ -200,104 +188,10 @@ fn check_content(connection: &Connection) -> Result<(), OpenFault> {
     if answer == "ok" { Ok(()) } else { Err(OpenFault::Damaged) }
 }
 
-/// Puts a damaged file aside, and copies its readable rows into a new one. Returns the new one, and a sentence.
-fn replace(folder: &Path) -> Result<(Connection, String), StoreFailure> {
-    let file = folder.join(FILE);
-    let aside = put_aside(folder, &file).and_then(|aside| {
-        private::create_file(&file)?;
-        Ok(aside)
-    });
-    let aside = aside.map_err(|error| {
-        let file = printable_path(&file);
-        StoreFailure::new(format!("{file} is damaged and can't be renamed: {error}"))
-    })?;
-    let mut connection = connect(&file).map_err(|fault| fault.or_damage_of(&file))?;
-    let damaged = folder.join(&aside);
-    let is_lost = has_lost_its_content(&damaged);
-    let rows = if is_lost { 0 } else { salvage(&damaged, &mut connection)? };
-    let file = printable_path(&file);
-    let sentence = format!(
-        "{file} was damaged and is kept as {aside}; the new file has the {rows} rows that could be read"
-    );
-    Ok((connection, sentence))
-}
-
-/// Renames a damaged file and its logs, and returns the new name.
-fn put_aside(folder: &Path, file: &Path) -> io::Result<String> {
-    let name = free_name(folder);
-    for end in LOGS.into_iter().chain([""]) {
-        match fs::rename(with_end(file, end), with_end(&folder.join(&name), end)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            result => result?,
-        }
-    }
-    Ok(name)
-}
-
-/// A free name for a damaged file.
-fn free_name(folder: &Path) -> String {
-    let is_free = |name: &String| {
-        let file = folder.join(name);
-        LOGS.into_iter().chain([""]).all(|end| !with_end(&file, end).exists())
-    };
-    let mut names = (1_u32..).map(|number| format!("{FILE}.damaged-{number}"));
-    names.find(is_free).unwrap_or_default()
-}
-
 fn with_end(file: &Path, end: &str) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(end);
     name.into()
-}
-
-/// Copies the rows of a damaged file that can be read and satisfy the constraints of their table, and returns their
-/// number. Each table is read from both ends, so that a damaged page hides only its own rows.
-fn salvage(damaged: &Path, into: &mut Connection) -> rusqlite::Result<usize> {
-    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let Ok(from) = Connection::open_with_flags(damaged, flags) else { return Ok(0) };
-    let tables = tables(into)?;
-    let transaction = into.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    let mut rows = 0;
-    for (table, columns) in &tables {
-        for direction in ["ASC", "DESC"] {
-            let sql =
-                format!("SELECT {columns} FROM {table} NOT INDEXED ORDER BY rowid {direction}");
-            // Unreadable rows are lost, but the damaged file is kept.
-            _ = copy(&from, &sql, &transaction, (table, columns), &mut rows);
-        }
-    }
-    transaction.commit()?;
-    Ok(rows)
-}
-
-/// The tables and their columns. A table comes after the tables that it refers to.
-pub(crate) fn tables(connection: &Connection) -> rusqlite::Result<Vec<(String, String)>> {
-    let sql = "SELECT name, (SELECT group_concat(name, ', ') FROM pragma_table_info(tables.name)) \
-               FROM sqlite_schema AS tables WHERE type = 'table' AND name NOT LIKE 'sqlite_%' \
-               ORDER BY rowid";
-    let mut statement = connection.prepare(sql)?;
-    statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
-}
-
-/// Copies rows until one can't be read, and counts them.
-fn copy(
-    from: &Connection,
-    sql: &str,
-    into: &Connection,
-    (table, columns): (&str, &str),
-    rows: &mut usize,
-) -> rusqlite::Result<()> {
-    let places = vec!["?"; columns.split(',').count()].join(", ");
-    let insert = format!("INSERT OR IGNORE INTO {table} ({columns}) VALUES ({places})");
-    let mut insert = into.prepare(&insert)?;
-    let mut select = from.prepare(sql)?;
-    let mut found = select.query([])?;
-    while let Some(row) = found.next()? {
-        if let Ok(values) = values(row) {
-            *rows += insert.execute(params_from_iter(values)).unwrap_or_default();
-        }
-    }
-    Ok(())
 }
 
 /// The values of a row.

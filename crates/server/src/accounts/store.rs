@@ -91,17 +91,7 @@ impl HostStore {
     /// # Errors
     /// If the folder can't be used, or the file is damaged, of another version or of another program.
     pub fn open(folder: &Path) -> Result<Self, StoreFailure> {
-        Ok(Self { database: Database::File(sqlite::open(folder, false)?.0) })
-    }
-
-    /// Opens the store in `folder`. If its file is damaged, the store is a new one with the readable rows, and the
-    /// returned sentence says so.
-    ///
-    /// # Errors
-    /// If the folder can't be used, or the file is of another version or of another program.
-    pub fn open_or_salvage(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
-        let (connection, sentence) = sqlite::open(folder, true)?;
-        Ok((Self { database: Database::File(connection) }, sentence))
+        Ok(Self { database: Database::File(sqlite::open(folder)?) })
     }
 
     /// Opens the store in `folder` to read from it while a host uses it. `None` if there is none. All methods that

@@ -13,7 +13,6 @@ use super::HostStore;
 use super::StoreFailure;
 use super::sqlite::make_tables;
 #[cfg(feature = "fuzzing")]
-use super::sqlite::tables;
 use super::store::Database;
 
 impl HostStore {
@@ -86,4 +85,13 @@ impl HostStore {
         let values = values.iter().chain(std::iter::repeat(&Value::Null)).take(count);
         connection.execute(&sql, params_from_iter(values)).is_ok()
     }
+}
+
+/// The tables and their columns. A table comes after the tables that it refers to.
+fn tables(connection: &Connection) -> rusqlite::Result<Vec<(String, String)>> {
+    let sql = "SELECT name, (SELECT group_concat(name, ', ') FROM pragma_table_info(tables.name)) \
+               FROM sqlite_schema AS tables WHERE type = 'table' AND name NOT LIKE 'sqlite_%' \
+               ORDER BY rowid";
+    let mut statement = connection.prepare(sql)?;
+    statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
 }

@@ -57,9 +57,6 @@ pub(crate) struct Serve {
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) store: Store,
-    /// Start even if host.db is damaged: rename the file, and keep the rows that can be read, possibly none
-    #[arg(long)]
-    pub(crate) accept_empty: bool,
     /// The NATS servers through which this host shares its rooms with other hosts; the store must be a PostgreSQL
     /// database [default: `$CELLCASTER_CLUSTER`, or none]
     #[arg(long, value_name = "URL", value_parser = ClusterAddress::parse)]

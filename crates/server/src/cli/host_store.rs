@@ -45,15 +45,6 @@ impl StoreLocation {
         }
     }
 
-    /// Like [`open`](Self::open), but recovers the readable rows of a damaged file, and then also returns a sentence
-    /// about it.
-    pub(crate) fn open_or_salvage(&self) -> Result<(HostStore, Option<String>), StoreFailure> {
-        match self {
-            Self::Folder(folder) => HostStore::open_or_salvage(folder),
-            Self::Address(_) => Ok((self.open()?, None)),
-        }
-    }
-
     /// Opens an existing store to read from it.
     pub(crate) fn open_to_read(&self) -> Result<HostStore, Error> {
         let store = match self {

@@ -43,7 +43,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let database = StoreLocation::named(options.store.store.take());
     let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
     let cluster = cluster(&options, &database)?;
-    let store = open_store(&database, options.accept_empty)?;
+    let store = database.open().map_err(|failure| Error::mistake(failure.to_string()))?;
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
     let known = store.database().map(|database| warned(KnownPlayers::open(&folder, database)));
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
@@ -117,16 +117,6 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     // After a second signal, wait for nothing.
     runtime.shutdown_background();
     ended
-}
-
-/// Opens the store. A damaged store is an error unless the operator accepts that it may be empty.
-fn open_store(database: &StoreLocation, accepts_empty: bool) -> Result<HostStore, Error> {
-    let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
-    if accepts_empty {
-        database.open_or_salvage().map(warned).map_err(refused)
-    } else {
-        database.open().map_err(refused)
-    }
 }
 
 /// Returns the opened value, and warns first if it was damaged.

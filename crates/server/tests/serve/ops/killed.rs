@@ -111,7 +111,7 @@ fn a_stopped_server_leaves_everything_in_one_file() {
 }
 
 #[test]
-fn a_damaged_store_is_refused_until_the_operator_accepts_it() {
+fn a_damaged_store_is_refused_and_kept() {
     let mut running = Running::start("drain-seconds = 0\n", "text");
     running.signal(Signal::TERM);
     assert_eq!(running.wait_for_end(), Some(0));
@@ -122,15 +122,9 @@ fn a_damaged_store_is_refused_until_the_operator_accepts_it() {
     let refused = server(&serve).arg(&running.folder).output().unwrap();
     let said = String::from_utf8(refused.stderr).unwrap();
     assert_eq!((refused.status.code(), said.lines().count()), (Some(2), 1), "{said}");
-    let names = ["host.db is damaged", "--accept-empty", "host.db.damaged-1"];
+    let names = ["host.db is damaged", "a backup"];
     assert!(names.iter().all(|name| said.contains(name)), "{said}");
     assert_eq!(fs::read(&file).unwrap(), garbage);
     let banned = running.admin(&["ban", "ada"]);
     assert!(!banned.status.success() && fs::read(&file).unwrap() == garbage, "{banned:?}");
-
-    running.add_option("--accept-empty");
-    running.restart();
-    assert_eq!(running.admin_says(&["bans"]), "nobody is banned\n");
-    assert!(running.log().contains("kept as host.db.damaged-1"), "{}", running.log());
-    assert_eq!(fs::read(running.folder.join("host.db.damaged-1")).unwrap(), garbage);
 }
