@@ -9,8 +9,7 @@
 //! processor 1. Each client walks about in a room, answers the terminal's queries, counts frames
 //! and bytes, and measures the time from a key to the frame that answers it. `--silent N` adds
 //! connections that never read. `--server PATH` names the program; the default is
-//! `cellcaster-server` beside this one. `--sshd` measures OpenSSH's server, with one process of the
-//! game for each session, instead of `cellcaster-server`.
+//! `cellcaster-server` beside this one.
 //!
 //! `--browsers N` also measures before that, for as long, while N browsers watch the room with the most players. It
 //! prints the share of the processor that they add.
@@ -54,7 +53,7 @@ use browser::Browsers;
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
 use report::{Figures, Tally};
-use server::{ServerProcess, Usage, between, pin, start_sshd};
+use server::{ServerProcess, Usage, between, pin};
 
 /// The time between two connections.
 const PAUSE: Duration = Duration::from_millis(25);
@@ -116,9 +115,6 @@ fn play_all(plan: &Load) -> Result<Measured, Box<dyn std::error::Error>> {
 }
 
 fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> {
-    if plan.uses_sshd {
-        return Ok(vec![start_sshd(&plan.program())?]);
-    }
     let (program, options) = (plan.program(), plan.server_options());
     let (lines, connections) = (plan.configuration(), plan.sessions + plan.silent);
     let start = |number| ServerProcess::start(&program, &options, (&lines, connections), number);
@@ -134,9 +130,9 @@ async fn play(
     let empty = usage(servers);
     for (number, server) in (0..plan.sessions).zip(servers.iter().cycle()) {
         let counts = counts.clone();
-        let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay());
+        let (address, delay) = (server.address, plan.answer_delay());
         clients.spawn(async move {
-            let played = client::play(address, &access, number as u64, delay, &counts);
+            let played = client::play(address, number as u64, delay, &counts);
             played.await.map_err(|it| it.to_string())
         });
         sleep(PAUSE).await;
@@ -147,7 +143,7 @@ async fn play(
     let walking = usage(servers);
     let mut silent = Vec::new();
     for _ in 0..plan.silent {
-        silent.push(client::connect(servers[0].address, &servers[0].access, 0).await?);
+        silent.push(client::connect(servers[0].address, 0).await?);
     }
     let browsers = match plan.browsers {
         0 => None,

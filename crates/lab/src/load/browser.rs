@@ -42,7 +42,7 @@ pub(crate) async fn watch(
     (count, seconds): (usize, u64),
     server: &ServerProcess,
 ) -> Result<Browsers, Box<dyn Error>> {
-    let address = server.web.ok_or("this server has no page")?;
+    let address = server.web;
     let room = liveliest(address).await?;
     let bytes = Arc::<AtomicU64>::default();
     let mut browsers = JoinSet::new();

@@ -7,13 +7,12 @@ use std::time::Duration;
 
 use cellcaster::rng::SplitMix64;
 use russh::client::{self, Handle, Handler, Msg};
-use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key};
+use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelMsg, Error};
 use tokio::time::{Instant, sleep_until};
 
 use super::lamp::Lamp;
 use super::report::Tally;
-use super::server::Access;
 
 /// Accepts every server key.
 pub(crate) struct Anyone;
@@ -50,12 +49,11 @@ const IN_ROOM: &[u8] = b"map";
 /// Plays until the measurement has ended.
 pub(crate) async fn play(
     address: SocketAddr,
-    access: &Access,
     number: u64,
     delay: Duration,
     counts: &AtomicBool,
 ) -> Result<Tally, Error> {
-    let (_handle, channel) = connect(address, access, number).await?;
+    let (_handle, channel) = connect(address, number).await?;
     let mut client = Client {
         channel,
         chance: SplitMix64::new(number),
@@ -74,27 +72,15 @@ pub(crate) async fn play(
     Ok(client.tally)
 }
 
-/// Connects as the guest with this number, or with a key.
+/// Connects as the guest with this number.
 pub(crate) async fn connect(
     address: SocketAddr,
-    access: &Access,
     number: u64,
 ) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
     let config = client::Config { nodelay: true, ..client::Config::default() };
     let mut handle = client::connect(Arc::new(config), address, Anyone).await?;
-    match access {
-        Access::Guest => {
-            let user = format!("load{number}");
-            while !handle.authenticate_none(&user).await?.success() {}
-        }
-        Access::Key { user, file } => {
-            let key = Arc::new(load_secret_key(file, None)?);
-            let key = PrivateKeyWithHashAlg::new(key, None);
-            if !handle.authenticate_publickey(user, key).await?.success() {
-                return Err(Error::NotAuthenticated);
-            }
-        }
-    }
+    let user = format!("load{number}");
+    while !handle.authenticate_none(&user).await?.success() {}
     let channel = handle.channel_open_session().await?;
     channel.set_env(false, "COLORTERM", "truecolor").await?;
     channel.request_pty(false, "xterm-256color", 80, 24, 0, 0, &[]).await?;

@@ -17,15 +17,12 @@ pub(crate) struct Load {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) silent: usize,
     /// The number of browsers that watch a room first, for as long as the players are then measured alone
-    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["uses_sshd", "hosts", "table", "soak", "rooms"])]
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["hosts", "table", "soak", "rooms"])]
     pub(crate) browsers: usize,
-    /// Measure OpenSSH's server with a game for each session, instead of cellcaster-server
-    #[arg(long = "sshd")]
-    pub(crate) uses_sshd: bool,
     /// How long to measure, in seconds
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub(crate) seconds: u64,
-    /// The server's program, or the game's with --sshd [default: the one beside this program]
+    /// The server's program [default: the one beside this program]
     #[arg(long, value_name = "FILE")]
     server: Option<PathBuf>,
     /// How long each client waits before it answers a query of the server, in milliseconds
@@ -38,7 +35,7 @@ pub(crate) struct Load {
     #[arg(long = "bytes", value_name = "N")]
     bytes_per_second: Option<u32>,
     /// Print a table of the cost of 50 to 400 players at 20 frames a second, of 100 to 800 at 10, and of silent ones
-    #[arg(long, conflicts_with_all = ["sessions", "silent", "frames_per_second", "hosts", "rooms", "soak", "uses_sshd"])]
+    #[arg(long, conflicts_with_all = ["sessions", "silent", "frames_per_second", "hosts", "rooms", "soak"])]
     pub(crate) table: bool,
     /// Replace the marked table in this page, instead of printing it
     #[arg(long = "update", value_name = "FILE", requires = "table")]
@@ -74,8 +71,8 @@ impl Load {
 
     /// The program that is measured.
     pub(crate) fn program(&self) -> String {
-        let name = if self.uses_sshd { "cellcaster" } else { "cellcaster-server" };
-        let beside = || std::env::current_exe().unwrap_or_default().with_file_name(name);
+        let beside =
+            || std::env::current_exe().unwrap_or_default().with_file_name("cellcaster-server");
         self.server.clone().unwrap_or_else(beside).display().to_string()
     }
 

@@ -2,33 +2,23 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener};
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::thread::available_parallelism;
-use std::time::{Duration, Instant};
-use std::{fs, thread};
+use std::time::Duration;
 
 /// A server that runs until this value is dropped.
 pub(crate) struct ServerProcess {
     pub(crate) child: Child,
     pub(crate) folder: PathBuf,
     pub(crate) address: SocketAddr,
-    /// The addresses of its metrics and of its page; `None` if it has none.
-    pub(crate) metrics: Option<SocketAddr>,
-    pub(crate) web: Option<SocketAddr>,
-    pub(crate) access: Access,
-}
-
-/// The way in which a client logs in.
-#[derive(Clone, Debug)]
-pub(crate) enum Access {
-    /// As a guest.
-    Guest,
-    /// With the private key in a file.
-    Key { user: String, file: PathBuf },
+    /// The addresses of its metrics and of its page.
+    pub(crate) metrics: SocketAddr,
+    pub(crate) web: SocketAddr,
 }
 
 impl ServerProcess {
@@ -68,8 +58,7 @@ impl ServerProcess {
         BufReader::new(child.stdout.take().ok_or("no output")?).read_line(&mut line)?;
         let address = line.strip_prefix("Listening at ").and_then(|it| it.split(';').next());
         let address = address.ok_or("the server did not start to listen")?.parse()?;
-        let (metrics, web) = (Some(metrics), Some(web));
-        Ok(Self { child, folder, address, metrics, web, access: Access::Guest })
+        Ok(Self { child, folder, address, metrics, web })
     }
 
     /// The id of its process.
@@ -169,67 +158,4 @@ fn kilobytes(process: u32) -> Option<u64> {
 pub(crate) fn pin(process: u32, processor: u32) {
     let arguments = ["-apc".to_owned(), processor.to_string(), process.to_string()];
     _ = Command::new("taskset").args(arguments).stdout(Stdio::null()).status();
-}
-
-// OpenSSH's server, with one process of the game for each session.
-
-const TIMEOUT: Duration = Duration::from_secs(10);
-
-/// Starts a server whose only command is the game, on the level on which visitors of the other
-/// server walk.
-pub(crate) fn start_sshd(program: &str) -> Result<ServerProcess, Box<dyn Error>> {
-    let folder = folder(0)?;
-    // If root starts sshd, this folder must exist.
-    _ = fs::create_dir_all("/run/sshd");
-    for key in ["host_key", "user_key"] {
-        let file = folder.join(key);
-        Command::new("ssh-keygen")
-            .args(["-q", "-t", "ed25519", "-N", "", "-f"])
-            .arg(file)
-            .status()?;
-    }
-    let port = TcpListener::bind(("127.0.0.1", 0))?.local_addr()?.port();
-    let program = fs::canonicalize(program)?;
-    fs::write(folder.join("config"), configuration(&folder, &program, port))?;
-    let child = Command::new("taskset")
-        .args(["-c", "0", "/usr/sbin/sshd", "-D", "-e", "-f"])
-        .arg(folder.join("config"))
-        .stdin(Stdio::null())
-        .stderr(fs::File::create(folder.join("log"))?)
-        .spawn()?;
-    let server = ServerProcess {
-        child,
-        address: ([127, 0, 0, 1], port).into(),
-        metrics: None,
-        web: None,
-        access: Access::Key { user: user()?, file: folder.join("user_key") },
-        folder,
-    };
-    wait_for(port)?;
-    Ok(server)
-}
-
-fn user() -> Result<String, Box<dyn Error>> {
-    Ok(String::from_utf8(Command::new("id").arg("-un").output()?.stdout)?.trim().to_owned())
-}
-
-fn wait_for(port: u16) -> Result<(), Box<dyn Error>> {
-    let deadline = Instant::now() + TIMEOUT;
-    while TcpStream::connect(("127.0.0.1", port)).is_err() {
-        if Instant::now() > deadline {
-            return Err("sshd did not start to listen".into());
-        }
-        thread::sleep(Duration::from_millis(20));
-    }
-    Ok(())
-}
-
-fn configuration(folder: &Path, program: &Path, port: u16) -> String {
-    let (folder, program) = (folder.display(), program.display());
-    format!(
-        "ListenAddress 127.0.0.1\nPort {port}\nHostKey {folder}/host_key\n\
-         AuthorizedKeysFile {folder}/user_key.pub\nPidFile none\nUsePAM no\nStrictModes no\n\
-         PermitRootLogin yes\nMaxStartups 1000\nAcceptEnv COLORTERM\nSetEnv HOME={folder}\n\
-         ForceCommand {program} museum\n"
-    )
 }

@@ -17,12 +17,12 @@
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use std::{fmt, fs, io};
+use std::{fmt, fs};
 
 use cellcaster::app::store::private;
 use cellcaster::fault::printable_path;
 use rusqlite::types::Value;
-use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, params_from_iter};
+use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior};
 
 use super::StoreFailure;
 use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};

@@ -12,7 +12,6 @@ use super::HostStore;
 #[cfg(test)]
 use super::StoreFailure;
 use super::sqlite::make_tables;
-#[cfg(feature = "fuzzing")]
 use super::store::Database;
 
 impl HostStore {
@@ -88,6 +87,7 @@ impl HostStore {
 }
 
 /// The tables and their columns. A table comes after the tables that it refers to.
+#[cfg(feature = "fuzzing")]
 fn tables(connection: &Connection) -> rusqlite::Result<Vec<(String, String)>> {
     let sql = "SELECT name, (SELECT group_concat(name, ', ') FROM pragma_table_info(tables.name)) \
                FROM sqlite_schema AS tables WHERE type = 'table' AND name NOT LIKE 'sqlite_%' \

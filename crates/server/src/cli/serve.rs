@@ -12,7 +12,7 @@ use tokio::task::JoinSet;
 
 use super::arguments::Serve;
 use super::host_store::{StoreLocation, failed};
-use crate::accounts::{HostNotice, HostStore, KnownPlayers, StoreFailure, WaitingResults};
+use crate::accounts::{HostNotice, HostStore, KnownPlayers, WaitingResults};
 use crate::cluster::Cluster;
 use crate::config::{Config, LiveConfig};
 use crate::logging::{self, Logging};

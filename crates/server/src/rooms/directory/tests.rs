@@ -114,7 +114,7 @@ fn a_standing_room_that_panics_is_reopened() {
         let mut ada = rooms.enter(RoomId(1), &name("Ada")).unwrap();
         end_of(&mut ada).await;
         listed(&rooms, &[2]).await;
-        let mut ada = rooms.enter(RoomId(2), &name("Ada")).unwrap();
+        let ada = rooms.enter(RoomId(2), &name("Ada")).unwrap();
         ada.changed(Instant::now()).await;
         assert_eq!(ada.closed(), None);
     });

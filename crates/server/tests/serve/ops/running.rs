@@ -54,6 +54,7 @@ impl Running {
     }
 
     /// Adds an option for the next start.
+    #[cfg(feature = "system-tests")]
     pub(crate) fn add_option(&mut self, option: &str) {
         self.options.push(option.to_owned());
     }
