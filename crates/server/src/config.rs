@@ -226,10 +226,7 @@ impl Config {
     /// # Errors
     /// The first fault of the file.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
-        toml::from_str(text).map_err(|error| {
-            let fault = Fault::new(error.span().unwrap_or_default(), error.message());
-            Faults::new(name, text, vec![fault])
-        })
+        toml::from_str(text).map_err(|error| Faults::new(name, text, vec![fault(&error)]))
     }
 
     /// The limits on connections.
@@ -366,6 +363,22 @@ fn in_mode(mode: Mode) -> RoomRequest {
     RoomRequest { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
 }
 
+/// An error in a file. Of the names that replace an unknown one, it lists only the nearest.
+fn fault(error: &toml::de::Error) -> Fault {
+    let (place, message) = (error.span().unwrap_or_default(), error.message());
+    let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match &names[..] {
+        [unknown, known @ ..] if message.starts_with("unknown field") => {
+            let fault = Fault::new(place, format!("there is no setting {}", quoted(unknown)));
+            match nearest(unknown, known) {
+                Some(meant) => fault.help(format!("the nearest setting is {}", quoted(meant))),
+                None => fault.help(format!("the settings are {}", known.join(", "))),
+            }
+        }
+        _ => Fault::new(place, message),
+    }
+}
+
 /// A whole number from `LEAST` to `MOST`.
 fn number<'de, const LEAST: u32, const MOST: u32, D: Deserializer<'de>>(
     from: D,
@@ -425,7 +438,7 @@ fn some_address<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SocketAddr>
 
 fn metrics<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SocketAddr>, D::Error> {
     #[derive(Deserialize)]
-    #[serde(deny_unknown_fields)]
+    #[serde(deny_unknown_fields, expecting = "a table [metrics]")]
     struct Metrics {
         #[serde(default, deserialize_with = "some_address")]
         listen: Option<SocketAddr>,
@@ -496,7 +509,7 @@ fn log<'de, D: Deserializer<'de>>(from: D) -> Result<LogFilter, D::Error> {
 
 fn rooms<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<RoomRequest>, D::Error> {
     #[derive(Deserialize)]
-    #[serde(default, deny_unknown_fields)]
+    #[serde(default, deny_unknown_fields, expecting = "a table [[room]]")]
     struct StandingRoom {
         #[serde(deserialize_with = "mode")]
         mode: Mode,

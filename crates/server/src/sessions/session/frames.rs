@@ -144,7 +144,7 @@ mod tests {
         let mut pace = Pace::new(100 * MILLISECOND);
         assert_eq!(pace.next(false), Duration::ZERO);
         pace.drawn(1000 * MILLISECOND);
-        assert_eq!(pace.next(false), 1100 * MILLISECOND);
+        assert_eq!(pace.next(false), 1100 * MILLISECOND - HALF_STEP);
         assert_eq!(pace.next(true), 1016 * MILLISECOND);
     }
 
@@ -154,10 +154,10 @@ mod tests {
         pace.drawn(1000 * MILLISECOND);
         pace.drawn(pace.next(true));
         assert_eq!(pace.next(true), 1032 * MILLISECOND);
-        assert_eq!(pace.next(false), 1116 * MILLISECOND);
+        assert_eq!(pace.next(false), 1116 * MILLISECOND - HALF_STEP);
         pace.drawn(pace.next(true));
-        assert_eq!(pace.next(true), 1100 * MILLISECOND);
-        assert_eq!(pace.next(false), 1200 * MILLISECOND);
+        assert_eq!(pace.next(true), 1100 * MILLISECOND - HALF_STEP);
+        assert_eq!(pace.next(false), 1200 * MILLISECOND - 2 * HALF_STEP);
     }
 
     proptest! {
@@ -176,6 +176,7 @@ mod tests {
                 frames.push(now);
                 for (count, first) in frames.iter().rev().enumerate() {
                     let time = now.saturating_sub(*first);
+                    let time = time + 2 * HALF_STEP;
                     let allowed = time.as_millis() / u128::from(frame_time) + 2;
                     prop_assert!(count as u128 <= allowed, "{count} frames in {time:?}");
                 }
