@@ -114,6 +114,7 @@ impl Cluster {
             visitors,
             chance: Mutex::new(SplitMix64::new(seed)),
             ending: watch::Sender::new(false),
+            written: Mutex::default(),
         };
         SharedRooms::new(Arc::new(context), rooms.clone(), standing)
     }

@@ -4,15 +4,11 @@
 //! of them, and the figures of the process. A responder on an address of its own answers `GET /metrics` with that text.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, Weak};
+use std::io;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
-use std::{fmt, io};
 
-use prometheus_client::collector::Collector;
 use prometheus_client::encoding::prometheus_text::{self, CONTENT_TYPE};
-use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric};
-use prometheus_client::metrics::MetricType;
 use prometheus_client::metrics::counter::{ConstCounter, Counter};
 use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::{ConstGauge, Gauge};
@@ -23,7 +19,6 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::runtime::Handle;
 
 use crate::admission::Refusal;
-use crate::lock::locked;
 use crate::service::serve_each;
 
 /// The figures of a server.
@@ -72,29 +67,11 @@ pub struct Metrics {
     pub results_waiting: Gauge,
     /// Failed calls to the store.
     pub store_errors: Counter,
-    room_figures: Mutex<BTreeMap<u32, Weak<RoomFigures>>>,
 }
 
 /// A histogram of times.
 #[derive(Clone, Debug)]
 pub struct Seconds(pub(crate) Histogram);
-
-/// The figures of a room that this host runs, in a cluster.
-#[derive(Debug, Default)]
-pub struct RoomFigures {
-    /// Members on all hosts.
-    pub members: Gauge,
-    /// Watchers on this host.
-    pub watchers: Gauge,
-    /// 1 while this host writes the log, otherwise 0.
-    pub writes: Gauge,
-    /// Steps that the room has taken on this host.
-    pub steps: Counter,
-    /// Entries in its log.
-    pub entries: Counter,
-    /// One counter for each of [`CHECK_RESULTS`].
-    checks: [Counter; 2],
-}
 
 /// The name and the value of a label.
 type Label = [(&'static str, &'static str); 1];
@@ -123,27 +100,6 @@ impl Metrics {
     /// Checksums of rooms that matched another host's, or differed. A difference is a bug.
     pub(crate) fn checks(&self, is_equal: bool) -> Counter {
         self.checks.get_or_create_owned(&[("result", CHECK_RESULTS[usize::from(is_equal)])])
-    }
-
-    /// Adds a room with figures of its own. It replaces an earlier room with the same number, and is listed until its
-    /// figures are dropped.
-    pub(crate) fn add_room(&self, room: u32) -> Arc<RoomFigures> {
-        let figures = Arc::<RoomFigures>::default();
-        locked(&self.room_figures, |rooms| rooms.insert(room, Arc::downgrade(&figures)));
-        figures
-    }
-
-    /// The rooms whose logs this host writes.
-    pub(crate) fn written_rooms(&self) -> Vec<u32> {
-        let rooms = self.room_figures();
-        rooms.into_iter().filter(|(_, it)| it.writes.get() > 0).map(|(room, _)| room).collect()
-    }
-
-    fn room_figures(&self) -> Vec<(u32, Arc<RoomFigures>)> {
-        locked(&self.room_figures, |rooms| {
-            rooms.retain(|_, figures| figures.strong_count() > 0);
-            rooms.iter().filter_map(|(room, it)| Some((*room, it.upgrade()?))).collect()
-        })
     }
 
     /// All figures, including the figures of this process.
@@ -218,7 +174,6 @@ impl Metrics {
             let tasks = runtime.metrics().num_alive_tasks();
             page.register("tasks", help, ConstGauge::new(tasks as u64));
         }
-        page.register_collector(Box::new(RoomCollector(self.room_figures())));
     }
 }
 
@@ -232,61 +187,6 @@ impl Seconds {
     /// Records a time.
     pub fn observe(&self, time: Duration) {
         self.0.observe(time.as_secs_f64());
-    }
-}
-
-impl RoomFigures {
-    /// Checksums that matched another host's, or differed. A difference is a bug.
-    pub(crate) fn checks(&self, is_equal: bool) -> &Counter {
-        &self.checks[usize::from(is_equal)]
-    }
-}
-
-/// The rooms that exist now, with their figures.
-#[derive(Debug)]
-struct RoomCollector(Vec<(u32, Arc<RoomFigures>)>);
-
-/// The name, the help and the value of a room's figure.
-type RoomFigure<F> = (&'static str, &'static str, fn(&RoomFigures) -> &F);
-
-impl Collector for RoomCollector {
-    fn encode(&self, mut page: DescriptorEncoder<'_>) -> fmt::Result {
-        if self.0.is_empty() {
-            return Ok(());
-        }
-        let gauges: [RoomFigure<Gauge>; 3] = [
-            ("room_members", "Members of a room, on all hosts.", |it| &it.members),
-            ("room_watchers", "Visitors of this host who watch a room.", |it| &it.watchers),
-            ("room_writes", "1 if this host writes the log of the room, otherwise 0.", |it| {
-                &it.writes
-            }),
-        ];
-        for (name, help, figure) in gauges {
-            let mut lines = page.encode_descriptor(name, help, None, MetricType::Gauge)?;
-            for (room, figures) in &self.0 {
-                figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
-            }
-        }
-        let counters: [RoomFigure<Counter>; 2] = [
-            ("room_steps", "Steps that a room has taken on this host.", |it| &it.steps),
-            ("room_entries", "Entries of the log of a room.", |it| &it.entries),
-        ];
-        for (name, help, figure) in counters {
-            let mut lines = page.encode_descriptor(name, help, None, MetricType::Counter)?;
-            for (room, figures) in &self.0 {
-                figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
-            }
-        }
-        let help = "Checksums of a room, compared with other hosts.";
-        let mut lines =
-            page.encode_descriptor("each_room_checks", help, None, MetricType::Counter)?;
-        for (room, figures) in &self.0 {
-            for (count, result) in figures.checks.iter().zip(CHECK_RESULTS) {
-                let labels = ([("room", *room)], [("result", result)]);
-                count.encode(lines.encode_family(&labels)?)?;
-            }
-        }
-        Ok(())
     }
 }
 

@@ -37,7 +37,6 @@ use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::Lease;
 use crate::logging;
-use crate::metrics::RoomFigures;
 use crate::rooms::room::{MemberId, Room};
 use crate::rooms::sequencer::{
     FAULT, MAX_CAUGHT_UP, RoomInterface, STEP, message as panic_message,
@@ -74,7 +73,6 @@ pub(crate) struct Replica {
     id: RoomId,
     context: Arc<HostContext>,
     interface: Arc<RoomInterface>,
-    figures: Arc<RoomFigures>,
     /// The newest record.
     record: Record,
     state: RoomState,
@@ -189,6 +187,12 @@ struct Alone {
     probed: Instant,
 }
 
+impl Drop for Replica {
+    fn drop(&mut self) {
+        self.context.note_writing(self.id, false);
+    }
+}
+
 impl Replica {
     pub(crate) fn new(
         context: Arc<HostContext>,
@@ -200,12 +204,10 @@ impl Replica {
     ) -> Self {
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
-        let figures = context.load.metrics.add_room(id.0);
         Self {
             id,
             context,
             interface,
-            figures,
             record,
             state,
             sequencer: None,
@@ -259,9 +261,7 @@ impl Replica {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
-        self.figures.members.set(self.state.room.len() as i64);
-        self.figures.watchers.set(self.interface.watchers() as i64);
-        self.figures.writes.set(self.sequencer.is_some().into());
+        self.context.note_writing(self.id, self.sequencer.is_some());
     }
 
     /// Sends the commands of this host's members to the sequencer.
@@ -373,14 +373,12 @@ impl Replica {
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
                     self.context.load.metrics.checks(true).inc();
-                    self.figures.checks(true).inc();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "the state of a room differs from the sequencer's, which is a bug");
                 self.context.load.metrics.checks(false).inc();
-                self.figures.checks(false).inc();
                 _ = self.restore().await;
                 return false;
             }
@@ -416,8 +414,6 @@ impl Replica {
             }
         };
         self.context.load.metrics.entries.inc_by(changes.entries);
-        self.figures.entries.inc_by(changes.entries);
-        self.figures.steps.inc_by(message.steps);
         if let Some(run) = changes.finished {
             self.interface.inbox.finish(run);
         }

@@ -28,9 +28,7 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
-use crate::rooms::sequencer::{
-    CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer, StepAlarm,
-};
+use crate::rooms::sequencer::{FinishedRun, RoomInterface, RoundLog, Sequencer, StepAlarm};
 pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomRequest, RoomSummary};
 use cellcaster::rng::SplitMix64;
@@ -494,13 +492,10 @@ impl Place {
         .await;
     }
 
-    /// Submits a command to the room.
-    pub(crate) fn act(&self, command: Command) -> Result<(), CommandRefusal> {
-        let member = self.member_id().ok_or(CommandRefusal::Impossible)?;
-        if self.is_dismissed() {
-            return Err(CommandRefusal::Impossible);
-        }
-        self.interface.inbox.act(member, command)
+    /// Submits a command to the room. Returns false if it is not for members, or the visitor is none.
+    pub(crate) fn act(&self, command: Command) -> bool {
+        let member = self.member_id().filter(|_| !self.is_dismissed());
+        member.is_some_and(|member| self.interface.inbox.act(member, command))
     }
 
     /// The run that the visitor has finished since the last call, if any.

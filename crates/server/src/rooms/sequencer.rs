@@ -26,7 +26,6 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::invitation::RoomCode;
 use super::summary::RoomRefusal;
-use crate::bucket::Bucket;
 use crate::line::Line;
 use crate::load::Load;
 #[cfg(test)]
@@ -475,8 +474,6 @@ impl SoloRun {
 
 /// The duration of a step.
 pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
-/// The number of chat lines that a member may send in one burst.
-const CHAT_BURST: f64 = 4.0;
 /// The maximum number of queued changes of intents per member.
 const MAX_INTENTS: usize = 8;
 /// The maximum number of queued arrivals and departures. All of them take effect in the next step.
@@ -485,25 +482,15 @@ const MAX_MOVES: usize = 64;
 /// The commands of a room's members that the sequencer has not taken yet.
 ///
 /// Each member has a bounded queue, so that a flood from one member never delays another. Rejected: one queue
-/// for all members. A single member could fill it. A member may send [`CHAT_BURST`] chat lines and one emote
-/// at once, and after that one of each per second.
+/// for all members. A single member could fill it.
 ///
 /// Intents take effect in the order of arrival, one change per step, so that a tap begins and ends in
 /// separate steps. If [`MAX_INTENTS`] changes are queued, a new one replaces the last. Sessions limit the
-/// rate of changes.
+/// rate of changes, and drivers the rate of talk.
 #[derive(Debug)]
 pub(crate) struct Inbox {
     waiting: Mutex<InboxState>,
     joined: Notify,
-}
-
-/// The reason why a command was not accepted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CommandRefusal {
-    /// The member sends such commands too often.
-    TooOften,
-    /// There is no such member, or members cannot send this command.
-    Impossible,
 }
 
 #[derive(Debug)]
@@ -516,8 +503,6 @@ struct InboxState {
     /// The number of seats that were ever taken.
     seats_taken: u64,
     moves: VecDeque<(MemberId, Command)>,
-    /// The total time of all steps in all rounds.
-    time: Duration,
     finished: Option<FinishedRun>,
 }
 
@@ -529,8 +514,6 @@ struct InboxSeat {
     color: PlayerColor,
     intents: VecDeque<Command>,
     talk: VecDeque<Command>,
-    chat: Bucket,
-    emotes: Bucket,
 }
 
 impl Inbox {
@@ -543,7 +526,6 @@ impl Inbox {
             seats: Vec::new(),
             seats_taken: 0,
             moves: VecDeque::new(),
-            time: Duration::ZERO,
             finished: None,
         };
         Self { waiting: Mutex::new(waiting), joined: Notify::new() }
@@ -594,12 +576,11 @@ impl Inbox {
         });
     }
 
-    /// Accepts a member's command.
-    pub(crate) fn act(&self, id: MemberId, command: Command) -> Result<(), CommandRefusal> {
+    /// Takes a member's command. Returns false if there is no such member, or members cannot send this command.
+    pub(crate) fn act(&self, id: MemberId, command: Command) -> bool {
         locked(&self.waiting, |waiting| {
-            let time = waiting.time;
             let seat = waiting.seats.iter_mut().find(|seat| seat.id == id);
-            seat.ok_or(CommandRefusal::Impossible)?.act(command, time)
+            seat.is_some_and(|seat| seat.act(command))
         })
     }
 
@@ -684,7 +665,6 @@ impl Inbox {
                 let intents = seat.intents.pop_front();
                 intents.into_iter().chain(seat.talk.drain(..)).for_each(|it| pass(seat.id, it));
             }
-            waiting.time += STEP;
         });
     }
 }
@@ -717,40 +697,31 @@ impl InboxState {
             color,
             intents: VecDeque::new(),
             talk: VecDeque::new(),
-            chat: Bucket::new(1.0, CHAT_BURST, self.time),
-            emotes: Bucket::new(1.0, 1.0, self.time),
         });
     }
 }
 
 impl InboxSeat {
-    fn act(&mut self, command: Command, time: Duration) -> Result<(), CommandRefusal> {
-        let bucket = match command {
+    fn act(&mut self, command: Command) -> bool {
+        match command {
             Command::Intents { .. } => {
                 if self.intents.len() >= MAX_INTENTS {
                     self.intents.pop_back();
                 }
                 self.intents.push_back(command);
-                return Ok(());
             }
             Command::Day(_) => {
                 self.talk.retain(|waiting| !matches!(waiting, Command::Day(_)));
                 self.talk.push_back(command);
-                return Ok(());
             }
-            Command::Say(_) => &mut self.chat,
-            Command::Emote(_) | Command::Again => &mut self.emotes,
+            Command::Say(_) | Command::Emote(_) | Command::Again => self.talk.push_back(command),
             Command::Join { .. }
             | Command::Leave
             | Command::Keep
             | Command::Away
-            | Command::Return { .. } => return Err(CommandRefusal::Impossible),
-        };
-        if !bucket.takes_one(time) {
-            return Err(CommandRefusal::TooOften);
+            | Command::Return { .. } => return false,
         }
-        self.talk.push_back(command);
-        Ok(())
+        true
     }
 }
 

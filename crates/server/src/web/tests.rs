@@ -260,7 +260,7 @@ fn turn(place: &Place, turns: bool) {
     if turns {
         intents.insert(Intent::TurnLeft);
     }
-    place.act(Command::Intents { seen: 0, intents }).unwrap();
+    place.act(Command::Intents { seen: 0, intents });
 }
 
 #[test]
@@ -597,7 +597,7 @@ impl Drop for Folder {
 /// Lets Ada talk, turn around for a while, and leave.
 async fn play(house: &House) {
     let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
-    ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap())).unwrap();
+    ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap()));
     turn(&ada, true);
     sleep(Duration::from_millis(2600)).await;
     drop(ada);
@@ -795,7 +795,7 @@ fn a_player_who_comes_late_sees_the_same_stream() {
     run(async || {
         let house = House::open(|_| ());
         let ada = house.rooms.enter(RoomId(1), &name("Ada")).unwrap();
-        ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap())).unwrap();
+        ada.act(Command::Say(Line::of("a secret", CHAT_COLUMNS).unwrap()));
         turn(&ada, true);
         let offers = "v1.alis, v2.asciicast, raw";
         let origin = format!("http://{}", house.address);
@@ -813,7 +813,7 @@ fn a_player_who_comes_late_sees_the_same_stream() {
             }
             let mut intents = Intents::new();
             intents.insert(Intent::Forward);
-            ada.act(Command::Intents { seen: 0, intents }).unwrap();
+            ada.act(Command::Intents { seen: 0, intents });
             sleep(Duration::from_millis(600)).await;
             // A room without members takes no steps.
             drop(ada);

@@ -1,5 +1,4 @@
 use super::*;
-use crate::rooms::room::Emote;
 use cellcaster::game::{Intent, Intents};
 
 fn line(text: &str) -> Line {
@@ -45,43 +44,27 @@ fn intent_changes_keep_their_order_with_one_per_step() {
     let (inbox, id) = inbox();
     taken(&inbox);
     for _ in 0..100 {
-        inbox.act(id, want([Intent::Forward])).unwrap();
+        assert!(inbox.act(id, want([Intent::Forward])));
     }
-    inbox.act(id, want([])).unwrap();
+    assert!(inbox.act(id, want([])));
     let intents: Vec<Command> = (0..60).flat_map(|_| taken(&inbox)).collect();
     assert_eq!(intents.len(), MAX_INTENTS);
     assert_eq!(intents.last(), Some(&want([])));
     let mut count = 0;
     for step in 0..600 {
-        inbox.act(id, want((step % 2 == 0).then_some(Intent::Back))).unwrap();
+        inbox.act(id, want((step % 2 == 0).then_some(Intent::Back)));
         count += taken(&inbox).len();
     }
     assert_eq!(count, 600);
 }
 
 #[test]
-fn a_chat_flood_is_limited_to_one_line_a_second() {
-    let (inbox, id) = inbox();
-    taken(&inbox);
-    let mut said = 0;
-    for _ in 0..600 {
-        for _ in 0..50 {
-            _ = inbox.act(id, Command::Say(line("hello")));
-        }
-        said += taken(&inbox).len();
-    }
-    assert_eq!(said, 4 + 9);
-    let emotes = (0..5).filter(|_| inbox.act(id, Command::Emote(Emote::Wave)).is_ok()).count();
-    assert_eq!(emotes, 1);
-}
-
-#[test]
 fn a_member_who_has_left_does_nothing() {
     let (inbox, id) = inbox();
-    inbox.act(id, Command::Say(line("bye"))).unwrap();
+    inbox.act(id, Command::Say(line("bye")));
     inbox.leave(id);
     inbox.leave(id);
-    assert_eq!(inbox.act(id, want([])), Err(CommandRefusal::Impossible));
+    assert!(!inbox.act(id, want([])));
     assert!(matches!(taken(&inbox)[..], [Command::Join { .. }, Command::Leave]));
     assert!(inbox.is_empty());
 }

@@ -27,7 +27,6 @@ use crate::logging;
 use crate::operator::Operator;
 use crate::rooms::directory::Place;
 use crate::rooms::room::{Command, RoomView};
-use crate::rooms::sequencer::CommandRefusal;
 use crate::sessions::session::{Moderation, SessionEvent};
 use crate::visitors::{Heard, Visitors};
 
@@ -63,9 +62,11 @@ impl Driver {
         if is_talk && !self.may_talk() {
             return;
         }
-        let Some(place) = &self.place else { return };
-        if place.act(command) == Err(CommandRefusal::TooOften) {
-            self.notify(SessionEvent::Result(TOO_OFTEN.to_owned()));
+        if matches!(command, Command::Again) && !self.talk.takes_one(self.shared.now()) {
+            return self.advise(TOO_OFTEN.to_owned());
+        }
+        if let Some(place) = &self.place {
+            place.act(command);
         }
     }
 

@@ -711,7 +711,7 @@ impl Driver {
         let day = view.and_then(|room| Day::of_level(&room.header.level));
         if day.is_some_and(|day| day < today) {
             // Watchers can tell nothing, but every member's driver does.
-            _ = place.act(Command::Day(today));
+            place.act(Command::Day(today));
         }
     }
 
