@@ -15,7 +15,7 @@
 //! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
 //! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
-//! On a steady link, only every third frame asks for an answer. A frame without a request counts as in flight until its
+//! On a steady link, only every third small frame asks for an answer. A frame without a request counts as in flight until its
 //! answer would have arrived at the latest. Each answer costs a server a packet, a decryption and a turn of the session.
 //!
 //! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The link
@@ -63,8 +63,8 @@ pub(crate) struct Flow {
     has_input: bool,
     /// The number of removed requests whose answers may still arrive.
     forgotten: usize,
-    /// The number of frames since the last request.
-    unasked: usize,
+    /// The number of frames since the last request, and their bytes.
+    unasked: [usize; 2],
     is_remote: bool,
     link: Link,
     /// The estimated number of bytes that an exact frame of motion would take.
@@ -120,8 +120,8 @@ const TIMEOUT_FACTOR: u32 = 4;
 const MIN_RATE: f64 = 16_000.0;
 /// A terminal counts as silent after this number of consecutive timeouts, with keys between them.
 const MAX_TIMEOUTS: u32 = 5;
-/// The most frames in a row without a request.
-const MAX_UNASKED: usize = 2;
+/// The most frames in a row without a request, and the most bytes, which are in flight in vain if the link stalls.
+const MAX_UNASKED: [usize; 2] = [2, 6_000];
 /// The time between two fences.
 const FENCE_INTERVAL: Duration = Duration::from_secs(5);
 
@@ -150,9 +150,7 @@ impl Flow {
             Answers::Given if now.saturating_sub(self.fenced_at) >= FENCE_INTERVAL => {
                 Request::Fence
             }
-            Answers::Given if self.unasked < MAX_UNASKED && self.link.is_steady(bytes) => {
-                Request::Nothing
-            }
+            Answers::Given if self.may_be_unasked(bytes) => Request::Nothing,
             Answers::Unknown | Answers::Given => Request::Status,
         }
     }
@@ -176,10 +174,11 @@ impl Flow {
         }
         self.advance(now);
         self.in_flight.push_back(Sent { at: now, bytes, request });
+        let [frames, unasked] = self.unasked;
         if request == Request::Nothing {
-            self.unasked += 1;
+            self.unasked = [frames + 1, unasked + bytes];
         } else {
-            self.unasked = 0;
+            self.unasked = [0; 2];
             self.active_at = now;
         }
         self.has_input = false;
@@ -267,6 +266,12 @@ impl Flow {
         self.forgotten = self.in_flight.len();
         self.in_flight.clear();
         self.timeouts = 0;
+    }
+
+    /// Returns true if a frame of this number of bytes needs no request after it.
+    fn may_be_unasked(&self, bytes: usize) -> bool {
+        let ([frames, unasked], [most, most_bytes]) = (self.unasked, MAX_UNASKED);
+        frames < most && unasked + bytes <= most_bytes && self.link.is_steady(bytes)
     }
 
     /// Removes the frames that have arrived by `now`, although no request followed them.
