@@ -4,7 +4,9 @@
 mod scenarios;
 mod simulation;
 
-use self::simulation::{Conditions, FrameSource, Frames, Latency, Simulation, UNLIMITED, saving};
+use self::simulation::{
+    Conditions, FrameSource, Frames, Latency, Shown, Simulation, UNLIMITED, saving,
+};
 use proptest::prelude::*;
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
@@ -252,6 +254,30 @@ fn on_a_fast_link_every_frame_is_exact_and_on_time() {
 
 /// Rejected: the quotient of bytes and busy time. It mistakes jitter for slowness: 0 to 100 ms each way made most
 /// frames as coarse as possible.
+#[test]
+fn a_steady_link_is_asked_after_every_third_small_frame() {
+    let asked = |line: &Simulation, since: Duration| {
+        let shown = line.players[0].shown_since(since);
+        let asked = shown.iter().filter(|one| one.request != Request::Nothing).count();
+        (shown.len(), asked)
+    };
+    let mut line = Simulation::of_one(20 * MILLISECOND, UNLIMITED, Frames::all_of(2_000));
+    line.walk(10 * SECOND);
+    let (frames, requests) = asked(&line, 5 * SECOND);
+    assert!(frames >= 145 && requests * 3 <= frames + 6, "{requests} of {frames}");
+    line.conditions.rate = 25_000.0;
+    line.walk(10 * SECOND);
+    let (frames, requests) = asked(&line, 12 * SECOND);
+    assert_eq!(frames, requests);
+    let shown = line.players[0].shown_since(12 * SECOND).into_iter();
+    let late = shown.filter(|one| one.at.is_some()).map(Shown::age).max();
+    assert!(late < Some(SECOND), "{late:?}");
+    let mut line = Simulation::of_one(20 * MILLISECOND, UNLIMITED, Frames::all_of(20_000));
+    line.walk(10 * SECOND);
+    let (frames, requests) = asked(&line, 5 * SECOND);
+    assert!(frames >= 145 && requests == frames, "{requests} of {frames}");
+}
+
 #[test]
 fn jitter_is_not_mistaken_for_slowness() {
     for (jitter, frames_per_second) in [(50, 28), (100, 17)] {
