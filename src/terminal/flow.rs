@@ -15,8 +15,9 @@
 //! detection of a dead connection. An answer or a key ends this state. A terminal that stays silent, or that has never
 //! answered, receives no more requests. It receives a frame when the system has accepted the frame before.
 //!
-//! On a steady link, only every third small frame asks for an answer. A frame without a request counts as in flight until its
-//! answer would have arrived at the latest. Each answer costs a server a packet, a decryption and a turn of the session.
+//! On a steady link, only every third small frame asks for an answer. A frame without a request counts as in flight
+//! until its answer would have arrived at the latest. Each answer costs a server a packet, a decryption and a turn of
+//! the session.
 //!
 //! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take. The link
 //! limits the rate, and so may a [budget]. If frames still exceed the budget, there are fewer of them.

@@ -8,7 +8,7 @@
 //! - **Other processes can read at the same time**, such as `cellcaster-server scores`.
 //! - **The log stays short.** Its content is copied into the file at each start and end.
 //! - **A damaged file is left alone.** [`open`] checks the whole file. Rejected: copying the readable rows into a new
-//!   file. SQLite's own program does that better.
+//!   file. SQLite's own program does that, too.
 //! - **A file of another version or of another program is left alone.**
 //! - **No other user of the machine can read it**: the file has the mode 0600, and a new folder has the mode 0700.
 //!
