@@ -336,8 +336,8 @@ impl LiveConfig {
         let (maps, recordings) = (now.maps.clone(), now.recordings.clone());
         self.0.send_replace(Arc::new(Config {
             listen,
-            metrics,
             maps,
+            metrics,
             web,
             recordings_megabytes,
             recordings_days,
