@@ -139,12 +139,16 @@ mod tests {
 
     const MILLISECOND: Duration = Duration::from_millis(1);
 
+    fn early(milliseconds: u32) -> Duration {
+        (milliseconds * MILLISECOND).saturating_sub(HALF_STEP)
+    }
+
     #[test]
     fn a_key_after_a_pause_is_answered_at_once() {
         let mut pace = Pace::new(100 * MILLISECOND);
         assert_eq!(pace.next(false), Duration::ZERO);
         pace.drawn(1000 * MILLISECOND);
-        assert_eq!(pace.next(false), 1100 * MILLISECOND - HALF_STEP);
+        assert_eq!(pace.next(false), early(1100));
         assert_eq!(pace.next(true), 1016 * MILLISECOND);
     }
 
@@ -154,10 +158,10 @@ mod tests {
         pace.drawn(1000 * MILLISECOND);
         pace.drawn(pace.next(true));
         assert_eq!(pace.next(true), 1032 * MILLISECOND);
-        assert_eq!(pace.next(false), 1116 * MILLISECOND - HALF_STEP);
+        assert_eq!(pace.next(false), early(1116));
         pace.drawn(pace.next(true));
-        assert_eq!(pace.next(true), 1100 * MILLISECOND - HALF_STEP);
-        assert_eq!(pace.next(false), 1200 * MILLISECOND - 2 * HALF_STEP);
+        assert_eq!(pace.next(true), early(1100));
+        assert_eq!(pace.next(false), early(1200).saturating_sub(HALF_STEP));
     }
 
     proptest! {
