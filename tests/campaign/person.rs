@@ -53,6 +53,8 @@ const DETOUR: u32 = 200;
 const MEMORY: u64 = 240;
 /// The walking costs to the last checkpoint from which the player flees there.
 const ESCAPE: Range<u32> = 30..u32::MAX;
+/// The walking cost from which a player counts as near a checkpoint or a heart: fifteen cells.
+const NEAR: u32 = 150;
 /// One in this many jumps fails.
 const CLUMSY: usize = 12;
 
@@ -75,6 +77,17 @@ struct Glimpse {
     guards: Vec<GuardView>,
     alarm: Alarm,
     hears_steps: bool,
+}
+
+/// A loss of health.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Loss {
+    /// The number of completed errands.
+    pub(crate) errand: usize,
+    pub(crate) points: u8,
+    pub(crate) is_death: bool,
+    /// `true` if the player has come near a checkpoint or a heart before.
+    pub(crate) is_helped: bool,
 }
 
 /// A person at the keyboard.
@@ -110,6 +123,9 @@ pub(crate) struct Person {
     stuck: u32,
     /// The step from which the player strikes again.
     strikes: u64,
+    /// `true` once the player has come near a checkpoint or a heart.
+    is_helped: bool,
+    pub(crate) losses: Vec<Loss>,
 }
 
 /// Plays a level. `seed` selects the errors.
@@ -151,6 +167,8 @@ impl Person {
             beat,
             stuck,
             strikes: 0,
+            is_helped: false,
+            losses: Vec::new(),
         };
         person.look_around();
         person
@@ -175,6 +193,8 @@ impl Person {
         self.perceive();
         self.decide();
         let before = self.pilot.steps();
+        let health = self.pilot.game.health().points;
+        let (errand, cell) = (self.done, self.pilot.cell());
         match self.plan {
             Plan::Go => self.go_on(),
             Plan::StepBack => self.hold(&[Intent::Back]),
@@ -183,6 +203,19 @@ impl Person {
         }
         if self.pilot.steps() == before {
             self.pilot.wait(TAP);
+        }
+        let game = &self.pilot.game;
+        let points = health.saturating_sub(game.health().points);
+        if points > 0 {
+            let is_death = matches!(game.outcome(), Outcome::Dead { .. });
+            self.losses.push(Loss { errand, points, is_death, is_helped: self.is_helped });
+        }
+        // Ways take time, so they are not searched in each tap.
+        if !self.is_helped && before / 60 < self.pilot.steps() / 60 {
+            let helps = |kind| matches!(kind, ThingKind::Checkpoint | ThingKind::Healing(_));
+            let things = game.world().things().iter().filter(|thing| helps(thing.kind));
+            let mut ways = things.map(|thing| Ways::new(game, thing.cell, |_| 0));
+            self.is_helped = ways.any(|ways| ways.cost(cell) <= NEAR);
         }
     }
 
