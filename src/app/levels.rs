@@ -504,8 +504,8 @@ pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
         file: None,
         rules,
         descent: Some(kind),
-        steps: None,
-        checksum: None,
+        steps: 0,
+        checksum: 0,
     }
 }
 

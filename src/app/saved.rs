@@ -31,7 +31,7 @@ impl App {
     pub(crate) fn save_game(&mut self) -> Result<(), NotSaved> {
         let game = self.game.grid().filter(|_| self.is_unfinished());
         let Some((game, save)) = game.zip(self.as_save()) else { return Ok(()) };
-        let save = Save { checksum: Some(game.checksum()), ..save };
+        let save = Save { checksum: game.checksum(), ..save };
         self.store.save(&SavedGame { save, script: self.run_script(game) })
     }
 
@@ -39,7 +39,7 @@ impl App {
     /// there is no level name to save it under.
     fn as_save(&self) -> Option<Save> {
         let game = self.game.grid().filter(|_| self.demo.is_none())?;
-        let steps = Some(self.log.steps());
+        let steps = self.log.steps();
         if let Some(kind) = self.levels.descent {
             return Some(Save { steps, ..save_of_descent(kind, game.rules()) });
         }
@@ -49,7 +49,7 @@ impl App {
             rules: game.rules(),
             descent: None,
             steps,
-            checksum: None,
+            checksum: 0,
         })
     }
 
@@ -248,8 +248,7 @@ impl App {
     /// Replays the steps of a saved game from the start of its level.
     fn repeat(&mut self, save: &Save, script: &Script) {
         script.iter().for_each(|(_, intents)| self.step_again(intents));
-        let checksum = self.game.grid().map(Game::checksum);
-        if save.checksum.is_some() && save.checksum != checksum {
+        if self.game.grid().map(Game::checksum) != Some(save.checksum) {
             return self.show_outdated(save);
         }
         self.log.taken_back = script.header().taken_back;
@@ -346,15 +345,11 @@ fn on_difficulty(name: &str, difficulty: Difficulty) -> String {
     format!("{name} on {}", difficulty.name())
 }
 
-/// The time played; empty for games from old files.
+/// The time played.
 fn time_of(save: &Save) -> String {
-    let seconds = save.steps.map(|steps| whole_seconds(steps as f64 * STEP));
-    seconds.map_or_else(String::new, |seconds| seconds.to_string())
+    whole_seconds(save.steps as f64 * STEP).to_string()
 }
 
 fn described(save: &Save) -> String {
-    match time_of(save).as_str() {
-        "" => name_of(save),
-        time => format!("{}: {time} played", name_of(save)),
-    }
+    format!("{}: {} played", name_of(save), time_of(save))
 }

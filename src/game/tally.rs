@@ -45,7 +45,7 @@ pub struct Tally {
 }
 
 /// A rank for a level, from the worst to the best.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Rank {
     /// The player reached the exit.
     Burglar,

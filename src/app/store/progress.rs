@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::mem;
 
+use serde::{Deserialize, Serialize};
+
 use crate::app::controls::OwnKeys;
 use crate::app::setting::Preferences;
 use crate::game::{Game, Outcome, Rank, Rules, Script, Tally};
@@ -38,18 +40,17 @@ pub(crate) struct Progress {
 pub struct Save {
     /// The level, as named in the header of a script.
     pub level: String,
-    /// The absolute path of the map file; `None` if the level is not in a file, and for games from
-    /// old files.
+    /// The absolute path of the map file; `None` if the level is not in a file.
     pub file: Option<String>,
     /// The rules with which the game began.
     pub rules: Rules,
     /// The kind of descent; `None` for a level.
     pub descent: Option<Descent>,
-    /// The number of steps played; `None` for games from old files.
-    pub steps: Option<u64>,
+    /// The number of steps played.
+    pub steps: u64,
     /// The checksum of the game at the end of the script. If a replay ends with a different
-    /// checksum, then the level or the rules have changed since. `None` for games from old files.
-    pub checksum: Option<u64>,
+    /// checksum, then the level or the rules have changed since.
+    pub checksum: u64,
 }
 
 /// A saved game. To continue it, the program replays its script.
@@ -255,9 +256,10 @@ pub struct Run {
 }
 
 /// The best results in a level at one difficulty.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Best {
     /// The tally of the fastest run.
+    #[serde(flatten)]
     pub tally: Tally,
     /// The highest rank of all runs. If the player has taken time back in the fastest run, then also
     /// in the run with this rank.
@@ -274,7 +276,7 @@ pub struct Improved {
 }
 
 /// The result of a descent. More floors are better, then more treasure, then fewer steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Reached {
     /// The number of floors whose exit the player reached.
     pub floors: u32,

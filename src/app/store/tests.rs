@@ -78,8 +78,8 @@ fn saved(script: &str) -> SavedGame {
         file: None,
         rules: Rules { difficulty: Hard, seed: u64::MAX },
         descent: None,
-        steps: Some(60),
-        checksum: Some(0x0123_4567),
+        steps: 60,
+        checksum: 0x0123_4567,
     };
     SavedGame { save, script: script.to_owned() }
 }
@@ -150,45 +150,6 @@ fn stored_data_survives_a_restart() {
     assert_eq!(kept, shown(&in_memory));
     assert!(kept.contains("7 steps forward") && kept.contains("1 s forward"), "{kept}");
     insta::assert_snapshot!(folder.text());
-}
-
-#[test]
-fn files_of_older_versions_are_read() {
-    let folder = Folder::new();
-    fs::create_dir_all(folder.0.join("runs")).unwrap();
-    for (name, script) in [("1", "1 s forward\n"), ("2", "2 s forward\n")] {
-        fs::write(folder.0.join(format!("runs/saved.{name}.script")), script).unwrap();
-    }
-    let text = "version = 1\n[preferences]\ncrosshair = true\ncompass = false\nbell = false\n\
-                ghost = true\ndifficulty = \"hard\"\n[saved]\nlevel = \"cellar\"\n\
-                difficulty = \"easy\"\nseed = \"0\"\nscript = \"saved.1.script\"\n";
-    fs::write(folder.progress(), text).unwrap();
-    let mut store = sound(&folder.0);
-    let preferences = Preferences { crosshair: true, difficulty: Hard, ..Preferences::default() };
-    assert_eq!(store.preferences(), preferences);
-    let first = all_saved(&store);
-    let [SavedGame { save, script }] = &first[..] else { panic!("{first:?}") };
-    assert_eq!((save.level.as_str(), script.as_str()), ("cellar", "1 s forward\n"));
-    assert_eq!((save.checksum, save.steps, save.descent), (None, None, None));
-    store.set_preferences(Preferences { bell: true, ..preferences });
-    assert!(folder.text().contains("version = 3"), "{}", folder.text());
-    assert_eq!(all_saved(&sound(&folder.0)), first);
-
-    let second = text.replace("version = 1", "version = 2")
-        + "checksum = \"00000000000000ff\"\n[saved-descent]\nlevel = \"floor 1\"\n\
-           difficulty = \"normal\"\nseed = \"20261122\"\ndescent = \"daily\"\n\
-           script = \"saved.2.script\"\n";
-    fs::write(folder.progress(), second).unwrap();
-    let mut store = sound(&folder.0);
-    let both = all_saved(&store);
-    let about = |game: &SavedGame| (game.save.descent, game.save.checksum, game.script.clone());
-    let expected = [
-        (Some(Descent::Daily), None, "2 s forward\n".to_owned()),
-        (None, Some(0xff), "1 s forward\n".to_owned()),
-    ];
-    assert_eq!(both.iter().map(about).collect::<Vec<_>>(), expected);
-    store.set_preferences(preferences);
-    assert_eq!(all_saved(&sound(&folder.0)), both);
 }
 
 #[test]

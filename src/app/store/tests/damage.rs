@@ -46,7 +46,7 @@ fn a_file_that_is_not_text_is_set_aside_and_replaced() {
 fn a_file_damaged_during_the_game_is_completed_from_memory() {
     let folder = filled();
     let mut store = sound(&folder.0);
-    fs::write(folder.progress(), "version = 1\n[best.cellar\n").unwrap();
+    fs::write(folder.progress(), "version = 4\n[best.cellar\n").unwrap();
     store.record("citadel", Normal, run(5, Rank::Thief));
     assert!(store.trouble().unwrap().contains("damaged-1"));
     let next = sound(&folder.0);
@@ -59,10 +59,10 @@ fn a_file_damaged_during_the_game_is_completed_from_memory() {
 #[test]
 fn a_file_from_a_newer_version_is_left_alone() {
     let folder = filled();
-    let newer = folder.text().replace("version = 3", "version = 4") + "[unknown]\n";
+    let newer = folder.text().replace("version = 4", "version = 5") + "[unknown]\n";
     fs::write(folder.progress(), &newer).unwrap();
     let (mut store, sentence) = Store::open(&folder.0);
-    assert!(sentence.unwrap().contains("version 4"));
+    assert!(sentence.unwrap().contains("version 5"));
     assert!(store.record("cellar", Normal, run(5, Rank::Thief)).time);
     assert!(store.trouble().unwrap().contains("newer"));
     assert_eq!((folder.text(), folder.names("damaged").len()), (newer, 0));
