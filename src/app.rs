@@ -170,7 +170,7 @@ impl App {
             difficulty,
             goal: Goal::of(&game, settings.minimap),
             map: MapPanel::new(settings.minimap),
-            views: Views::new(View::with_caster(settings.caster.clone())),
+            views: Views::new(View::default()),
             pointer: Pointer::new(settings.mouse),
             usual_keys: settings.bindings.clone(),
             levels,

@@ -93,9 +93,6 @@ fn run_here(mut words: Vec<OsString>) -> Result<(), Error> {
         return arguments.run(&DynCaster::default());
     }
     words.remove(0);
-    if arguments.command.is_none() {
-        words.insert(0, "play".into());
-    }
     External::laboratory(words).run()
 }
 
@@ -127,29 +124,25 @@ impl Arguments {
     /// The name of the caster.
     fn caster(&self) -> &str {
         match &self.command {
-            None => &self.play.screen.look.caster,
-            Some(Command::Play(options)) => &options.screen.look.caster,
-            Some(Command::Replay(options)) => &options.screen.look.caster,
-            Some(Command::Edit(options)) => &options.screen.look.caster,
-            Some(Command::Snapshot(options)) => &options.look.caster,
+            Some(Command::Snapshot(options)) => &options.caster,
             Some(Command::Cast(options)) => &options.caster,
-            Some(_) => options::EXACT,
+            _ => options::EXACT,
         }
     }
 
     fn run(self, caster: &DynCaster) -> Result<(), Error> {
         match self.command.unwrap_or(Command::Play(self.play)) {
-            Command::Play(options) => play::run(options, caster),
-            Command::Snapshot(options) => snapshot::run(options, caster),
+            Command::Play(options) => play::run(options),
+            Command::Snapshot(options) => snapshot::run(&options, caster),
             Command::Cast(options) => cast::run(&options, caster),
             Command::Check(options) => check::run(&options),
             Command::Compare(options) => compare::run(&options),
             Command::Import(options) => import::run(&options),
             Command::Export(options) => export::run(&options),
-            Command::Edit(options) => edit::run(options, caster),
+            Command::Edit(options) => edit::run(options),
             Command::Levels(options) => levels::run(&options),
             Command::Config(options) => config::run(options),
-            Command::Replay(options) => replay::run(options, caster),
+            Command::Replay(options) => replay::run(options),
             Command::Share(options) => share::run(&options),
             Command::Completions(completions) => completions.run(Self::command()),
             Command::Man(help::Manual) => help::Manual::run(Self::command()),

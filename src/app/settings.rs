@@ -42,7 +42,7 @@ use crate::app::setting::{
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::fault::{Fault, Faults, quoted};
-use crate::render::{DynCaster, Filter};
+use crate::render::Filter;
 use crate::terminal::{Fidelity, Key};
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
@@ -62,8 +62,6 @@ pub struct Settings {
     pub glyphs: GlyphSet,
     /// The colour depth; `None` for the terminal's own.
     pub depth: Option<ColorDepth>,
-    /// The caster that the renderer uses to find walls.
-    pub caster: DynCaster,
     /// The texture filter.
     pub filter: Filter,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.

@@ -13,7 +13,6 @@ use crate::app::ClosingLines;
 use crate::app::edit::{Editor, edit};
 use crate::fault::printable_path;
 use crate::map::tiled;
-use crate::render::DynCaster;
 
 /// Draw a map in the terminal
 ///
@@ -34,7 +33,7 @@ pub(crate) struct Edit {
 }
 
 /// Edits the map until the user leaves.
-pub(crate) fn run(options: Edit, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: Edit) -> Result<(), Error> {
     let (path, name) = (&options.map, printable_path(&options.map));
     if path.as_os_str() == STANDARD_INPUT {
         return Err(Error::mistake("the editor writes to a file: name one"));
@@ -58,7 +57,7 @@ pub(crate) fn run(options: Edit, caster: &DynCaster) -> Result<(), Error> {
         )));
     }
     let editor = Editor::open(path)?;
-    let settings = options.screen.settings(caster)?;
+    let settings = options.screen.settings()?;
     let (store, damage) = open_store();
     let done = edit(editor, settings, store).map_err(about_the_terminal)?;
     say_farewell(&ClosingLines { done, trouble: None }, damage);

@@ -1,7 +1,6 @@
 //! Commands in other programs: `cellcaster NAME` runs `cellcaster-NAME`, as git and cargo do.
 //!
-//! A program in the same folder takes precedence over one on the `PATH`. Commands that used to be
-//! part of this program are forwarded to the program that contains them now.
+//! A program in the same folder takes precedence over one on the `PATH`.
 
 use std::env;
 use std::ffi::OsString;
@@ -9,17 +8,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::Error;
-
-/// The commands that moved to other programs: the name here, the program, and the words before the
-/// arguments there.
-const MOVED: [(&str, &str, &[&str]); 6] = [
-    ("serve", "server", &[]),
-    ("admin", "server", &["admin"]),
-    ("scores", "server", &["scores"]),
-    ("accuracy", "lab", &["accuracy"]),
-    ("bench", "lab", &["bench"]),
-    ("wire", "lab", &["wire"]),
-];
 
 /// The other programs of this project, and the command that installs each.
 const INSTALLED: [(&str, &str); 2] =
@@ -40,10 +28,6 @@ impl External {
         let (_, arguments) = words.split_first()?;
         let (name, rest) = arguments.split_first()?;
         let name = name.to_str()?;
-        if let Some((_, program, words)) = MOVED.iter().find(|(moved, ..)| *moved == name) {
-            let words = words.iter().map(OsString::from).chain(rest.iter().cloned());
-            return Some(Self::new(program, words.collect()));
-        }
         let is_ours = INSTALLED.iter().any(|(program, _)| *program == name);
         (is_ours || installed(name).is_some()).then(|| Self::new(name, rest.to_vec()))
     }
@@ -123,15 +107,13 @@ mod tests {
     }
 
     #[test]
-    fn moved_commands_run_other_programs() {
+    fn unknown_commands_run_other_programs() {
         for (line, expected) in [
             ("c", "here"),
             ("c cellar", "here"),
             ("c maps/cellar.toml", "here"),
-            ("c serve --listen [::]:2222", "server: --listen [::]:2222"),
-            ("c admin who", "server: admin who"),
+            ("c server --listen [::]:2222", "server: --listen [::]:2222"),
             ("c server admin who", "server: admin who"),
-            ("c wire --size 80x24", "lab: wire --size 80x24"),
             ("c lab accuracy", "lab: accuracy"),
         ] {
             assert_eq!(external(line), expected, "{line}");

@@ -110,8 +110,7 @@ pub(crate) const WHERE_TO_READ_ON: &str = "\
 const OTHER_PROGRAMS: &str = "\
 Other programs: cellcaster NAME runs cellcaster-NAME, which is beside this
 program or on the PATH.
-  cellcaster server       an SSH server in which people play together;
-                          also as serve, admin and scores
+  cellcaster server       an SSH server in which people play together
   cellcaster lab          measurements: accuracy, bench, wire, load
 
 ";

@@ -80,10 +80,6 @@ pub(crate) struct PictureOptions {
     /// Replace built-in pictures with the PNG files in this folder that have the same names, as in maps/art
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) art: Option<PathBuf>,
-    /// The method that finds walls: exact; with cellcaster-lab also dda, dda32, accumulate, fixed:BITS, table:ANGLES or
-    /// march:STEP
-    #[arg(long, value_name = "METHOD", default_value = EXACT)]
-    pub(crate) caster: String,
     #[command(flatten)]
     pub(crate) view: ViewOptions,
 }

@@ -14,7 +14,6 @@ use super::{Error, level};
 use crate::app;
 use crate::app::{ClosingLines, InitialState, Levels, Offers, Settings};
 use crate::game::{Header, LevelName, Rules};
-use crate::render::DynCaster;
 use crate::terminal::{self, take_keys_from_terminal};
 use crate::world::Difficulty;
 
@@ -65,7 +64,7 @@ Examples:
   cellcaster --record walk.script && cellcaster replay walk.script";
 
 /// Plays until the player leaves.
-pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: Play) -> Result<(), Error> {
     if options.text {
         check_text_mode(&options)?;
     }
@@ -74,7 +73,7 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
         None => level::name(options.place.map.as_deref()),
         Some(_) => None,
     };
-    let settings = Settings { difficulty: options.difficulty, ..options.screen.settings(caster)? };
+    let settings = Settings { difficulty: options.difficulty, ..options.screen.settings()? };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.force)).transpose()?;
     let (store, damage) = open_store();

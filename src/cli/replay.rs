@@ -19,7 +19,6 @@ use crate::app::status::{of_steps, tenths};
 use crate::app::store::{DescentRun, replayed};
 use crate::app::{InitialState, MAX_PLAYBACK_STEPS, Recording, Settings};
 use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
-use crate::render::DynCaster;
 use crate::world::World;
 
 /// Watch a script in the terminal, or check its result
@@ -73,7 +72,7 @@ impl Showcase {
 pub const ROOM_RECORDING: &str = "cellcaster-room ";
 
 /// Shows the run, or writes the report that `options` select.
-pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: ReplayCommand) -> Result<(), Error> {
     if is_room_recording(&options.script) {
         let verify = options.verify.then(|| "--verify".into());
         let words = [verify, Some(options.script.into_os_string()), options.place.map];
@@ -94,7 +93,7 @@ pub(crate) fn run(options: ReplayCommand, caster: &DynCaster) -> Result<(), Erro
     let levels = Box::new(level::of_script(&options.place, script.header())?);
     take_keys_after_map(&options.place)?;
     let difficulty = Some(script.header().rules().difficulty);
-    let settings = Settings { difficulty, ..options.screen.settings(caster)? };
+    let settings = Settings { difficulty, ..options.screen.settings()? };
     let (store, damage) = open_store();
     let opening = InitialState::Playback { levels, script };
     let farewell = app::play(opening, settings, store, Recording::default());

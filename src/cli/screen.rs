@@ -12,7 +12,6 @@ use super::options::{PictureOptions, fidelity, frames, replace_art};
 use super::parse::ValidValues;
 use super::{Error, config};
 use crate::app::{Configuration, Origin, SettingOrigins, Settings};
-use crate::render::DynCaster;
 use crate::terminal::{Fidelity, locale_without_utf8};
 use crate::tui::GlyphSet;
 
@@ -54,7 +53,7 @@ impl ScreenOptions {
     ///
     /// # Errors
     /// If the configuration file or the art has faults.
-    pub(crate) fn settings(self, caster: &DynCaster) -> Result<Settings, Error> {
+    pub(crate) fn settings(self) -> Result<Settings, Error> {
         let PictureOptions { cell_aspect, glyphs, filter, art, view, .. } = self.look;
         let CurrentConfiguration { configuration, path, .. } = config::load(self.config)?;
         // The folder in a configuration file is relative to the file.
@@ -82,7 +81,6 @@ impl ScreenOptions {
             cell_aspect,
             glyphs: glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
             depth: view.depth.or(configuration.colors),
-            caster: caster.clone(),
             filter,
             fidelity: self.fidelity.unwrap_or(configuration.fidelity),
             shows_stats: self.stats,

@@ -1,18 +1,11 @@
 //! `cellcaster snapshot`: writes one frame to standard output, without a terminal.
 //!
-//! With `--watch`, the frame is drawn again whenever the map changes. In a terminal, text is drawn
-//! in the same place each time, with faults over it. In any other output, pictures follow each
-//! other, and faults go to standard error. The terminal's modes stay as they are, so nothing has to
-//! be restored when Ctrl-C ends the program.
-//!
 //! The game's widget draws the cells. They are created and written in bands of rows, because
 //! 4096×4096 cells at once would take most of a gigabyte.
 
 mod format;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
-use std::thread;
-use std::time::Duration;
 
 use clap::Args;
 use glam::DVec2;
@@ -20,10 +13,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use self::format::SnapshotFormat;
-use super::options::{LevelOptions, PictureOptions, replace_art, size, within};
+use super::options::{EXACT, LevelOptions, PictureOptions, replace_art, size, within};
 use super::parse::ValidValues;
 use super::{Error, level};
-use crate::fault::{Faults, printable, printable_lines};
 use crate::game::Game;
 use crate::generate::{Generator, Site};
 use crate::map::Level;
@@ -42,12 +34,11 @@ use crate::world::{Camera, Cell, FieldOfView, Heading, Pitch, TileKind, World};
 Examples:
   cellcaster snapshot museum --format ansi
   cellcaster snapshot my.toml --size 120x40 --format png > my.png
-  cellcaster snapshot my.toml --camera 2.5,3.5,90 --format json
-  cellcaster snapshot my.toml --format ansi --watch")]
+  cellcaster snapshot my.toml --camera 2.5,3.5,90 --format json")]
 pub(crate) struct Snapshot {
-    /// The size of the picture in cells, from 1x1 to 4096x4096 [default: 80x24; with --watch, the size of the window]
-    #[arg(long, value_name = "COLSxROWS", value_parser = size)]
-    size: Option<Size>,
+    /// The size of the picture in cells, from 1x1 to 4096x4096
+    #[arg(long, value_name = "COLSxROWS", default_value = "80x24", value_parser = size)]
+    size: Size,
     /// The position in cells and the heading in degrees: 0 is east, 90 south [default: the map's start]
     #[arg(long, value_name = "X,Y,HEADING", value_parser = position_and_heading)]
     camera: Option<(DVec2, Heading)>,
@@ -58,7 +49,11 @@ pub(crate) struct Snapshot {
     #[arg(long, value_name = "DEG", value_parser = pitch)]
     pitch: Option<Pitch>,
     #[command(flatten)]
-    pub(crate) look: PictureOptions,
+    look: PictureOptions,
+    /// The method that finds walls: exact; with cellcaster-lab also dda, dda32, accumulate, fixed:BITS, table:ANGLES or
+    /// march:STEP
+    #[arg(long, value_name = "METHOD", default_value = EXACT)]
+    pub(crate) caster: String,
     /// The output format: characters (text), characters with colours (ansi), a list of cells (json), a text for tests and
     /// reviews (grid; see "compare"), or a picture (png)
     #[arg(long, value_enum, default_value_t)]
@@ -66,18 +61,11 @@ pub(crate) struct Snapshot {
     /// Print how the frame is drawn and what it costs, instead of the frame
     #[arg(long)]
     explain: bool,
-    /// Reload the map when its file or a PNG that it uses changes
-    #[arg(long)]
-    watch: bool,
     #[command(flatten)]
     place: LevelOptions,
 }
 
 impl Snapshot {
-    fn size(&self) -> Size {
-        self.size.unwrap_or(Size::new(80, 24))
-    }
-
     fn field_of_view(&self) -> FieldOfView {
         self.look.view.field_of_view.unwrap_or_default()
     }
@@ -106,35 +94,27 @@ fn pitch(text: &str) -> Result<Pitch, ValidValues> {
 const BAND: u16 = 64;
 
 /// Writes the frame that `options` describe.
-pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let is_png = options.format == SnapshotFormat::Png && !options.explain;
-    if is_png && options.watch {
-        return Err(Error::mistake(
-            "a PNG holds one picture, but --watch draws several: leave one of them out",
-        ));
-    }
     if is_png && io::stdout().is_terminal() {
         return Err(Error::mistake(
             "standard output is a terminal, which cannot show a PNG: redirect it to a file, as in \
              \"cellcaster snapshot --format png > picture.png\"",
         ));
     }
-    let cells = usize::from(options.size().width) * usize::from(options.size().height);
+    let cells = usize::from(options.size.width) * usize::from(options.size.height);
     if options.format == SnapshotFormat::Grid && !options.explain && cells > MAX_CELLS {
         return Err(Error::mistake(format!(
             "a grid has at most {MAX_CELLS} cells, but --size asks for {cells}: choose a smaller size"
         )));
     }
     replace_art(options.look.art.as_deref())?;
-    if options.watch {
-        return watch(options, caster);
-    }
     if let Some(generator) = options.place.generate {
-        let (world, camera) = generated_world(generator, &options)?;
-        return output(&world, &camera, View::with_caster(caster.clone()), &options)
+        let (world, camera) = generated_world(generator, options)?;
+        return output(&world, &camera, View::with_caster(caster.clone()), options)
             .map_err(|error| Error::of_output(&error));
     }
-    draw(&level::load(options.place.map.as_deref())?, &options, caster)
+    draw(&level::load(options.place.map.as_deref())?, options, caster)
 }
 
 /// Draws the frame of `level`.
@@ -207,7 +187,7 @@ fn output<S: Renderable>(
     mut view: View<S>,
     options: &Snapshot,
 ) -> io::Result<()> {
-    let (size, look) = (options.size(), &options.look);
+    let (size, look) = (options.size, &options.look);
     let aspect = look.cell_aspect.unwrap_or_default();
     let widget = FirstPerson::new(scene, camera)
         .glyphs(look.glyphs.unwrap_or_default())
@@ -265,89 +245,4 @@ fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
              {ceiling}"
         )
     })
-}
-
-/// The interval between two checks for changes.
-const INTERVAL: Duration = Duration::from_millis(200);
-
-/// Draws the frame, and draws it again after each change, until the program is stopped.
-fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
-    let (mut level, mut watch) = level::watch(&options.place)?;
-    let output = PictureOutput::of(&options);
-    output.show(&level, &mut options, caster)?;
-    loop {
-        thread::sleep(INTERVAL);
-        match watch.change() {
-            Some(Ok(changed)) => {
-                level = changed;
-                output.show(&level, &mut options, caster)?;
-            }
-            Some(Err(faults)) => output.report(faults)?,
-            None if output.has_another_size(&options) => {
-                output.show(&level, &mut options, caster)?;
-            }
-            None => {}
-        }
-    }
-}
-
-/// The output for the pictures.
-struct PictureOutput {
-    /// `true` if the output is a terminal, where every picture is drawn in the same place.
-    is_terminal: bool,
-    /// `true` if pictures have the size of the window.
-    fits_window: bool,
-}
-
-impl PictureOutput {
-    fn of(options: &Snapshot) -> Self {
-        let is_text = matches!(options.format, SnapshotFormat::Text | SnapshotFormat::Ansi)
-            || options.explain;
-        let is_terminal = is_text && io::stdout().is_terminal();
-        Self { is_terminal, fits_window: is_terminal && options.size.is_none() }
-    }
-
-    fn show(&self, level: &Level, options: &mut Snapshot, caster: &DynCaster) -> Result<(), Error> {
-        if self.fits_window {
-            options.size = window();
-        }
-        if self.is_terminal {
-            write("\x1b[2J\x1b[H")?;
-        }
-        draw(level, options, caster)
-    }
-
-    fn has_another_size(&self, options: &Snapshot) -> bool {
-        self.fits_window && window() != options.size
-    }
-
-    fn report(&self, faults: Faults) -> Result<(), Error> {
-        if !self.is_terminal || !io::stderr().is_terminal() {
-            Error::from(faults).warn();
-            return Ok(());
-        }
-        // The report goes to the top of the picture. The cursor stays below the picture.
-        write("\x1b7\x1b[H")?;
-        let report = printable_lines(&faults.to_string());
-        let room = window().map_or(10, |size| usize::from(size.height) / 2).max(1);
-        for line in report.lines().take(room) {
-            _ = write!(io::stderr(), "\x1b[2K{line}\r\n");
-        }
-        if report.lines().count() > room {
-            _ = write!(io::stderr(), "\x1b[2K{}\r\n", printable(&faults.summary()));
-        }
-        write("\x1b8")
-    }
-}
-
-/// The size of the window, minus one row for the cursor.
-fn window() -> Option<Size> {
-    let (columns, rows) = crossterm::terminal::size().ok()?;
-    Some(Size::new(columns.clamp(1, 4096), rows.clamp(2, 4096) - 1))
-}
-
-fn write(text: &str) -> Result<(), Error> {
-    let mut output = io::stdout().lock();
-    let written = output.write_all(text.as_bytes()).and_then(|()| output.flush());
-    written.map_err(|error| Error::of_output(&error))
 }

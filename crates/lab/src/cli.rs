@@ -35,9 +35,6 @@ enum Command {
     /// Run the game's command of this name with any of the lab's casters
     #[command(disable_help_flag = true)]
     Snapshot(Forwarded),
-    /// Run the game's command of this name with any of the lab's casters
-    #[command(disable_help_flag = true)]
-    Play(Forwarded),
 }
 
 /// The arguments of a command that also exists in the game.
@@ -62,7 +59,6 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Load(options) => load::run(&options),
         Command::Cast(forwarded) => return forward("cast", forwarded),
         Command::Snapshot(forwarded) => return forward("snapshot", forwarded),
-        Command::Play(forwarded) => return forward("play", forwarded),
     })
 }
 

@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use rustix::process::Signal;
-
 use super::game::{ENVIRONMENT, Key, PROGRAM, test_map};
 use crate::emulator::Speaks;
 use crate::player::Player;
@@ -115,77 +113,6 @@ fn the_player_keeps_their_place_while_it_is_free() {
     assert_eq!(column(&player), start);
     player.send(Key::Char('q').event(1) + &Key::Enter.event(1));
     player.wait_for_end().assert_given_back();
-}
-
-#[test]
-fn a_picture_is_redrawn_when_the_map_or_its_texture_changes() {
-    let path = map("snapshot");
-    let texture = path.with_file_name("wall.png");
-    let textured = MAP.replace("\"#a04030\"", "\"wall.png\"");
-    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/maps");
-    fs::copy(pictures.join("rows.png"), &texture).unwrap();
-    fs::write(&path, &textured).unwrap();
-    let words = ["snapshot", "--watch", "--format", "ansi", "--colors", "true"];
-    let mut player = start(&words, &path);
-    let picture = |player: &Player| player.look(super::game::looks);
-    let wait_for_another = |player: &Player, before: &[String]| {
-        player
-            .wait_until("drew another picture", |emulator| super::game::looks(emulator) != before);
-        player.wait_for_rest();
-    };
-    player.wait_for_rest();
-    let first = picture(&player);
-
-    fs::copy(pictures.join("letter.png"), &texture).unwrap();
-    wait_for_another(&player, &first);
-    let second = picture(&player);
-
-    save(&path, &textured.replace("#@......#", "#@.....#"));
-    player.wait_for("row 2 of the grid has 8 cells");
-    player.wait_for_rest();
-    let faulty = picture(&player);
-    let (foot, foot_before) = (&faulty[80 * 12..], &second[80 * 12..]);
-    assert!(foot == foot_before, "the last picture stays below what is said of the fault");
-
-    save(&path, &textured);
-    wait_for_another(&player, &faulty);
-    assert!(picture(&player) == second);
-
-    let written = player.bytes_written();
-    player.wait_for_rest();
-    assert_eq!(player.bytes_written(), written, "nothing is drawn while nothing changes");
-    player.send("\x03");
-    assert_eq!(player.wait_for_end().signal(), Some(Signal::INT.as_raw()));
-}
-
-#[test]
-fn faults_go_to_standard_error_if_it_is_a_file() {
-    let path = map("pipe");
-    let (out, err) = (path.with_file_name("out"), path.with_file_name("err"));
-    let script = format!(
-        "exec \"$0\" snapshot --watch --size 10x3 \"$1\" > {} 2> {}",
-        out.display(),
-        err.display()
-    );
-    let words = ["-c", &script, PROGRAM, path.to_str().unwrap()];
-    let mut player = Player::start((80, 24), Speaks::Plain, "/bin/sh", words, &ENVIRONMENT);
-    let wait_for = |what: &str, file: &Path, holds: &dyn Fn(&str) -> bool| {
-        for _ in 0..2000 {
-            if fs::read_to_string(file).is_ok_and(|text| holds(&text)) {
-                return;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(10));
-        }
-        panic!("never {what}");
-    };
-    wait_for("drew", &out, &|text| text.lines().count() == 3);
-    save(&path, "grid = 3");
-    wait_for("told of the fault", &err, &|text| text.contains("\"grid\" must be a string"));
-    save(&path, &MAP.replace("@......", ".....@."));
-    wait_for("drew again", &out, &|text| text.lines().count() == 6);
-    assert_eq!(fs::read_to_string(&err).unwrap().matches("error:").count(), 1);
-    player.signal(Signal::INT);
-    player.wait_for_end();
 }
 
 #[test]
