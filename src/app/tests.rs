@@ -18,7 +18,6 @@ mod screens;
 mod table;
 mod taking_back;
 mod titles;
-mod tmux_offers;
 
 use std::iter;
 use std::time::Duration;

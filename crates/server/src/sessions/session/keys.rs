@@ -34,11 +34,7 @@ impl Ui {
                 self.idle.restart(now);
                 self.interrupted();
             }
-            Event::Quit(_)
-            | Event::FocusGained
-            | Event::Ready
-            | Event::Suspend
-            | Event::TmuxTold(_) => {}
+            Event::Quit(_) | Event::FocusGained | Event::Ready | Event::Suspend => {}
         }
     }
 
