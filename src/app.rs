@@ -40,7 +40,7 @@ pub mod parts {
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
     pub use crate::app::playback::player::{PLAYER_HELP, Perspective, Player, PlayerKey};
-    pub use crate::app::playback::recorded::{Cursor, MarkKind, Record};
+    pub use crate::app::playback::recorded::{Cursor, MarkKind, Reader, Record};
     pub use crate::app::played::Watch;
     pub use crate::app::setting::{
         Choice, Field, FieldAt, Setting, Value, reject_range, toml_string,

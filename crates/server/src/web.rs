@@ -6,8 +6,8 @@
 //! - `GET /rooms`, `/records` and `/boards` are lists, as JSON; `/boards.txt` is the boards as text.
 //! - `GET /rooms/ID/live` becomes a WebSocket, which carries the [pictures](picture) of a room, `/rooms/ID/stream` one
 //!   that carries its [cast](alis) for asciinema's player.
-//! - `GET /records/NAME/play?from=SECONDS` becomes a WebSocket, which carries the pictures of a [record](records), and
-//!   `/records/NAME.cast` is its cast.
+//! - `GET /records/NAME/play?from=SECONDS&quarters=SPEED` becomes a WebSocket, which carries the pictures of a
+//!   [record](records), and `/records/NAME.cast` is its cast.
 //!
 //! # Rules
 //!
@@ -52,7 +52,7 @@ use tokio_websockets::{Limits as MessageLimits, ServerBuilder};
 pub(crate) use self::boards::read as read_boards;
 use self::boards::{AskBoards, Boards};
 use self::live::{Form, LiveRooms, public_rooms};
-use self::records::Records;
+use self::records::{MAX_QUARTERS, Records, USUAL_QUARTERS};
 use self::request::Request;
 use self::watch::{SEND_TIMEOUT, Source, watch};
 use crate::admission::{Admission, ConnectionId, Limits, Outcome, Refusal};
@@ -115,8 +115,8 @@ struct Answer {
 /// What a request wants that lasts.
 enum Wanted {
     Room(RoomId, Form),
-    /// The record with this name, from a second on.
-    Record(String, u32),
+    /// The record with this name, from a second on, at a speed in quarters of the usual one.
+    Record(String, u32, u32),
     /// The cast in this file.
     Cast(PathBuf),
 }
@@ -207,7 +207,8 @@ impl Web {
                 Some(room) => self.show((socket, head), &request, room).await,
                 None => finish(socket, Answer::no_room()).await,
             },
-            Wanted::Record(name, from) => match self.records.watch(&name, from) {
+            Wanted::Record(name, from, quarters) => match self.records.watch(&name, from, quarters)
+            {
                 Ok(record) => self.show((socket, head), &request, record).await,
                 Err(sentence) => finish(socket, Answer::unavailable(sentence + "\n")).await,
             },
@@ -267,8 +268,14 @@ impl Web {
                 Wanted::Room(RoomId(id), if is_live { Form::Cells } else { Form::Cast })
             }
             ["records", name, "play"] => {
-                let from = request.query("from").map_or(Ok(0), str::parse);
-                Wanted::Record(name.to_owned(), from.map_err(|_| not_found())?)
+                let number = |name, usual: u32| {
+                    request.query(name).map_or(Ok(usual), str::parse).map_err(|_| not_found())
+                };
+                let (from, quarters) = (number("from", 0)?, number("quarters", USUAL_QUARTERS)?);
+                if !(1..=MAX_QUARTERS).contains(&quarters) {
+                    return Err(not_found());
+                }
+                Wanted::Record(name.to_owned(), from, quarters)
             }
             ["records", file, ""] => {
                 let cast = file.strip_suffix(".cast").and_then(|name| self.records.cast(name));

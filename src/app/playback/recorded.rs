@@ -58,7 +58,7 @@ pub trait Record {
 }
 
 /// A record that is read ahead while it is shown.
-pub(crate) struct Reader<R: Record> {
+pub struct Reader<R: Record> {
     pub(crate) record: R,
     /// The number of steps before each part that was reached.
     starts: Vec<u64>,
@@ -108,7 +108,7 @@ pub enum MarkKind {
 
 impl<R: Record> Reader<R> {
     /// A reader of `record`, and the first state. `None` if the first part cannot begin.
-    pub(crate) fn new(mut record: R) -> Option<(Self, R::Game)> {
+    pub fn new(mut record: R) -> Option<(Self, R::Game)> {
         let start = record.begin(0)?;
         let reader = Self {
             events: record.events(&start),
@@ -129,12 +129,12 @@ impl<R: Record> Reader<R> {
     }
 
     /// The number of steps that were read.
-    pub(crate) fn steps_read(&self) -> u64 {
+    pub fn steps_read(&self) -> u64 {
         self.cursor.step
     }
 
     /// Whether the record was read to its end.
-    pub(crate) fn is_read(&self) -> bool {
+    pub fn is_read(&self) -> bool {
         self.is_read
     }
 
@@ -143,8 +143,13 @@ impl<R: Record> Reader<R> {
         &self.marks
     }
 
+    /// The steps of the marks of a kind, in order.
+    pub fn marks_of(&self, kind: MarkKind) -> impl Iterator<Item = u64> {
+        self.marks.iter().filter(move |mark| mark.kind == kind).map(|mark| mark.step)
+    }
+
     /// Reads until `is_late`.
-    pub(crate) fn read(&mut self, is_late: &dyn Fn() -> bool) {
+    pub fn read(&mut self, is_late: &dyn Fn() -> bool) {
         for count in 1..=MAX_READ {
             if self.is_read || count.is_multiple_of(STEPS_PER_LOOK) && is_late() {
                 break;
@@ -204,7 +209,7 @@ impl<R: Record> Reader<R> {
 
     /// Moves `game` from `cursor` towards the state after `step` steps, or after all that were read,
     /// until `is_late`. Returns whether it is there.
-    pub(crate) fn seek(
+    pub fn seek(
         &mut self,
         step: u64,
         (cursor, game): (&mut Cursor, &mut R::Game),

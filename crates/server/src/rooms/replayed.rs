@@ -104,6 +104,21 @@ impl RoomRecord {
             .then(|| Self { catalog: Arc::clone(catalog), rounds: Arc::from([(header, entries)]) })
     }
 
+    /// The text of the log.
+    #[cfg(test)]
+    pub(crate) fn log(&self) -> String {
+        let round = |(header, entries): &(Header, Vec<Entry>)| {
+            let entries = entries.iter().map(|entry| format!("{entry}\n"));
+            header.to_string() + &entries.collect::<String>()
+        };
+        self.rounds.iter().map(round).collect()
+    }
+
+    /// The headers of all rounds.
+    pub(crate) fn headers(&self) -> impl Iterator<Item = &Header> {
+        self.rounds.iter().map(|(header, _)| header)
+    }
+
     /// The entries of a round that take effect after `step` steps.
     fn entries(&self, round: usize, step: u64) -> &[Entry] {
         let entries = &self.rounds[round].1;
@@ -184,108 +199,36 @@ impl Record for RoomRecord {
 /// its last entry. `look` receives the room before each step.
 ///
 /// # Errors
-/// A sentence fragment, see [`RoomReplay::new`]; or the first error of `look`.
+/// A sentence fragment, if the text is not a recording, has another version, needs a level that is not in the catalog, or
+/// if nothing happens in a round for too long; or the first error of `look`.
 pub(crate) fn replayed(
     text: &str,
     catalog: &Arc<Catalog>,
     look: &mut dyn FnMut(&Room) -> Result<(), String>,
 ) -> Result<Vec<RoundReport>, String> {
-    let mut replay = RoomReplay::new(text, catalog)?;
+    let mut record = RoomRecord::parse(text, catalog)?;
     let mut reports = Vec::new();
-    loop {
-        while replay.is_playing()? {
-            look(&replay.room)?;
-            replay.advance();
-        }
-        reports.push(report(&replay.room, replay.room.header()));
-        if !replay.next_round()? {
-            return Ok(reports);
-        }
-    }
-}
-
-/// The replay of a recording, at one of its steps. Clones share the recording.
-#[derive(Clone, Debug)]
-pub(crate) struct RoomReplay {
-    record: RoomRecord,
-    /// The room in the current round.
-    pub(crate) room: Room,
-    /// The index of the round.
-    round: usize,
-    /// The step of the last entry.
-    last: u64,
-}
-
-impl RoomReplay {
-    /// The replay of `text`, before the first step.
-    ///
-    /// # Errors
-    /// A sentence fragment, if the text is not a recording, has another version, or needs a level that is not in the
-    /// catalog.
-    pub(crate) fn new(text: &str, catalog: &Arc<Catalog>) -> Result<Self, String> {
-        let mut record = RoomRecord::parse(text, catalog)?;
-        let room = record.begin(0).ok_or("it is empty")?;
-        Ok(Self { record, room, round: 0, last: 0 })
-    }
-
-    /// The headers of all rounds.
-    pub(crate) fn headers(&self) -> impl Iterator<Item = &Header> {
-        self.record.rounds.iter().map(|(header, _)| header)
-    }
-
-    /// Returns true if the round has another step.
-    ///
-    /// # Errors
-    /// A sentence fragment, if nothing happens in the round for too long.
-    fn is_playing(&self) -> Result<bool, String> {
-        let Self { record, room, round, last } = self;
-        if record.is_over(*round, room) {
-            return Ok(false);
-        }
-        let next = record.next_entry(*round, room.step()).unwrap_or(room.step());
-        if next - last > MAX_QUIET || cfg!(feature = "fuzzing") && room.step() >= MAX_FUZZED {
-            let round = room.header().round;
-            return Err(format!("nothing happens in round {round} for longer than a day"));
-        }
-        Ok(true)
-    }
-
-    /// Takes the next step of the round.
-    fn advance(&mut self) {
-        let Self { record, room, round, last } = self;
-        record.advance(Cursor { step: room.step(), part: *round }, room);
-        if !record.entries(*round, room.step()).is_empty() {
-            *last = room.step();
-        }
-    }
-
-    /// Begins the next round. Returns false if there is none.
-    ///
-    /// # Errors
-    /// A sentence fragment, if it needs a level that is not in the catalog.
-    fn next_round(&mut self) -> Result<bool, String> {
-        let Some((header, _)) = self.record.rounds.get(self.round + 1) else { return Ok(false) };
-        let level = header.level.clone();
-        let room = self.record.begin(self.round + 1);
-        self.room = room.ok_or_else(|| no_level(&level))?;
-        (self.round, self.last) = (self.round + 1, 0);
-        Ok(true)
-    }
-
-    /// Takes the next step, of the next round if need be. Returns false if there is none.
-    ///
-    /// # Errors
-    /// A sentence fragment, if nothing happens in a round for too long, or if the next round needs a level that is not
-    /// in the catalog.
-    pub(crate) fn step(&mut self) -> Result<bool, String> {
-        while !self.is_playing()? {
-            if !self.next_round()? {
-                return Ok(false);
+    for round in 0..record.rounds.len() {
+        let mut room =
+            record.begin(round).ok_or_else(|| no_level(&record.rounds[round].0.level))?;
+        // The step of the last entry.
+        let mut last = 0;
+        while !record.is_over(round, &room) {
+            let step = room.step();
+            let next = record.next_entry(round, step).unwrap_or(step);
+            if next - last > MAX_QUIET || cfg!(feature = "fuzzing") && step >= MAX_FUZZED {
+                let round = room.header().round;
+                return Err(format!("nothing happens in round {round} for longer than a day"));
+            }
+            look(&room)?;
+            record.advance(Cursor { step, part: round }, &mut room);
+            if !record.entries(round, room.step()).is_empty() {
+                last = room.step();
             }
         }
-        self.advance();
-        Ok(true)
+        reports.push(report(&room, room.header()));
     }
+    if reports.is_empty() { Err("it is empty".to_owned()) } else { Ok(reports) }
 }
 
 fn report(room: &Room, header: &Header) -> RoundReport {

@@ -5,8 +5,10 @@
 //!   ahead for it, and a browser that does not read holds one piece.
 //! - All work on records takes place in turn, on a thread that rests for as long as it has worked. So all browsers
 //!   together, however often they seek, take at most half a processor from the rooms.
-//! - A record is replayed once when it is opened. The replay leaves at most [`MAX_CHECKPOINTS`] copies of the room, from
-//!   which pieces are drawn.
+//! - A record is read once when it is opened. The [`Reader`] keeps states on the way, from which pieces are drawn, and
+//!   the marks of events, of which the page shows at most [`MARKS_PER_KIND`] of each kind.
+//! - At another speed, a browser gets its pieces faster or more slowly. If the thread cannot draw as fast, it gets them
+//!   when they are drawn.
 //! - At most [`MAX_OPEN`] records are open, each of at most [`MAX_BYTES`] and [`MAX_SECONDS`]; the rest of a longer one
 //!   is not shown. A record that is being written is shown as it was when it was opened, at most [`STALE_INTERVAL`] ago.
 //! - Records of private rooms and of players alone have other names, see
@@ -38,8 +40,9 @@ use crate::accounts::Day;
 use crate::lock::locked;
 use crate::metrics::Metrics;
 use crate::rooms::directory::{CAST, PublicRecording, Rooms};
-use crate::rooms::replayed::RoomReplay;
-use crate::rooms::room::{Catalog, Header, is_of_other_version};
+use crate::rooms::replayed::RoomRecord;
+use crate::rooms::room::{Catalog, Header, Room, is_of_other_version};
+use cellcaster::app::parts::{Cursor, MarkKind, Reader};
 use cellcaster::cli::ROOM_RECORDING;
 use cellcaster::game::STEPS_PER_SECOND;
 
@@ -49,11 +52,14 @@ const MAX_OPEN: usize = 4;
 const MAX_BYTES: u64 = 8 << 20;
 /// The most seconds of a record that are shown: four hours.
 const MAX_SECONDS: u32 = 4 * 60 * 60;
-/// The most copies of a room that are kept for a record.
-const MAX_CHECKPOINTS: usize = 24;
+/// The most marks of a kind that are shown, at equal parts of the record.
+const MARKS_PER_KIND: u64 = 240;
 /// The most pieces that are kept for a record, and the most copies of the room after them.
 const MAX_PIECES: usize = 64;
-const MAX_REPLAYS: usize = 8;
+const MAX_ROOMS: usize = 8;
+/// The usual speed and the greatest one, in quarters of a second each second.
+pub(crate) const USUAL_QUARTERS: u32 = 4;
+pub(crate) const MAX_QUARTERS: u32 = 64;
 /// The longest time that a record is replayed before other work has its turn.
 const WORK_INTERVAL: Duration = Duration::from_millis(20);
 /// The time after which a record that has grown is opened again.
@@ -100,17 +106,17 @@ impl Drop for OpenRecord {
 /// A record that can be shown from any second.
 struct WatchedRecord {
     seconds: u32,
+    /// The marks, each with its second, its sign and its name, as JSON.
+    marks: Value,
     catalog: Arc<Catalog>,
-    /// Replays at some of the seconds.
-    checkpoints: Vec<(u32, RoomReplay)>,
+    reader: Mutex<Reader<RoomRecord>>,
     drawn: Mutex<Drawn>,
 }
 
-/// The latest pieces of a record, by second, and replays at the ends of some.
-#[derive(Default)]
+/// The latest pieces of a record, by second, and the rooms after some.
 struct Drawn {
     pieces: VecDeque<(u32, Piece)>,
-    replays: VecDeque<(u32, RoomReplay)>,
+    rooms: VecDeque<(Cursor, Room)>,
 }
 
 /// A second of a record.
@@ -147,14 +153,21 @@ impl Records {
         cast.is_file().then_some(cast)
     }
 
-    /// Watches a record from a second on.
+    /// Watches a record from a second on, at a speed in quarters of the usual one.
     ///
     /// # Errors
     /// A sentence, if browsers may not watch this record now.
-    pub(crate) fn watch(self: &Arc<Self>, name: &str, from: u32) -> Result<RecordPictures, String> {
+    pub(crate) fn watch(
+        self: &Arc<Self>,
+        name: &str,
+        from: u32,
+        quarters: u32,
+    ) -> Result<RecordPictures, String> {
         let open = self.open(name)?;
         let (records, opened) = (Arc::clone(self), open.opened.clone());
-        Ok(RecordPictures { records, open, opened, second: from, due: None, words: "".into() })
+        let interval = Duration::from_secs(USUAL_QUARTERS.into()) / quarters;
+        let words = "".into();
+        Ok(RecordPictures { records, open, opened, second: from, interval, due: None, words })
     }
 
     fn open(self: &Arc<Self>, name: &str) -> Result<Arc<OpenRecord>, String> {
@@ -187,27 +200,30 @@ impl Records {
         })
     }
 
-    /// Reads a record, and replays it.
+    /// Reads a record.
     async fn load(&self, path: PathBuf) -> Result<WatchedRecord, String> {
         let sentence = |reason: String| format!("This record cannot be shown: {reason}.");
         let ended = || sentence("the server ends".to_owned());
         let rooms = self.rooms.clone();
-        let read = move || begin(&rooms, &path);
-        let replay = self.work(read).await.ok_or_else(ended)?.map_err(sentence)?;
-        let mut scan = Scan::new(replay);
-        loop {
-            let scanned = self.work(move || scan.go_on().map(|is_over| (is_over, scan))).await;
-            let (is_over, next) = scanned.ok_or_else(ended)?.map_err(sentence)?;
-            scan = next;
-            if is_over {
-                break;
-            }
+        let begun = self.work(move || begin(&rooms, &path)).await;
+        let (mut reader, start) = begun.ok_or_else(ended)?.map_err(sentence)?;
+        let most = u64::from(MAX_SECONDS * SECOND_STEPS);
+        while !reader.is_read() && reader.steps_read() < most {
+            let read = move || {
+                let begun = Instant::now();
+                reader.read(&|| begun.elapsed() >= WORK_INTERVAL);
+                reader
+            };
+            reader = self.work(read).await.ok_or_else(ended)?;
         }
+        let steps = reader.steps_read().min(most);
+        let rooms = VecDeque::from([(Cursor::default(), start)]);
         Ok(WatchedRecord {
-            seconds: scan.steps.div_ceil(SECOND_STEPS).max(1),
+            seconds: (steps as u32).div_ceil(SECOND_STEPS).max(1),
+            marks: marks(&reader, steps),
             catalog: Arc::clone(self.rooms.catalog()),
-            checkpoints: scan.checkpoints,
-            drawn: Mutex::default(),
+            reader: Mutex::new(reader),
+            drawn: Mutex::new(Drawn { pieces: VecDeque::new(), rooms }),
         })
     }
 
@@ -262,8 +278,8 @@ fn is_shown(rooms: &Rooms, header: &Header) -> bool {
     rooms.catalog().has(&header.level) && Day::of_level(&header.level).is_none_or(is_today)
 }
 
-/// The replay of the log in a file, or of its first part.
-fn begin(rooms: &Rooms, path: &Path) -> Result<RoomReplay, String> {
+/// A reader of the log in a file, or of its first part, and the room at its beginning.
+fn begin(rooms: &Rooms, path: &Path) -> Result<(Reader<RoomRecord>, Room), String> {
     let read = || -> io::Result<String> {
         let mut bytes = Vec::new();
         File::open(path)?.take(MAX_BYTES).read_to_end(&mut bytes)?;
@@ -273,66 +289,28 @@ fn begin(rooms: &Rooms, path: &Path) -> Result<RoomReplay, String> {
     let text = read().map_err(|error| error.to_string())?;
     // The first part may end within the header of a round.
     let catalog = rooms.catalog();
-    let replay = RoomReplay::new(&text, catalog).or_else(|fault| {
+    let record = RoomRecord::parse(&text, catalog).or_else(|fault| {
         let last = text.rfind(ROOM_RECORDING).filter(|last| *last > 0);
         last.filter(|_| !is_of_other_version(&text))
-            .map_or(Err(fault), |last| RoomReplay::new(&text[..last], catalog))
+            .map_or(Err(fault), |last| RoomRecord::parse(&text[..last], catalog))
     })?;
-    if !replay.headers().all(|header| is_shown(rooms, header)) {
+    if !record.headers().all(|header| is_shown(rooms, header)) {
         return Err("the host no longer has its level".to_owned());
     }
-    Ok(replay)
+    Reader::new(record).ok_or_else(|| "it is empty".to_owned())
 }
 
-/// The first replay of a record.
-struct Scan {
-    replay: RoomReplay,
-    steps: u32,
-    checkpoints: Vec<(u32, RoomReplay)>,
-    /// The seconds between two checkpoints.
-    interval: u32,
-}
-
-impl Scan {
-    fn new(replay: RoomReplay) -> Self {
-        Self { replay, steps: 0, checkpoints: Vec::new(), interval: 10 }
-    }
-
-    /// Replays for at most [`WORK_INTERVAL`]. Returns true at the end.
-    fn go_on(&mut self) -> Result<bool, String> {
-        let begun = Instant::now();
-        loop {
-            if self.steps.is_multiple_of(SECOND_STEPS) {
-                let second = self.steps / SECOND_STEPS;
-                if second >= MAX_SECONDS {
-                    return Ok(true);
-                }
-                self.keep(second);
-            }
-            if !self.replay.step()? {
-                return Ok(true);
-            }
-            self.steps += 1;
-            if self.steps.is_multiple_of(SECOND_STEPS) && begun.elapsed() >= WORK_INTERVAL {
-                return Ok(false);
-            }
-        }
-    }
-
-    /// Keeps a copy if one is due. If there are too many, keeps every second one.
-    fn keep(&mut self, second: u32) {
-        if !second.is_multiple_of(self.interval) {
-            return;
-        }
-        if self.checkpoints.len() >= MAX_CHECKPOINTS {
-            self.interval *= 2;
-            let interval = self.interval;
-            self.checkpoints.retain(|(second, _)| second.is_multiple_of(interval));
-        }
-        if second.is_multiple_of(self.interval) {
-            self.checkpoints.push((second, self.replay.clone()));
-        }
-    }
+/// The marks in the first `steps` steps, as JSON: of each kind at most one in each of [`MARKS_PER_KIND`] equal parts.
+fn marks(reader: &Reader<RoomRecord>, steps: u64) -> Value {
+    let part = |step: u64| step * MARKS_PER_KIND / steps.max(1);
+    let of_kind = |kind: MarkKind| {
+        let (name, sign) = kind.name();
+        let mut steps: Vec<u64> = reader.marks_of(kind).filter(|step| *step <= steps).collect();
+        steps.dedup_by_key(|step| part(*step));
+        let second = move |step: u64| (step - 1) / u64::from(SECOND_STEPS);
+        steps.into_iter().map(move |step| json!([second(step), sign, name]))
+    };
+    MarkKind::ALL.into_iter().flat_map(of_kind).collect()
 }
 
 impl WatchedRecord {
@@ -343,42 +321,48 @@ impl WatchedRecord {
         })
     }
 
-    /// Draws a piece, and keeps it. `None` if the record has no checkpoint before it.
+    /// Draws a piece, and keeps it. `None` if nothing can be drawn.
     fn draw(&self, second: u32, metrics: &Metrics) -> Option<Piece> {
-        let recent = locked(&self.drawn, |drawn| {
-            let before = drawn.replays.iter().filter(|it| it.0 <= second);
-            before.max_by_key(|it| it.0).cloned()
-        });
-        let kept = self.checkpoints.iter().rev().find(|it| it.0 <= second).cloned();
-        let (at, mut replay) = recent.into_iter().chain(kept).max_by_key(|it| it.0)?;
-        for _ in at * SECOND_STEPS..second * SECOND_STEPS {
-            replay.step().ok()?;
-        }
+        let first = second * SECOND_STEPS;
+        let (mut cursor, mut room) = locked(&self.drawn, |drawn| {
+            let is_before = |it: &&(Cursor, Room)| it.0.step <= u64::from(first);
+            drawn
+                .rooms
+                .iter()
+                .filter(is_before)
+                .max_by_key(|it| it.0.step)
+                .or(drawn.rooms.back())
+                .cloned()
+        })?;
         let mut message = picture::Message::default();
         let (mut said, mut before) = (None, Vec::new());
-        for step in
-            (second * SECOND_STEPS..(second + 1) * SECOND_STEPS).step_by(PICTURE_STEPS as usize)
-        {
-            // The snapshot is dropped before the next step, which would copy its game.
-            let view = replay.room.view();
-            let cells = picture::draw(&view, &self.catalog);
-            metrics.web_pictures.inc();
-            if said.is_none() {
-                said = Some(words(&view, &self.catalog).into());
-                message.push_whole(step, &cells);
-            } else {
-                message.push_changes(step, &before, &cells);
+        locked(&self.reader, |reader| {
+            let mut goes_to = |step: u32, room: &mut Room| {
+                reader.seek(step.into(), (&mut cursor, room), &|| false);
+                cursor.step == u64::from(step)
+            };
+            for step in (first..first + SECOND_STEPS).step_by(PICTURE_STEPS as usize) {
+                if !goes_to(step, &mut room) {
+                    break;
+                }
+                // The snapshot is dropped before the next step, which would copy its game.
+                let view = room.view();
+                let cells = picture::draw(&view, &self.catalog);
+                metrics.web_pictures.inc();
+                if said.is_none() {
+                    said = Some(words(&view, &self.catalog).into());
+                    message.push_whole(step, &cells);
+                } else {
+                    message.push_changes(step, &before, &cells);
+                }
+                before = cells;
             }
-            before = cells;
-            drop(view);
-            if !(0..PICTURE_STEPS).all(|_| replay.step().unwrap_or_default()) {
-                break;
-            }
-        }
+            goes_to(first + SECOND_STEPS, &mut room);
+        });
         let piece = Piece { message: message.take()?, words: said? };
         locked(&self.drawn, |drawn| {
             push(&mut drawn.pieces, (second, piece.clone()), MAX_PIECES);
-            push(&mut drawn.replays, (second + 1, replay), MAX_REPLAYS);
+            push(&mut drawn.rooms, (cursor, room), MAX_ROOMS);
         });
         Some(piece)
     }
@@ -399,6 +383,8 @@ pub(crate) struct RecordPictures {
     opened: watch::Receiver<Option<Opened>>,
     /// The next second.
     second: u32,
+    /// The time between two pieces.
+    interval: Duration,
     /// When the piece after it is due; `None` before the first one.
     due: Option<tokio::time::Instant>,
     words: Arc<str>,
@@ -420,13 +406,14 @@ impl Source for RecordPictures {
             due
         } else {
             self.second = self.second.min(record.seconds - 1);
-            messages.push(Message::text(json!({ "seconds": record.seconds }).to_string()));
+            let facts = json!({ "seconds": record.seconds, "marks": record.marks });
+            messages.push(Message::text(facts.to_string()));
             now() - RESERVE_INTERVAL
         };
         let piece = self.records.piece(&record, self.second).await;
         let piece = piece.ok_or("The rest of the record cannot be shown.")?;
         self.second += 1;
-        self.due = Some((due + Duration::from_secs(1)).max(now() - RESERVE_INTERVAL));
+        self.due = Some((due + self.interval).max(now() - RESERVE_INTERVAL));
         if self.words != piece.words {
             self.words = Arc::clone(&piece.words);
             messages.push(Message::text(piece.words.to_string()));

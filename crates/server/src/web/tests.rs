@@ -20,10 +20,11 @@ use crate::accounts::{AccountId, AddressPrefix, LevelBoard, LevelScore, Name, Un
 use crate::config::Config;
 use crate::metrics::Metrics;
 use crate::rooms::directory::{Place, Recordings, RoomLimits, Seeds};
-use crate::rooms::replayed::replayed;
+use crate::rooms::replayed::{RoomRecord, replayed};
 use crate::rooms::room::{CHAT_COLUMNS, Catalog, Command, Mode, NAME_COLUMNS};
 use crate::rooms::summary::RoomRequest;
-use cellcaster::game::{Intent, Intents, Rank, Tally};
+use cellcaster::app::parts::{MarkKind, Record};
+use cellcaster::game::{Intent, Intents, Rank, Script, Tally};
 use cellcaster::world::Difficulty;
 
 /// Long enough for a machine under load.
@@ -166,6 +167,8 @@ struct Screen {
     step: u32,
     cells: Vec<Cell>,
     words: Value,
+    /// The length and the marks of a record.
+    facts: Value,
     /// The number of whole pictures, and of changes.
     pictures: [usize; 2],
 }
@@ -193,7 +196,9 @@ impl Screen {
             if let Some((_, reason)) = message.as_close() {
                 return Err(reason.to_owned());
             } else if let Some(text) = message.as_text() {
-                self.words = serde_json::from_str(text).unwrap();
+                let value: Value = serde_json::from_str(text).unwrap();
+                let is_facts = value.get("seconds").is_some();
+                *(if is_facts { &mut self.facts } else { &mut self.words }) = value;
             } else if message.is_binary() {
                 return Ok(self.show(message.as_payload()));
             }
@@ -296,6 +301,8 @@ fn the_page_and_the_list_are_served_and_everything_else_is_rejected() {
             ("GET /other HTTP/1.1\r\n\r\n", "404"),
             ("GET /records/../room-1.cast HTTP/1.1\r\n\r\n", "404"),
             ("GET /records/room-1/play?from=-1 HTTP/1.1\r\n\r\n", "404"),
+            ("GET /records/room-1/play?quarters=0 HTTP/1.1\r\n\r\n", "404"),
+            ("GET /records/room-1/play?from=2&quarters=65 HTTP/1.1\r\n\r\n", "404"),
             ("GET /rooms/1/live HTTP/1.1\r\nHost: a\r\n\r\n", "426"),
             ("GET /rooms/x/live HTTP/1.1\r\nHost: a\r\n\r\n", "404"),
             ("POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "405"),
@@ -655,6 +662,52 @@ fn a_record_is_shown_from_any_second_exactly_as_it_was() {
             counts.push(house.metrics.web_pictures.get());
         }
         assert!(counts[1] > counts[0] && counts[1] == counts[2], "{counts:?}");
+    });
+}
+
+#[test]
+fn the_marks_of_a_record_are_the_events_that_happened() {
+    run(async || {
+        let folder = Folder::new("marks");
+        let house = folder.house(|_| ());
+        let catalog = house.rooms.catalog();
+        let script = include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../maps/scripts/clock.easy.script"
+        ));
+        let script = Script::parse(script, "the script").unwrap();
+        let record = RoomRecord::of_script(&script, name("Ada"), catalog).unwrap();
+        let log = record.log().replace("mode alone", "mode together");
+        fs::write(folder.0.join("room-1.log"), &log).unwrap();
+        let (mut steps, mut before) = (0, None);
+        let mut expected = BTreeSet::new();
+        replayed(&log, catalog, &mut |room| {
+            let events = record.events(room);
+            let happened =
+                MarkKind::ALL.into_iter().zip(before.unwrap_or(events).into_iter().zip(events));
+            let happened = happened.filter(|(_, (before, now))| now > before);
+            expected.extend(happened.map(|(kind, _)| ((steps - 1) / 60, kind.name().0.to_owned())));
+            (steps, before) = (steps + 1, Some(events));
+            Ok(())
+        })
+        .unwrap();
+        // Nothing looks at the room after the last step, which wins the level.
+        expected.insert(((steps - 1) / 60, MarkKind::End.name().0.to_owned()));
+        assert!(expected.len() > 1, "{expected:?}");
+        let mut socket = house.open_of_page("records/room-1/play?quarters=64").await.unwrap();
+        let mut screen = Screen::default();
+        screen.next(&mut socket).await;
+        let marks = screen.facts["marks"].as_array().unwrap().iter();
+        let marks = marks.map(|it| (it[0].as_u64().unwrap(), it[2].as_str().unwrap().to_owned()));
+        // A mark that follows another one of its kind within a second is left out.
+        let marks: BTreeSet<_> = marks.collect();
+        assert!(marks.is_subset(&expected), "{marks:?}, {expected:?}");
+        let is_near = |(second, kind): &(u64, String)| {
+            [*second, second.saturating_sub(1)]
+                .iter()
+                .any(|it| marks.contains(&(*it, kind.clone())))
+        };
+        assert!(expected.iter().all(is_near), "{marks:?}, {expected:?}");
     });
 }
 

@@ -1,9 +1,11 @@
 //! The page in Chromium, which the test drives as a person would.
 
+use std::fmt::Write;
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 
+use cellcaster::game::Script;
 use flate2::read::DeflateDecoder;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};
@@ -16,6 +18,9 @@ use crate::play::enter_room;
 use crate::scores::filled;
 use crate::transport::{TIMEOUT, folder, wait_until};
 
+/// A script that wins a level.
+const SCRIPT: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/clock.easy.script"));
 /// The size of a picture in pixels, two for each cell.
 const PICTURE: [usize; 2] = [96, 60];
 /// The middle of each pixel on the page's canvas, as a list of colours; null before the first picture.
@@ -167,6 +172,19 @@ fn first_picture(port: u16, path: &str) -> Vec<u8> {
     pixels
 }
 
+/// The log of a room in which a player plays `script`.
+fn log_of(script: &str) -> String {
+    let script = Script::parse(script, "the script").unwrap();
+    let mut log =
+        "cellcaster-room 2\nlevel clock\nmode together\ndifficulty easy\nseed 0\nround 1\nnext 2\n\
+                   member 1 red 0 Mara\n"
+            .to_owned();
+    for (step, (_, intents)) in script.iter().enumerate() {
+        _ = writeln!(log, "{step} want 1 {step} {}", intents.words());
+    }
+    log
+}
+
 #[test]
 fn a_room_is_chosen_by_keyboard_and_shown_exactly() {
     let (running, [web, _]) = watched(&[]);
@@ -207,6 +225,8 @@ fn a_room_is_chosen_by_keyboard_and_shown_exactly() {
 fn a_record_is_played_by_keyboard_and_shown_exactly() {
     let (recordings, store) = (folder(), folder());
     drop(filled(&store));
+    std::fs::create_dir_all(&recordings).unwrap();
+    std::fs::write(recordings.join("room-900.log"), log_of(SCRIPT)).unwrap();
     let [recordings, store] = [recordings, store].map(|it| it.display().to_string());
     let (running, [web, _]) = watched(&["--record-room", &recordings, "--store", &store, "--web"]);
     let mara = running.visitor();
@@ -261,4 +281,28 @@ fn a_record_is_played_by_keyboard_and_shown_exactly() {
         page.value("document.getElementById('room').hidden && location.hash === ''") == json!(true)
     });
     assert_eq!(browser.value(is_chosen), json!(true), "the focus has left the list");
+    // The marks of a record are seconds on its time line, and it plays faster.
+    browser.value("location.hash = 'record-room-900'");
+    browser.press(" ", 32, " ");
+    let texts =
+        "[...document.querySelectorAll('#marks span')].map((it) => it.textContent).join('')";
+    browser.wait_for("marks", |page| page.value(texts).as_str().is_some_and(|it| !it.is_empty()));
+    assert_eq!(
+        browser.value("length > 1 && new Set(marks.map((it) => it[1])).size > 1"),
+        json!(true)
+    );
+    browser.value("if (plays) setPlaying(false)");
+    browser.press("Home", 36, "");
+    browser.press("n", 78, "n");
+    let next = "marks.find((it) => it[0] > 0)";
+    browser.wait_for("the first mark", |page| {
+        page.value(&format!("second === {next}[0]")) == json!(true)
+    });
+    let spoken = browser.value("document.getElementById('place').getAttribute('aria-valuetext')");
+    let name = browser.value(&format!("{next}[2]"));
+    assert!(spoken.as_str().unwrap().ends_with(name.as_str().unwrap()), "{spoken}, {name}");
+    (0..4).for_each(|_| browser.press(">", 190, ">"));
+    assert_eq!(browser.value("document.getElementById('speed').value"), json!("64"));
+    browser.value("setPlaying(true)");
+    shows(&mut browser, "about", "The record has ended.");
 }
