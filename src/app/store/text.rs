@@ -111,7 +111,9 @@ pub(crate) fn read(content: &[u8]) -> Result<(Progress, bool), u64> {
             "saves" => {
                 for entry in sound(&entry, entry.list()).unwrap_or_default() {
                     let save = value(&entry).and_then(SavedGameText::entry);
-                    sound(&entry, save).into_iter().for_each(|save| progress.add_save(save));
+                    if let Some(save) = sound(&entry, save) {
+                        progress.add_save(save);
+                    }
                 }
             }
             "descent" => progress.descent = sound(&entry, value(&entry)),
