@@ -74,6 +74,7 @@ pub use settings::{Configuration, Origin, SettingOrigins, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
 pub use text::play_as_text;
+use title::TmuxOrder;
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
 use crate::color::palette::ColorDepth;
@@ -155,6 +156,7 @@ struct App {
     status: StatusLine,
     /// The known properties of the terminal.
     detection: Detection,
+    tmux_order: TmuxOrder,
     /// Records the player's intents.
     script: Option<ScriptRecorder>,
 }

@@ -86,7 +86,8 @@ pub fn edit(mut editor: Editor, settings: Settings, store: Store) -> Result<Opti
         // A frame that is not exact yet is refined at the usual rate.
         let timeout = (!session.protocol().is_settled()).then_some(settings.frame_time);
         match session.next_event(timeout)? {
-            None | Some(Event::Ready | Event::FocusGained | Event::FocusLost) => {}
+            None
+            | Some(Event::Ready | Event::FocusGained | Event::FocusLost | Event::TmuxTold(_)) => {}
             Some(Event::Key(event)) => editor.key(event),
             Some(Event::Mouse(event)) => editor.mouse(event),
             Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => editor.redraw(),

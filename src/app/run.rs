@@ -124,6 +124,9 @@ impl App {
             if self.watch.take_ring() && self.store.preferences().bell {
                 session.ring_bell();
             }
+            if self.take_tmux_order() {
+                session.tell_tmux();
+            }
             presenter.update(self, session, time.now())?;
             let wakes_at = presenter.wakes_at(self, session, time.now());
             let timeout = wakes_at.and_then(|wakes| time.until(wakes));
@@ -144,6 +147,7 @@ impl App {
                     update_terminal(self, session);
                 }
                 Some(Event::KeyReleases(reported)) => self.releases_reported(reported),
+                Some(Event::TmuxTold(has_worked)) => self.tmux_told(has_worked),
                 Some(Event::Suspend) => {
                     session.suspend()?;
                     self.resumed(time.now());
@@ -249,10 +253,12 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
+    let offered = app.tmux_remedy();
     let (protocol, glyphs) = (session.protocol(), session.glyph_support());
     app.terminal_changed(TerminalLook { glyphs, ..TerminalLook::of(protocol) });
     app.pointer.set_columns(protocol.size().columns);
     app.detection.follow(protocol, app.depth(), app.settings.depth.is_some());
+    app.renew_tmux_offer(offered.as_deref());
 }
 
 /// The locale setting that restricts output to ASCII; `None` if there is no such setting, or if the

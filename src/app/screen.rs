@@ -44,6 +44,8 @@ pub(crate) enum AppScreen {
     Keys,
     /// The question for a new key of an action.
     Binding(Action),
+    /// The question whether to tell tmux that its terminal shows 24-bit colours.
+    Tmux,
     #[default]
     Playing,
     Paused,
@@ -99,6 +101,8 @@ pub(crate) enum MenuChoice {
     NextLevel,
     /// Returns to the title.
     ToTitle,
+    /// Tells tmux that its terminal shows 24-bit colours.
+    TellTmux,
     /// Leaves the program.
     Leave,
 }
@@ -189,6 +193,7 @@ impl App {
             AppScreen::Settings => self.settings_menu(),
             AppScreen::Keys => self.keys_menu(),
             AppScreen::Binding(action) => self.binding_menu(action),
+            AppScreen::Tmux => self.tmux_menu(),
             AppScreen::Dead => self.death_menu(),
             AppScreen::LevelDone => self.level_done_menu(),
             AppScreen::End => self.end_menu(),
@@ -233,6 +238,7 @@ impl App {
             MenuChoice::Restart => self.restart_level(),
             MenuChoice::NextLevel => self.next_level(),
             MenuChoice::ToTitle => self.return_to_title(),
+            MenuChoice::TellTmux => self.order_tmux(),
             MenuChoice::Leave => self.leave(),
         }
     }
@@ -247,6 +253,7 @@ impl App {
             .entries(has_maps.then_some(("My maps", "", MenuChoice::Open(AppScreen::Maps))))
             .entry("Settings", MenuChoice::Open(AppScreen::Settings))
             .entry("Help", MenuChoice::Open(AppScreen::Help))
+            .entries(self.tmux_offer())
             .entry("Leave", MenuChoice::Leave)
     }
 

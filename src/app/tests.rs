@@ -18,6 +18,7 @@ mod screens;
 mod table;
 mod taking_back;
 mod titles;
+mod tmux_offers;
 
 use std::iter;
 use std::time::Duration;

@@ -4,6 +4,10 @@
 //! - The demo has no guards, because their pictures take twice the time of everything else in the
 //!   first frame.
 //! - The app has no access to files or to the date. Its caller passes them as [`Offers`].
+//! - While tmux sends fewer colours than the terminal is known to show, and no other setting
+//!   decides the colours, a menu entry offers to tell tmux. It opens a panel with the command. Only
+//!   the answer in that panel makes the loop run the command. Rejected: a letter as its key. A
+//!   player can bind every letter, and the walking keys select entries in menus.
 //! - The letters of the name are a font of 3 by 5 points. A point is half a cell high if half
 //!   blocks can be shown, and one cell high otherwise.
 
@@ -15,11 +19,14 @@ use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
 use crate::app::App;
+use crate::app::page::Menu;
 use crate::app::played::Played;
 use crate::app::recording::{self, Steps};
+use crate::app::screen::{AppScreen, MenuChoice};
 use crate::color::palette::ColorDepth;
 use crate::game::Script;
 use crate::map::{Level, builtin};
+use crate::terminal::{ColorSource, TmuxClient};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
@@ -89,6 +96,18 @@ impl fmt::Debug for OwnMap {
     }
 }
 
+/// The progress of the player's request to tell tmux.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum TmuxOrder {
+    #[default]
+    None,
+    /// The loop has not yet taken the request.
+    Given,
+    Running,
+    Done,
+    Failed,
+}
+
 impl App {
     /// Begins the level behind the title.
     pub(crate) fn begin_demo(&mut self) {
@@ -102,6 +121,76 @@ impl App {
         match demo.next().filter(|_| !self.game.is_finished()) {
             Some(intents) => self.game.step(intents),
             None => self.begin_demo(),
+        }
+    }
+
+    /// The command that the title offers to run; `None` if it offers none.
+    pub(crate) fn tmux_remedy(&self) -> Option<String> {
+        let decides = self.detection.source == Some(ColorSource::Tmux);
+        let is_offered =
+            decides && self.settings.depth.is_none() && self.depth() == ColorDepth::Indexed256;
+        self.detection.tmux.as_ref().filter(|_| is_offered).and_then(TmuxClient::remedy)
+    }
+
+    /// The title's entry for the offer to tell tmux.
+    pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, MenuChoice)> {
+        self.tmux_remedy()
+            .map(|_| ("24-bit colours in tmux", "", MenuChoice::Open(AppScreen::Tmux)))
+    }
+
+    pub(crate) fn tmux_menu(&self) -> Menu<MenuChoice> {
+        let menu = Menu::new("tmux sends 256 colours");
+        let Some(remedy) = self.tmux_remedy() else { return menu.entry("Back", MenuChoice::Back) };
+        let menu = match self.tmux_order {
+            TmuxOrder::None => menu
+                .line("Tell this server, then detach and attach again:")
+                .line(format!("tmux {remedy}"))
+                .line("For good, add to ~/.tmux.conf:")
+                .line(remedy)
+                .entry("Tell tmux", MenuChoice::TellTmux),
+            TmuxOrder::Given | TmuxOrder::Running => menu.line("Telling tmux."),
+            TmuxOrder::Done => menu
+                .line("Done. Detach (prefix d), attach again, and press a key.")
+                .line("For good, add to ~/.tmux.conf:")
+                .line(remedy),
+            TmuxOrder::Failed => menu.line("tmux rejected the command; see docs/terminals.md."),
+        };
+        menu.entry("Back", MenuChoice::Back)
+    }
+
+    pub(crate) fn order_tmux(&mut self) {
+        self.tmux_order = TmuxOrder::Given;
+        self.renew_menu();
+    }
+
+    /// Returns true if the loop must tell tmux now. Each request returns true once.
+    pub(crate) fn take_tmux_order(&mut self) -> bool {
+        let is_given = self.tmux_order == TmuxOrder::Given;
+        if is_given {
+            self.tmux_order = TmuxOrder::Running;
+        }
+        is_given
+    }
+
+    /// Shows whether telling tmux has succeeded.
+    pub(crate) fn tmux_told(&mut self, has_worked: bool) {
+        self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
+        if self.screen() == AppScreen::Tmux {
+            self.renew_menu();
+        }
+    }
+
+    /// Updates the menu if the offered command is no longer `offered`.
+    pub(crate) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
+        let now = self.tmux_remedy();
+        if now.as_deref() == offered {
+            return;
+        }
+        self.tmux_order = TmuxOrder::None;
+        match self.screen() {
+            AppScreen::Tmux if now.is_none() => self.close(),
+            AppScreen::Tmux | AppScreen::Title => self.renew_menu(),
+            _ => {}
         }
     }
 }

@@ -38,6 +38,8 @@ pub enum Event {
     Identified,
     /// The terminal has answered whether it reports key releases. Sent at most once. No release is reported before it.
     KeyReleases(bool),
+    /// The outcome of [`Session::tell_tmux`](super::Session::tell_tmux): `true` if it has worked.
+    TmuxTold(bool),
     /// The terminal is ready for the next frame. Sent only after
     /// [`Session::is_ready`](super::Session::is_ready) has returned `false`.
     Ready,

@@ -10,9 +10,11 @@ use std::{io, mem};
 use super::error::TerminalErrorKind;
 use super::guard::TerminalGuard;
 use super::signals::{Signal, Signals};
-use super::tmux::TmuxRequest;
+use super::tmux::TmuxCommand;
 use super::unix::Device;
-use super::{Error, Event, Protocol, QuitReason, Recorder, Screen, SessionOptions, WindowSize};
+use super::{
+    Error, Event, Protocol, QuitReason, Recorder, Screen, SessionOptions, TmuxClient, WindowSize,
+};
 use crate::tui::GlyphSet;
 
 /// A terminal in use by the program: it delivers keys and shows frames.
@@ -29,9 +31,10 @@ pub struct Session {
     protocol: Protocol,
     /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
-    /// Whether the program runs in tmux. The next field is an unanswered request to tmux.
+    /// Whether the program runs in tmux. The next two fields are unanswered requests to tmux.
     is_in_tmux: bool,
-    tmux: Option<TmuxRequest>,
+    tmux: Option<TmuxCommand<TmuxClient>>,
+    tmux_remedy: Option<TmuxCommand<()>>,
     last_key_at: Duration,
 }
 
@@ -70,7 +73,7 @@ impl Session {
     pub fn next_event(&mut self, timeout: Option<Duration>) -> Result<Option<Event>, Error> {
         let deadline = timeout.and_then(|timeout| self.guard.now().checked_add(timeout));
         loop {
-            self.take_tmux_reply();
+            self.take_tmux_replies();
             if let Some(event) = self.protocol.next_event() {
                 if self.may_have_another_client(event) {
                     self.ask_tmux();
@@ -89,7 +92,8 @@ impl Session {
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
             let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at);
-            let tmux_at = self.tmux.as_ref().map(|_| self.guard.now() + TMUX_POLL_INTERVAL);
+            let awaits_tmux = self.tmux.is_some() || self.tmux_remedy.is_some();
+            let tmux_at = awaits_tmux.then(|| self.guard.now() + TMUX_POLL_INTERVAL);
             let wake_at = wake_at.chain(tmux_at).min();
             if self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
                 continue;
@@ -129,6 +133,14 @@ impl Session {
     /// frames.
     pub fn protocol(&self) -> &Protocol {
         &self.protocol
+    }
+
+    /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] reports the outcome.
+    pub fn tell_tmux(&mut self) {
+        self.tmux_remedy = self.protocol.tmux_client().and_then(TmuxCommand::remedy);
+        if self.tmux_remedy.is_none() {
+            self.protocol.push_event(Event::TmuxTold(false));
+        }
     }
 
     /// The finest block glyphs that the terminal is known to draw.
@@ -192,6 +204,7 @@ impl Session {
             awaits_readiness: false,
             is_in_tmux: options.ask_tmux,
             tmux: None,
+            tmux_remedy: None,
             last_key_at: Duration::ZERO,
         };
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
@@ -204,7 +217,7 @@ impl Session {
     /// Asks tmux about the terminal around it, unless a request is open.
     fn ask_tmux(&mut self) {
         if self.is_in_tmux && self.tmux.is_none() {
-            self.tmux = Some(TmuxRequest::begin());
+            self.tmux = Some(TmuxCommand::client());
         }
     }
 
@@ -221,12 +234,16 @@ impl Session {
         }
     }
 
-    fn take_tmux_reply(&mut self) {
-        if let Some(Poll::Ready(client)) = self.tmux.as_ref().map(TmuxRequest::reply) {
+    fn take_tmux_replies(&mut self) {
+        if let Some(Poll::Ready(client)) = self.tmux.as_ref().map(TmuxCommand::reply) {
             self.tmux = None;
             if let Some(client) = client {
                 self.protocol.take_tmux_client(client);
             }
+        }
+        if let Some(Poll::Ready(done)) = self.tmux_remedy.as_ref().map(TmuxCommand::reply) {
+            self.tmux_remedy = None;
+            self.protocol.push_event(Event::TmuxTold(done.is_some()));
         }
     }
 

@@ -3,8 +3,10 @@
 //! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux itself
 //! knows which features the attached client has, and which terminal it is.
 //!
-//! - A thread asks tmux, and stops after a timeout. The start of a session never waits for it.
-//! - The program never changes tmux. The help shows the [`remedy`](TmuxClient::remedy).
+//! - A thread runs each tmux command and stops it after a timeout. The start of a session never waits
+//!   for it.
+//! - Only the command in [`remedy`](TmuxClient::remedy) changes tmux, and it runs only for a player who
+//!   has seen it.
 //! - A client's report is text from a stranger. Names with unusual characters are dropped.
 //! - tmux reads a terminal's features only when a client attaches (measured with 3.3a: after
 //!   `set -as terminal-features`, an attached client got RGB by attaching again, not before).
@@ -46,9 +48,14 @@ impl TmuxClient {
     /// The command that makes tmux send 24-bit colours to the client from the next attachment on. `None`
     /// if tmux does so already, or if the client's terminal is not known to show them.
     pub fn remedy(&self) -> Option<String> {
+        let feature = self.missing_feature()?;
+        Some(format!("set -as terminal-features '{feature}'"))
+    }
+
+    /// The value that the remedy adds to `terminal-features`.
+    fn missing_feature(&self) -> Option<String> {
         let is_missing = !self.has_true_color && self.known.colors != TrueColorSupport::Unknown;
-        let is_known = is_missing && !self.term.is_empty();
-        is_known.then(|| format!("set -as terminal-features ',{}:RGB'", self.term))
+        (is_missing && !self.term.is_empty()).then(|| format!(",{}:RGB", self.term))
     }
 
     /// The properties of the client's terminal, as far as tmux passes them on.
@@ -80,24 +87,44 @@ impl TmuxClient {
     }
 }
 
-/// A request for the client of the tmux that the environment names.
+/// A tmux command that may still be running, with the parsed part of its answer.
 #[derive(Debug)]
-pub(crate) struct TmuxRequest(Receiver<Option<TmuxClient>>);
+pub(crate) struct TmuxCommand<T>(Receiver<Option<T>>);
 
-impl TmuxRequest {
-    pub(crate) fn begin() -> Self {
+impl TmuxCommand<TmuxClient> {
+    /// Asks the tmux that the environment names for its client.
+    pub(crate) fn client() -> Self {
+        Self::begin(|| {
+            let text = output(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT)?;
+            TmuxClient::parse(&text)
+        })
+    }
+}
+
+impl TmuxCommand<()> {
+    /// Runs the remedy for `client`. `None` if there is no remedy.
+    pub(crate) fn remedy(client: &TmuxClient) -> Option<Self> {
+        let feature = client.missing_feature()?;
+        Some(Self::begin(move || {
+            let mut command = Command::new("tmux");
+            output(command.args(["set", "-as", "terminal-features", &feature]), TIMEOUT).map(drop)
+        }))
+    }
+}
+
+impl<T: Send + 'static> TmuxCommand<T> {
+    fn begin(work: impl FnOnce() -> Option<T> + Send + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
         // If no thread starts, there is no answer, as without tmux.
         _ = thread::Builder::new().name("tmux".to_owned()).spawn(move || {
-            let text = output(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT);
             // The session may have ended.
-            _ = sender.send(text.and_then(|text| TmuxClient::parse(&text)));
+            _ = sender.send(work());
         });
         Self(receiver)
     }
 
-    /// The answer, once there is one. It is `None` if tmux has failed or its answer is unknown.
-    pub(crate) fn reply(&self) -> Poll<Option<TmuxClient>> {
+    /// The answer, once there is one. It is `None` if the command has failed or its answer is unknown.
+    pub(crate) fn reply(&self) -> Poll<Option<T>> {
         match self.0.try_recv() {
             Err(TryRecvError::Empty) => Poll::Pending,
             answer => Poll::Ready(answer.ok().flatten()),

@@ -1,4 +1,4 @@
-//! The colours in a tmux with its own server.
+//! The offer to tell tmux about its terminal's colours, in a tmux with its own server.
 
 use std::env;
 use std::fs;
@@ -12,7 +12,7 @@ use crate::player::Player;
 
 const VERSION_QUERY: &str = "\x1b[>q";
 const VERSION: &str = "\x1bP>|kitty(0.42.1)\x1b\\";
-const PAGE_DOWN: &str = "\x1b[6~";
+const DOWN: &str = "\x1b[B";
 const DETACH: &str = "\x02d";
 /// The pause after which a key may come from a client that has just attached.
 const PAUSE: Duration = Duration::from_millis(1200);
@@ -55,6 +55,11 @@ impl Server {
         player.send(VERSION);
         player
     }
+
+    fn features(&self) -> String {
+        let shown = self.command(&["show", "-s", "terminal-features"]).output().unwrap();
+        String::from_utf8(shown.stdout).unwrap()
+    }
 }
 
 impl Drop for Server {
@@ -74,36 +79,42 @@ fn has_true_color(emulator: &Emulator) -> bool {
 }
 
 #[test]
-fn tmux_sends_all_colours_after_the_command_in_the_help() {
+fn tmux_sends_all_colours_after_the_player_confirms() {
+    const OFFER: &str = "24-bit colours in tmux";
     let Some(server) = Server::new("tmux") else { return };
     let mut player = server.client(&["new-session", PROGRAM]);
     player.wait_for("New game");
     thread::sleep(PAUSE);
-    player.send("?");
-    player.wait_for("closes");
-    for _ in 0..8 {
-        if player.text().contains("tmux sends your terminal no more") {
+    player.send(DOWN);
+    player.wait_for(OFFER);
+    for _ in 0..12 {
+        if player.text().contains(&format!("> {OFFER}")) {
             break;
         }
-        player.send(PAGE_DOWN);
+        player.send(DOWN);
         thread::sleep(Duration::from_millis(300));
     }
-    let words = player.text().replace('│', " ");
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("set -as terminal-features ',xterm-256color:RGB'"), "{words}");
-    let feature = ",xterm-256color:RGB";
-    let mut command = server.command(&["set", "-as", "terminal-features", feature]);
-    assert!(command.status().unwrap().success());
+    player.wait_for(&format!("> {OFFER}"));
+    player.send("\r");
+    player.wait_for("tmux set -as terminal-features ',xterm-256color:RGB'");
+    player.wait_for("> Tell tmux");
+    assert!(!server.features().contains("RGB"), "told unasked: {}", server.features());
+    player.send("\r");
+    player.wait_for("Done. Detach");
+    player.wait_for("set -as terminal-features ',xterm-256color:RGB'");
+    assert!(server.features().contains("xterm-256color:RGB"), "{}", server.features());
     player.send(DETACH);
     assert!(player.wait_for_end().status.success());
     assert!(!player.look(has_true_color), "tmux reads features when a terminal attaches");
 
     let mut player = server.client(&["attach"]);
-    player.wait_for("closes");
+    player.wait_for("Done. Detach");
     thread::sleep(PAUSE);
-    player.send("\x1b");
+    player.send(DOWN);
     player.wait_until("sent 24-bit colours", has_true_color);
-    player.wait_for("New game");
+    player.wait_until("closed the panel", |emulator| {
+        emulator.text().contains("New game") && !emulator.text().contains(OFFER)
+    });
     player.send("q");
     assert!(player.wait_for_end().status.success());
 }

@@ -34,7 +34,11 @@ impl Ui {
                 self.idle.restart(now);
                 self.interrupted();
             }
-            Event::Quit(_) | Event::FocusGained | Event::Ready | Event::Suspend => {}
+            Event::Quit(_)
+            | Event::FocusGained
+            | Event::Ready
+            | Event::Suspend
+            | Event::TmuxTold(_) => {}
         }
     }
 
