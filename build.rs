@@ -18,10 +18,11 @@ fn main() {
             &["describe", "--always", "--exclude=*", "--abbrev=12", "--dirty= and changes"],
         )
     });
-    let commit = env::var("CELLCASTER_COMMIT").ok().or(of_git).unwrap_or("unknown".to_owned());
-    println!("cargo::rustc-env=CELLCASTER_COMMIT={commit}");
-
     let variable = |name: &str| env::var(name).unwrap_or_default();
+    let commit = env::var("CELLCASTER_COMMIT").ok().or(of_git);
+    let commit = commit.map_or_else(String::new, |commit| format!(" ({commit})"));
+    println!("cargo::rustc-env=CELLCASTER_VERSION={}{commit}", variable("CARGO_PKG_VERSION"));
+
     let compiler = output(&variable("RUSTC"), &["--version"]).unwrap_or_default();
     let flags = variable("CARGO_ENCODED_RUSTFLAGS").replace('\u{1f}', " ");
     let flags = if flags.is_empty() { "no flags" } else { &flags };

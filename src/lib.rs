@@ -192,8 +192,8 @@ pub mod tui;
 mod visibility;
 pub mod world;
 
-/// The version of the package and the commit of the build, such as "0.1.0 (6a2640d4f3c1)".
-pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("CELLCASTER_COMMIT"), ")");
+/// The version of the package, and the commit of a release build if it is known: "0.1.0 (6a2640d4f3c1)".
+pub const VERSION: &str = env!("CELLCASTER_VERSION");
 /// The compiler of the build, its level of optimisation, its flags and its target.
 pub const BUILD: &str = env!("CELLCASTER_BUILD");
 

