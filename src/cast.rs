@@ -45,6 +45,8 @@ pub use exact::Exact;
 pub(crate) use major_axis::MajorAxisTraversal;
 pub(crate) use order::CommonOrder;
 pub use order::{ExactOrder, Order, RoundedOrder};
+#[cfg(feature = "tui")]
+pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
 pub(crate) use ray::{along_line, cell_before, from_left, is_from_left};
@@ -52,6 +54,8 @@ pub(crate) use segment::Segment;
 pub(crate) use through::Intersection;
 #[cfg(feature = "tui")]
 pub(crate) use walk::Crossed;
+#[cfg(feature = "tui")]
+pub(crate) use walk::WalkFromInside;
 pub use walk::first_line;
 pub(crate) use walk::{Course, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Walk};

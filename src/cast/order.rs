@@ -47,9 +47,33 @@ pub struct ExactOrder {
 impl ExactOrder {
     /// The order for `ray` in `grid`.
     pub fn new(grid: &Grid, ray: &Ray) -> Self {
-        let rounded = RoundedOrder::new(ray);
+        Self::from_rounded(grid, ray, RoundedOrder::new(ray))
+    }
+
+    /// The same order for a camera's ray. The direction is not scaled: if a product overflows, the
+    /// difference is either in doubt, or infinite and correct.
+    #[cfg(feature = "tui")]
+    #[inline]
+    pub(crate) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
+        let direction = ray.direction();
+        Self::from_rounded(
+            grid,
+            ray,
+            RoundedOrder::of_direction(ray.origin(), direction, direction),
+        )
+    }
+
+    #[inline]
+    fn from_rounded(grid: &Grid, ray: &Ray, rounded: RoundedOrder) -> Self {
         let furthest = grid.extent() + ray.origin().abs();
         Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
+    }
+
+    /// The distances to the lines at `x` and `y`, in a common unit.
+    #[cfg(feature = "tui")]
+    #[inline]
+    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+        self.rounded.distances(x, y)
     }
 }
 

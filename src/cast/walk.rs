@@ -7,10 +7,14 @@
 //!
 //! Rejected: a loop for each method. Each would have to guarantee all of this again.
 
+#[cfg(feature = "tui")]
+mod from_inside;
 mod mirrored;
 
 use super::{ExactOrder, Order, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
+#[cfg(feature = "tui")]
+pub(crate) use from_inside::WalkFromInside;
 #[cfg(feature = "tui")]
 pub(crate) use mirrored::Crossed;
 pub(crate) use mirrored::{Course, MirrorTransform, RayWalk};
@@ -140,6 +144,16 @@ impl Axis {
         };
         let count = if step == 0 { 0 } else { i64::from(count) };
         Self { index, line, step, stride: step as f64, count }
+    }
+
+    /// Advances to the column or row with this index, which must be ahead.
+    #[cfg(feature = "tui")]
+    fn enter(&mut self, index: u32) {
+        let index = i64::from(index);
+        self.index = index;
+        if self.step != 0 {
+            self.line = if self.step > 0 { (index + 1) as f64 } else { index as f64 };
+        }
     }
 
     fn cross(&mut self) {

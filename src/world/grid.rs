@@ -236,6 +236,12 @@ impl Grid {
         size_of_val(self.cells.as_slice()) + self.distance_field.bytes()
     }
 
+    /// The tiles of all cells, in the order of [`Grid::rows`].
+    #[cfg(feature = "tui")]
+    pub(crate) fn cells(&self) -> &[TileId] {
+        &self.cells
+    }
+
     /// The tiles row by row from the north, each row from the west.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &[TileId]> {
         self.cells.chunks_exact(self.width() as usize)

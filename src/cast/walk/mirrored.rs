@@ -50,6 +50,15 @@ impl RayWalk {
         Self { ray: *ray, order, course }
     }
 
+    /// The walk of `ray` through `grid` from its entry into `cell` by a line of kind `side`. The ray must
+    /// enter the cell by such a line.
+    #[cfg(feature = "tui")]
+    #[inline]
+    pub(crate) fn entering(grid: &Grid, ray: &Ray, at: (Cell, Side)) -> Self {
+        let (order, (course, _)) = (ExactOrder::new(grid, ray), Course::entering(grid, ray, at));
+        Self { ray: *ray, order, course }
+    }
+
     /// The cell that contains the ray; `None` off the map.
     #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
@@ -94,6 +103,24 @@ impl Course {
             x,
             y,
         }
+    }
+
+    /// The course of `ray` from its entry into `cell` by a line of kind `side`, and that line, which the
+    /// ray has just crossed. The ray must enter the cell by such a line.
+    #[cfg(feature = "tui")]
+    fn entering(grid: &Grid, ray: &Ray, (cell, side): (Cell, Side)) -> (Self, Crossed) {
+        let mut course = Self::new(grid, ray);
+        course.x.enter(cell.column);
+        course.y.enter(cell.row);
+        course.column.index = course.x.index;
+        course.row.index = course.y.index;
+        let axis = match side {
+            Side::X => &course.x,
+            Side::Y => &course.y,
+        };
+        let line = axis.line - axis.stride;
+        let into = course.cell(grid);
+        (course, Crossed { side, into, line })
     }
 
     /// The course of a ray along `direction` in the cell at `place`, a column and a row along the

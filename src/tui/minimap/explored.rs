@@ -5,6 +5,9 @@
 //! upper end. A cell is seen if its floor, or a face of something in it, is within the range. The vertical field of
 //! view does not count, because the player knows the floor at their feet without looking down.
 //!
+//! Most cells have the observer's own gap: floor and ceiling at the heights of the observer's cell. A ray sees all of
+//! these cells. Until it enters another tile, it only crosses lines, and there are no mirrors to consider.
+//!
 //! A mirror ends a line of sight. A map cannot show which of its cells the mirror shows, and reflections would reveal
 //! cells behind corners.
 //!
@@ -13,7 +16,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::cast::{Crossed, Intersection, Ray, RayWalk};
+use crate::cast::{
+    Crossed, Crossing, Intersection, Ray, RayWalk, Side, WalkFromInside, distance_on_entry,
+};
 use crate::generate::Site;
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
@@ -61,8 +66,11 @@ impl Explored {
     /// Adds the cells of `world` that `camera` sees. `rays` is the width of the picture, whose columns have the same
     /// rays.
     pub fn look(&mut self, world: &World, camera: &Camera, rays: u32) {
+        self.look_by(&Observer::new(world, camera), world, camera, rays);
+    }
+
+    fn look_by(&mut self, observer: &Observer, world: &World, camera: &Camera, rays: u32) {
         self.begin(world);
-        let observer = Observer::new(world, camera);
         let forward = camera.direction();
         let plane = forward.perp() * camera.field_of_view.half_width();
         for column in 0..rays {
@@ -195,6 +203,10 @@ struct Observer<'a> {
     top: f64,
     /// A distance up to which fog hides nothing.
     clear_to: f64,
+    /// The gap around the eye in the observer's cell.
+    own_gap: Gap,
+    /// For each tile, its effect on a ray that has only been in cells with that gap.
+    passages: [RayEffect; TileId::MAX],
 }
 
 /// The range of slopes that is still visible along a ray, in height per distance.
@@ -224,8 +236,14 @@ impl<'a> Observer<'a> {
             top_gap.max(tile.top_of_what_stands())
         });
         let top = heights.fold(0.0, f64::max);
+        let place = camera.position().floor();
+        let tile = world.grid().tile(place.x as i64, place.y as i64);
+        let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
         let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(MIN_CLEARNESS));
-        Self { world, eye, top, clear_to }
+        let passages = [RayEffect::Other; TileId::MAX];
+        let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
+        observer.find_passages();
+        observer
     }
 }
 
@@ -233,14 +251,25 @@ impl Observer<'_> {
     /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
     fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
-        let walk = RayWalk::new(grid, ray);
-        let position = walk.cell(grid);
+        let walk = WalkFromInside::new(grid, ray);
+        let position = walk.as_ref().map(|&(_, cell, tile)| (cell, tile));
         if let Some((cell, tile)) = position {
             see(cell, self.is_open(tile));
         }
         let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let mut gap = self.gap_around_eye(position);
-        let mut line = SightRay { walk, position, from: 0.0 };
+        let (mut gap, mut line) = if let Some((walk, cell, tile)) = walk
+            && self.passage(tile) == RayEffect::Same
+        {
+            let start = (cell, tile);
+            let Some(line) = self.follow_through_own_gap(walk, ray, start, &mut see) else {
+                return;
+            };
+            visible = self.slopes(self.own_gap, line.from);
+            (self.own_gap, line)
+        } else {
+            let line = SightRay { walk: RayWalk::new(grid, ray), position, from: 0.0 };
+            (self.gap_around_eye(position), line)
+        };
         let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {
             let SightRay { walk, position, from } = &mut line;
@@ -331,12 +360,17 @@ impl Observer<'_> {
         t > self.clear_to && self.world.fog().is_some_and(|fog| fog.clearness(t) < MIN_CLEARNESS)
     }
 
-    /// The gap that contains the eye. Inside of solid rock, it has no bounds.
+    /// The gap that contains the eye.
     fn gap_around_eye(&self, position: Option<(Cell, TileId)>) -> Gap {
         let tile = position.map_or(self.world.ground(), |(_, tile)| self.world.tile(tile));
-        let around = tile.gaps().find(|gap| gap.holds(self.eye));
-        around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
+        gap_around(self.eye, tile)
     }
+}
+
+/// The gap of a tile that contains the eye. Inside of solid rock, the gap has no bounds.
+fn gap_around(eye: f64, tile: Tile) -> Gap {
+    let around = tile.gaps().find(|gap| gap.holds(eye));
+    around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
 }
 
 /// Returns true if something opaque stands in a gap of the tile.
@@ -351,6 +385,140 @@ struct SightRay {
     position: Option<(Cell, TileId)>,
     /// The distance at which the line has entered that cell.
     from: f64,
+}
+
+/// The effect of a tile on a ray that has only been in cells with the observer's own gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RayEffect {
+    /// The tile has the same gap, and nothing opaque stands in it. The ray sees the cell.
+    Same,
+    /// The tile is a block that ends the ray. The ray sees its face.
+    Block,
+    Other,
+}
+
+/// Two slopes differ, however they are rounded, if the nearer distance exceeds this number of cells, and the farther
+/// distance exceeds [`FARTHER`] times the nearer one.
+const NEAR: f64 = 1e-9;
+const FARTHER: f64 = 1.0 + 1e-9;
+
+/// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
+struct CertainBounds {
+    /// A lower bound of the distance up to which fog hides nothing.
+    clear_to: f64,
+    /// An upper bound of [`NEAR`].
+    near: f64,
+}
+
+impl CertainBounds {
+    fn new(unit: f64, clear_to: f64) -> Self {
+        // More than enough for the errors of both distances.
+        const MARGIN: f64 = 1.0 + 1e-9;
+        /// A unit in this range is a product that has neither underflowed nor overflowed.
+        const SOUND: std::ops::Range<f64> = 1e-150..1e150;
+        if SOUND.contains(&unit) {
+            Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }
+        } else {
+            Self { clear_to: 0.0, near: f64::INFINITY }
+        }
+    }
+
+    /// Returns true only if [`Observer::rises`] returns true for these distances.
+    #[inline]
+    fn rises(&self, from: f64, to: f64) -> bool {
+        from > self.near && to > from * (FARTHER * FARTHER)
+    }
+}
+
+impl Observer<'_> {
+    /// Makes rays take the general path in all cells.
+    #[cfg(test)]
+    fn forget_passages(&mut self) {
+        self.passages.fill(RayEffect::Other);
+    }
+
+    fn find_passages(&mut self) {
+        let Self { world, eye, top, own_gap, .. } = *self;
+        let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
+        if !is_inside {
+            return;
+        }
+        for (passage, tile) in self.passages.iter_mut().zip(world.tiles()) {
+            let is_empty = !is_opaque_inside(tile);
+            let Some(lowest) = tile.gaps().next() else { continue };
+            let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
+            if own_gap.top <= lowest.bottom || hides_all {
+                *passage = RayEffect::Block;
+            } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
+                *passage = RayEffect::Same;
+            }
+        }
+    }
+
+    /// Follows the walk of `ray` from `position`, the cell in which it begins, through cells with the observer's own
+    /// gap. Returns the line in the last of these cells, or `None` if the ray ends there.
+    #[inline]
+    fn follow_through_own_gap(
+        &self,
+        walk: WalkFromInside,
+        ray: &Ray,
+        mut position: (Cell, TileId),
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Option<SightRay> {
+        let certain = CertainBounds::new(walk.unit(), self.clear_to);
+        let (mut from, mut entered) = (0.0, None);
+        let distance = |cell, entered: Option<Side>| {
+            entered.map_or(0.0, |side| distance_on_entry(ray, cell, side))
+        };
+        for (Crossing { cell: next, tile, side }, to) in walk {
+            let passage = self.passage(tile);
+            let is_clear = to < certain.clear_to || distance(next, Some(side)) <= self.clear_to;
+            if passage == RayEffect::Other || !is_clear {
+                break;
+            }
+            if certain.rises(from, to)
+                || self.rises(distance(position.0, entered), distance(next, Some(side)))
+            {
+                see(position.0, true);
+            }
+            if passage == RayEffect::Block {
+                see(next, self.is_open(tile));
+                return None;
+            }
+            (position, from, entered) = ((next, tile), to, Some(side));
+        }
+        Some(self.line_in(ray, position, distance(position.0, entered), entered))
+    }
+
+    /// The line of `ray` in a cell that it has entered, or in which it begins.
+    #[inline(never)]
+    fn line_in(
+        &self,
+        ray: &Ray,
+        position: (Cell, TileId),
+        from: f64,
+        entered: Option<Side>,
+    ) -> SightRay {
+        let grid = self.world.grid();
+        let walk = match entered {
+            Some(side) => RayWalk::entering(grid, ray, (position.0, side)),
+            None => RayWalk::new(grid, ray),
+        };
+        SightRay { walk, position: Some(position), from }
+    }
+
+    /// Returns true if the floor of the observer's own gap has a lower slope at `from` than at `t`. The slopes are
+    /// equal in a cell if the ray meets only a corner of it.
+    #[inline]
+    fn rises(&self, from: f64, t: f64) -> bool {
+        let bottom = self.own_gap.bottom;
+        from > NEAR && t > from * FARTHER || self.slope(bottom, from) < self.slope(bottom, t)
+    }
+
+    #[inline]
+    fn passage(&self, tile: TileId) -> RayEffect {
+        self.passages[usize::from(tile.0)]
+    }
 }
 
 #[cfg(test)]
