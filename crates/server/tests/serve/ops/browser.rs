@@ -283,7 +283,6 @@ fn a_record_is_played_by_keyboard_and_shown_exactly() {
     assert_eq!(browser.value(is_chosen), json!(true), "the focus has left the list");
     // The marks of a record are seconds on its time line, and it plays faster.
     browser.value("location.hash = 'record-room-900'");
-    browser.press(" ", 32, " ");
     let texts =
         "[...document.querySelectorAll('#marks span')].map((it) => it.textContent).join('')";
     browser.wait_for("marks", |page| page.value(texts).as_str().is_some_and(|it| !it.is_empty()));

@@ -23,7 +23,7 @@ fn the_best_run_of_the_board_walks_along_in_a_race() {
     jon.wait_for("Enter saves it");
     jon.send("\x15Jon\r");
     for (shown, key) in
-        [("Open a room", "3"), ("Campaign together", "4"), ("The Archive", "5"), ("Go in", "\r")]
+        [("Open a room", "3"), ("Campaign together", "4"), ("The Archive", "6"), ("Go in", "\r")]
     {
         jon.wait_for(shown);
         jon.send(key);
