@@ -38,6 +38,9 @@ pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target
         for face in &list.faces {
             let Material::Opaque(paint) = face.material else { continue };
             let shown = ShownFace::new(scene, list, face);
+            if shown.columns.iter().all(|column| column.rows.within(&rows).is_empty()) {
+                continue;
+            }
             let is_fully_lit = face.light == FaceLight::FULL && scene.world.fog().is_none();
             if let Some(side) = shown.side().filter(|_| is_fully_lit) {
                 shown.draw(paint, &rows, band, |_| SideLit(side));
