@@ -319,8 +319,8 @@ impl LiveConfig {
     }
 
     /// Replaces the configuration, except for the addresses at which the server listens, the folder of maps
-    /// and the limits of recordings. Returns the names of the settings that `wanted` would change but that stay until the next
-    /// start.
+    /// and the limits of recordings. Returns the names of the settings that `wanted` would change but that stay
+    /// until the next start.
     pub fn replace(&self, wanted: Config) -> Vec<&'static str> {
         let now = self.get();
         let fixed = [
@@ -544,8 +544,7 @@ fn mode<'de, D: Deserializer<'de>>(from: D) -> Result<Mode, D::Error> {
 
 fn difficulty<'de, D: Deserializer<'de>>(from: D) -> Result<Difficulty, D::Error> {
     const WHAT: &str = "a difficulty: write easy, normal or hard";
-    let named = |text: &str| Difficulty::ALL.into_iter().find(|it| it.name() == text);
-    parsed(&String::deserialize(from)?, named, WHAT)
+    parsed(&String::deserialize(from)?, Difficulty::named, WHAT)
 }
 
 #[cfg(test)]
