@@ -103,24 +103,24 @@ impl Segment {
     ) -> Option<(N, N)> {
         let point = |it: DVec2| [length(it.x), length(it.y)];
         let [from, to] = self.ends.map(point);
-        let way = minus(to, from.clone());
+        let direction = minus(to, from.clone());
         let [first, last, whole] = self.part_below(top, height);
         match obstacle {
             Obstacle::Pillar { center, radius } => {
                 let (to_center, radius) = (minus(point(center), from), length(radius));
-                let (reach, square) = (radius.clone() * radius, dot(&way, &way));
-                let nearest = dot(&to_center, &way) * whole.clone();
+                let (reach, square) = (radius.clone() * radius, dot(&direction, &direction));
+                let nearest = dot(&to_center, &direction) * whole.clone();
                 let end = if nearest <= first.clone() * square.clone() {
                     first
                 } else if nearest >= last.clone() * square.clone() {
                     last
                 } else {
-                    let miss = perp_dot(&to_center, &way);
+                    let miss = perp_dot(&to_center, &direction);
                     let (reach, far) =
                         (reach * square.clone(), dot(&to_center, &to_center) * square);
                     return Some((reach.clone() - miss.clone() * miss, reach + far));
                 };
-                let [to_center, moved] = [(to_center, &whole), (way, &end)]
+                let [to_center, moved] = [(to_center, &whole), (direction, &end)]
                     .map(|([x, y], factor)| [x * factor.clone(), y * factor.clone()]);
                 let reach = reach * whole.clone() * whole;
                 let terms = reach.clone() + dot(&to_center, &to_center) + dot(&moved, &moved);
@@ -131,26 +131,26 @@ impl Segment {
                 let [start, end] = [start, end].map(point);
                 let (extent, to_start) = (minus(end, start.clone()), minus(start, from));
                 let zero = length(0.0);
-                let terms = [&to_start, &way, &extent].map(|it| dot(it, it));
+                let terms = [&to_start, &direction, &extent].map(|it| dot(it, it));
                 let terms = terms.into_iter().fold(zero.clone(), N::add) * whole.clone();
-                let across = perp_dot(&way, &extent);
-                // The point where the lines cross, along each of both, in units of `across`.
-                let on_way = perp_dot(&to_start, &extent);
-                let on_extent = perp_dot(&to_start, &way);
+                let across = perp_dot(&direction, &extent);
+                // The distances of the crossing of both lines from their starts, in units of `across`.
+                let along_segment = perp_dot(&to_start, &extent);
+                let along_obstacle = perp_dot(&to_start, &direction);
                 if across == zero {
                     return None;
                 }
-                let [across, on_way, on_extent] = if across < zero {
-                    [across, on_way, on_extent].map(|it| zero.clone() - it)
+                let [across, along_segment, along_obstacle] = if across < zero {
+                    [across, along_segment, along_obstacle].map(|it| zero.clone() - it)
                 } else {
-                    [across, on_way, on_extent]
+                    [across, along_segment, along_obstacle]
                 };
-                let on_way = on_way * whole.clone();
+                let along_segment = along_segment * whole.clone();
                 let depths = [
-                    on_way.clone() - first * across.clone(),
-                    last * across.clone() - on_way,
-                    on_extent.clone() * whole.clone(),
-                    (across - on_extent) * whole,
+                    along_segment.clone() - first * across.clone(),
+                    last * across.clone() - along_segment,
+                    along_obstacle.clone() * whole.clone(),
+                    (across - along_obstacle) * whole,
                 ];
                 let least =
                     depths.into_iter().reduce(|one, other| if other < one { other } else { one });

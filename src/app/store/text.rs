@@ -4,8 +4,8 @@
 //! values is damaged, the result is left out. A last line without a line end is dropped, because a
 //! truncated number would look like a better result.
 //!
-//! Rejected: serde for the whole text. It gives up at the first damaged value. It reads each result
-//! by itself.
+//! Serde reads one result at a time. Rejected: serde for the whole text. It gives up at the first
+//! damaged value.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

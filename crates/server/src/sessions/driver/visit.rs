@@ -109,7 +109,7 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(250);
 /// snapshots. The visitor may become idle and the room may close even if nothing is read or acknowledged.
 const WAKE_INTERVAL: Duration = Duration::from_secs(1);
 /// The time after which a driver no longer waits for a step of the room.
-const PATIENCE: Duration = Duration::from_millis(50);
+const STEP_TIMEOUT: Duration = Duration::from_millis(50);
 /// The maximum number of bytes queued behind a frame. They are only queries, so a few hundred are usual.
 const MAX_WAITING_BYTES: usize = 64 << 10;
 /// The widest message of the day, in columns.
@@ -355,13 +355,13 @@ impl Driver {
         // The step of the room from which the next frame is drawn. It comes late only if the room stands still.
         let looks_at = if is_sending { drains_at } else { self.session.looks_at(now) };
         let looks_at = looks_at.filter(|_| self.place.is_some());
-        let drain_check = drains_at.map(|time| time + PATIENCE);
+        let drain_check = drains_at.map(|time| time + STEP_TIMEOUT);
         // Outside of a room, the driver is told of every change.
-        let is_patient = is_sending || self.place.is_some();
-        let patience = is_patient.then_some(now + WAKE_INTERVAL);
+        let must_look = is_sending || self.place.is_some();
+        let next_look = must_look.then_some(now + WAKE_INTERVAL);
         let picture =
-            self.session.picture_time().filter(|_| !is_patient).map(|interval| now + interval);
-        let times = [wakes_at, drain_check, acts_at, self.ends_at, patience, picture];
+            self.session.picture_time().filter(|_| !must_look).map(|interval| now + interval);
+        let times = [wakes_at, drain_check, acts_at, self.ends_at, next_look, picture];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
