@@ -32,9 +32,13 @@ impl SampleMemory {
     /// light.
     pub(crate) fn draw<T>(&mut self, pixels: &mut Band<'_>, draw: impl FnOnce(Band<'_>) -> T) -> T {
         let (rows, width) = (pixels.rows(), pixels.width() * SIDE);
-        self.0.resize(rows.len() * SIDE * width, Rgb::BLACK);
-        let drawn = draw(Band::new(width, rows.start * SIDE as u32, &mut self.0));
-        for (row, samples) in rows.zip(self.0.chunks_exact(SIDE * width)) {
+        let count = rows.len() * SIDE * width;
+        if self.0.len() < count {
+            self.0.resize(count, Rgb::BLACK);
+        }
+        let samples = &mut self.0[..count];
+        let drawn = draw(Band::new(width, rows.start * SIDE as u32, samples));
+        for (row, samples) in rows.zip(samples.chunks_exact(SIDE * width)) {
             let [first, second, third] =
                 [0, 1, 2].map(|line| samples[line * width..][..width].as_chunks().0);
             let lines = first.iter().zip(second).zip(third);
