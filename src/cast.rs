@@ -45,8 +45,6 @@ pub use exact::Exact;
 pub(crate) use major_axis::MajorAxisTraversal;
 pub(crate) use order::CommonOrder;
 pub use order::{ExactOrder, Order, RoundedOrder};
-#[cfg(feature = "tui")]
-pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
 pub(crate) use ray::{along_line, cell_before, from_left, is_from_left};

@@ -68,13 +68,6 @@ impl ExactOrder {
         let furthest = grid.extent() + ray.origin().abs();
         Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
     }
-
-    /// The distances to the lines at `x` and `y`, in a common unit.
-    #[cfg(feature = "tui")]
-    #[inline]
-    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
-        self.rounded.distances(x, y)
-    }
 }
 
 /// A bound on the error of a difference of rounded distances to lines that are at most `furthest` away.

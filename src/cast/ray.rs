@@ -141,22 +141,6 @@ impl Hit {
     }
 }
 
-/// The distance along `ray` at which it enters `cell` by a line of kind `side`, as in [`Hit::entering`].
-#[cfg(feature = "tui")]
-#[inline]
-pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
-    // Both distances are computed, because a division of two numbers takes less time than a branch
-    // on the side.
-    let direction = ray.direction();
-    let to_far_side = DVec2::select(direction.cmplt(DVec2::ZERO), DVec2::ONE, DVec2::ZERO);
-    let corner = cell.corner() + to_far_side;
-    let along = (corner - ray.origin()) / direction;
-    match side {
-        Side::X => along.x.abs(),
-        Side::Y => along.y.abs(),
-    }
-}
-
 /// The distance along `ray` to the line of kind `side` through `corner`, and the distance from the
 /// corner to that point, to the south or to the east. The line must not be behind the ray's start.
 #[inline]

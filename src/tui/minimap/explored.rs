@@ -16,9 +16,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::cast::{
-    Crossed, Crossing, Intersection, Ray, RayWalk, Side, WalkFromInside, distance_on_entry,
-};
+use crate::cast::{Crossed, Crossing, Intersection, Ray, RayWalk, Side, WalkFromInside};
 use crate::generate::Site;
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
@@ -397,39 +395,6 @@ enum RayEffect {
     Other,
 }
 
-/// Two slopes differ, however they are rounded, if the nearer distance exceeds this number of cells, and the farther
-/// distance exceeds [`FARTHER`] times the nearer one.
-const NEAR: f64 = 1e-9;
-const FARTHER: f64 = 1.0 + 1e-9;
-
-/// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
-struct CertainBounds {
-    /// A lower bound of the distance up to which fog hides nothing.
-    clear_to: f64,
-    /// An upper bound of [`NEAR`].
-    near: f64,
-}
-
-impl CertainBounds {
-    fn new(unit: f64, clear_to: f64) -> Self {
-        // More than enough for the errors of both distances.
-        const MARGIN: f64 = 1.0 + 1e-9;
-        /// A unit in this range is a product that has neither underflowed nor overflowed.
-        const SOUND: std::ops::Range<f64> = 1e-150..1e150;
-        if SOUND.contains(&unit) {
-            Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }
-        } else {
-            Self { clear_to: 0.0, near: f64::INFINITY }
-        }
-    }
-
-    /// Returns true only if [`Observer::rises`] returns true for these distances.
-    #[inline]
-    fn rises(&self, from: f64, to: f64) -> bool {
-        from > self.near && to > from * (FARTHER * FARTHER)
-    }
-}
-
 impl Observer<'_> {
     /// Makes rays take the general path in all cells.
     #[cfg(test)]
@@ -465,20 +430,14 @@ impl Observer<'_> {
         mut position: (Cell, TileId),
         see: &mut impl FnMut(Cell, bool),
     ) -> Option<SightRay> {
-        let certain = CertainBounds::new(walk.unit(), self.clear_to);
         let (mut from, mut entered) = (0.0, None);
-        let distance = |cell, entered: Option<Side>| {
-            entered.map_or(0.0, |side| distance_on_entry(ray, cell, side))
-        };
         for (Crossing { cell: next, tile, side }, to) in walk {
             let passage = self.passage(tile);
-            let is_clear = to < certain.clear_to || distance(next, Some(side)) <= self.clear_to;
-            if passage == RayEffect::Other || !is_clear {
+            if passage == RayEffect::Other || to > self.clear_to {
                 break;
             }
-            if certain.rises(from, to)
-                || self.rises(distance(position.0, entered), distance(next, Some(side)))
-            {
+            // Both distances are equal if the ray meets only a corner of the cell.
+            if from < to {
                 see(position.0, true);
             }
             if passage == RayEffect::Block {
@@ -487,7 +446,7 @@ impl Observer<'_> {
             }
             (position, from, entered) = ((next, tile), to, Some(side));
         }
-        Some(self.line_in(ray, position, distance(position.0, entered), entered))
+        Some(self.line_in(ray, position, from, entered))
     }
 
     /// The line of `ray` in a cell that it has entered, or in which it begins.
@@ -505,14 +464,6 @@ impl Observer<'_> {
             None => RayWalk::new(grid, ray),
         };
         SightRay { walk, position: Some(position), from }
-    }
-
-    /// Returns true if the floor of the observer's own gap has a lower slope at `from` than at `t`. The slopes are
-    /// equal in a cell if the ray meets only a corner of it.
-    #[inline]
-    fn rises(&self, from: f64, t: f64) -> bool {
-        let bottom = self.own_gap.bottom;
-        from > NEAR && t > from * FARTHER || self.slope(bottom, from) < self.slope(bottom, t)
     }
 
     #[inline]
