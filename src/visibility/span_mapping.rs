@@ -140,20 +140,12 @@ impl AxisCells {
         if self.half_step == 0.0 || !self.cell.is_finite() {
             return;
         }
-        let is_forward = self.half_step > 0.0;
-        let edge = if is_forward { self.cell + 1.0 } else { self.cell };
-        let is_beyond = |x: usize| if is_forward { self.at(x) >= edge } else { self.at(x) < edge };
+        let edge = if self.half_step > 0.0 { self.cell + 1.0 } else { self.cell };
         let half_steps = (edge - self.middle) * self.half_steps_in_cell;
-        let estimate = f64::midpoint(half_steps, (self.width - 1) as f64);
-        let mut next = (estimate as usize).clamp(x + 1, end);
-        // The estimate may be off by a pixel because of rounding; the points of the pixels decide.
-        while next > x + 1 && is_beyond(next - 1) {
-            next -= 1;
-        }
-        while next < end && !is_beyond(next) {
-            next += 1;
-        }
-        self.next = next;
+        let next = f64::midpoint(half_steps, (self.width - 1) as f64);
+        // On old processors `f64::ceil` is a call.
+        let before = next as usize;
+        self.next = (before + usize::from((before as f64) < next)).clamp(x + 1, end);
     }
 }
 
