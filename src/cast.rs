@@ -47,7 +47,7 @@ pub(crate) use order::CommonOrder;
 pub use order::{ExactOrder, Order, RoundedOrder};
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
-pub(crate) use ray::{along_line, cell_before, from_left, is_from_left};
+pub(crate) use ray::{cell_before, from_left, is_from_left};
 pub(crate) use segment::Segment;
 pub(crate) use through::Intersection;
 #[cfg(feature = "tui")]

@@ -156,7 +156,7 @@ pub(crate) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
 /// The distance from `corner` to the point where `ray` meets its line of kind `side` at `t`, to the south or
 /// to the east.
 #[inline]
-pub(crate) fn along_line(ray: &Ray, t: f64, side: Side, corner: DVec2) -> f64 {
+fn along_line(ray: &Ray, t: f64, side: Side, corner: DVec2) -> f64 {
     let (origin, direction) = (ray.origin(), ray.direction());
     let offset = corner - origin;
     let (start, slope) = match side {

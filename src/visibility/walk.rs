@@ -23,8 +23,7 @@ use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
 use super::projection::RelativeHeight;
 use super::{FrameContext, WalkStats};
 use crate::cast::{
-    Caster, Course, DynCaster, Hit, Intersection, MirrorTransform, Ray, along_line, from_left,
-    is_from_left,
+    Caster, Course, DynCaster, Hit, Intersection, MirrorTransform, Ray, from_left, is_from_left,
 };
 use crate::world::sprite::builtin;
 use crate::world::{
@@ -1057,8 +1056,6 @@ fn find_texture_coordinates(
     border: &Border,
     columns: &mut ColumnMemory,
 ) {
-    /// The same limit as in [`along_line`].
-    const FAR: f64 = 1024.0;
     let Border { columns: range, face, .. } = border;
     let origin = fan.scene.projection.origin();
     let corner = face.corner();
@@ -1069,22 +1066,11 @@ fn find_texture_coordinates(
     let indices = range.start as usize..range.end as usize;
     let across = &fan.directions.across(face.side.other())[indices.clone()];
     let ColumnMemory { t, u, .. } = columns;
-    let (t, u) = (&t[indices.clone()], &mut u[indices]);
     let other = face.side.other() as usize;
     let start = -(corner[other] - origin[other]);
-    let is_near = |t: Option<&f64>, across: Option<&f64>| {
-        let moved = t.zip(across).map_or(0.0, |(t, across)| t * across);
-        start.abs() + moved.abs() <= FAR
-    };
-    if is_near(t.first(), across.first()) && is_near(t.last(), across.last()) {
-        for (u, (t, across)) in u.iter_mut().zip(t.iter().zip(across)) {
-            *u = coordinate(start + t * across);
-        }
-        return;
-    }
-    for (u, (t, column)) in u.iter_mut().zip(t.iter().zip(range.clone())) {
-        let ray = Ray::of_camera(origin, fan.directions.of(column));
-        *u = coordinate(along_line(&ray, *t, face.side, corner));
+    // Even across the largest map, the error is far less than a texel.
+    for (u, (t, across)) in u[indices.clone()].iter_mut().zip(t[indices].iter().zip(across)) {
+        *u = coordinate(start + t * across);
     }
 }
 
