@@ -31,10 +31,6 @@ pub struct Projection {
     focal_length: f64,
     /// The number of columns from the middle to a point 1 to its side at distance 1.
     focal_length_across: f64,
-    /// The width and the area of a pixel at distance 1, and the vector from its middle to its right edge.
-    pixel_width_at_1: f64,
-    pixel_area_at_1: f64,
-    half_column_at_1: DVec2,
 }
 
 /// A height relative to the eye: in rows above the horizon at distance 1, negative below.
@@ -82,9 +78,6 @@ impl Projection {
             horizon_of_texels: Horizon::new(2.0 * horizon),
             focal_length,
             focal_length_across: across,
-            pixel_width_at_1: 1.0 / across,
-            pixel_area_at_1: 1.0 / (across * focal_length),
-            half_column_at_1: camera.plane() / f64::from(width),
         }
     }
 
@@ -223,7 +216,9 @@ impl Projection {
     /// at `t`. Per unit of `t`, the ray approaches the side by `slope`.
     #[inline]
     pub(crate) fn pixel_area_on_wall(&self, t: f64, slope: f64) -> f64 {
-        t * t * self.pixel_area_at_1 / slope.abs()
+        let down = t / self.focal_length;
+        let across = t / (self.focal_length_across * slope.abs());
+        down * across
     }
 
     /// The mapping of `row` to a floor or a ceiling at `height`.
@@ -233,16 +228,15 @@ impl Projection {
 
     /// The mapping of `row` to a floor or a ceiling `height` cells below or above the eye.
     fn mapping_of(&self, row: u32, height: f64) -> SpanMapping {
-        // A span has one division, because divisions take a twelfth of the time of a small picture.
-        let of_horizon = 1.0 / (self.horizon - (f64::from(row) + 0.5)).abs();
-        let distance = height * self.focal_length * of_horizon;
-        // The distance decreases by this from a row to the one below it.
-        let along = distance * of_horizon;
+        let slope = self.slope(row).abs();
+        let distance = height / slope;
+        // The decrease of the distance from a row to the one below it.
+        let along = distance / slope / self.focal_length;
         SpanMapping {
             distance,
-            pixel_area: along * distance * self.pixel_width_at_1,
+            pixel_area: along * distance / self.focal_length_across,
             middle: self.origin + self.direction * distance,
-            half_step: self.half_column_at_1 * distance,
+            half_step: self.plane * (distance / f64::from(self.width)),
             width: self.width,
         }
     }
