@@ -28,9 +28,8 @@
 //! finds with integers, or with longer integers if the first ones cannot decide. A caster without
 //! its own [`Caster::cast_through`] treats all of these cells as walls.
 //!
-//! Callers whose speed matters are generic over the [`Caster`], and compiled for few casters.
+//! The renderer uses the exact traversal directly. The other casters exist to be measured.
 
-mod dyn_caster;
 mod exact;
 mod major_axis;
 mod order;
@@ -40,7 +39,6 @@ mod segment;
 mod through;
 mod walk;
 
-pub use dyn_caster::DynCaster;
 pub use exact::Exact;
 pub(crate) use major_axis::MajorAxisTraversal;
 pub(crate) use order::CommonOrder;
@@ -65,19 +63,12 @@ pub trait Caster {
     /// The first hit of `ray` in `grid`, or `None` if the ray escapes.
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
 
-    /// Returns whether the cell and the side of each hit of [`Caster::cast`] are correct in
-    /// rational arithmetic. The hits of rays between two others then follow from the hits of these
-    /// two. If not, each ray has to be cast.
-    fn is_exact(&self) -> bool {
-        false
-    }
-
     /// The first hit of `ray` in `world` that is not transparent, or `None` if the ray escapes.
     /// Calls `passed` with the transparent faces that the ray enters before that hit, from near to
     /// far.
     ///
     /// The default treats everything solid as a wall.
-    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+    fn cast_through(&self, world: &World, ray: &Ray, passed: &mut dyn FnMut(Hit)) -> Option<Hit> {
         _ = passed;
         self.cast(world.grid(), ray)
     }

@@ -39,7 +39,7 @@ pub use error::Error;
 use external::External;
 pub use replay::ROOM_RECORDING;
 
-use crate::render::DynCaster;
+use crate::cast::{Caster, Exact};
 
 /// A raycaster game for the terminal, and a renderer for scripts
 #[derive(Debug, Parser)]
@@ -89,25 +89,25 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn run_here(mut words: Vec<OsString>) -> Result<(), Error> {
     let Some(arguments) = parse::parse::<Arguments>(words.clone())? else { return Ok(()) };
-    if arguments.caster() == options::EXACT {
-        return arguments.run(&DynCaster::default());
+    if let Some(Command::Cast(options)) = &arguments.command
+        && options.caster != cast::EXACT
+    {
+        words.remove(0);
+        return External::laboratory(words).run();
     }
-    words.remove(0);
-    External::laboratory(words).run()
+    arguments.run()
 }
 
-/// As [`run`], but uses the caster that `named` returns for the option `--caster`, and does not run
-/// commands of other programs.
-pub fn run_with_casters(
+/// Runs the command `cast` with the caster that `named` returns for the option `--caster`.
+pub fn run_cast(
     words: impl IntoIterator<Item = OsString>,
-    named: impl Fn(&str) -> Result<DynCaster, Error>,
+    named: impl Fn(&str) -> Result<Box<dyn Caster>, Error>,
 ) -> ExitCode {
-    exit_code(parse::parse::<Arguments>(words).and_then(|arguments| match arguments {
-        Some(arguments) => {
-            let caster = named(arguments.caster())?;
-            arguments.run(&caster)
+    exit_code(parse::parse::<Arguments>(words).and_then(|arguments| {
+        match arguments.and_then(|arguments| arguments.command) {
+            Some(Command::Cast(options)) => cast::run(&options, &*named(&options.caster)?),
+            _ => Ok(()),
         }
-        None => Ok(()),
     }))
 }
 
@@ -121,20 +121,11 @@ pub fn exit_code(result: Result<(), Error>) -> ExitCode {
 }
 
 impl Arguments {
-    /// The name of the caster.
-    fn caster(&self) -> &str {
-        match &self.command {
-            Some(Command::Snapshot(options)) => &options.caster,
-            Some(Command::Cast(options)) => &options.caster,
-            _ => options::EXACT,
-        }
-    }
-
-    fn run(self, caster: &DynCaster) -> Result<(), Error> {
+    fn run(self) -> Result<(), Error> {
         match self.command.unwrap_or(Command::Play(self.play)) {
             Command::Play(options) => play::run(options),
-            Command::Snapshot(options) => snapshot::run(&options, caster),
-            Command::Cast(options) => cast::run(&options, caster),
+            Command::Snapshot(options) => snapshot::run(&options),
+            Command::Cast(options) => cast::run(&options, &Exact),
             Command::Check(options) => check::run(&options),
             Command::Compare(options) => compare::run(&options),
             Command::Import(options) => import::run(&options),

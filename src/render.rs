@@ -29,7 +29,6 @@ pub use frame::Frame;
 pub use renderable::{Options, Renderable};
 pub use threads::{OneThreadReason, Threads};
 
-pub use crate::cast::DynCaster;
 use crate::raster::{self, SkyMemory, SkyView, SurfaceBuffer};
 use crate::visibility::{self, DrawList, FrameContext, StatsCounter, VisibilityMemory};
 #[cfg(feature = "terminal")]
@@ -66,7 +65,6 @@ use threads::{ThreadMemory, draw_bands};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Renderer {
-    caster: DynCaster,
     filter: Filter,
     seconds: f64,
     /// The most threads; `None` for the number that the machine runs at once.
@@ -86,14 +84,9 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn no frame. It finds walls with [`Exact`](crate::cast::Exact).
+    /// A renderer that has drawn no frame.
     pub fn new() -> Self {
         Self::default()
-    }
-
-    /// A renderer that finds walls with `caster`.
-    pub fn with_caster(caster: DynCaster) -> Self {
-        Self { caster, ..Self::default() }
     }
 
     /// Sets the filter with which textures are sampled from the next frame on. The default is
@@ -175,7 +168,7 @@ impl Renderer {
         frame: &mut Frame,
         stats: &mut StatsCounter,
     ) -> (FramePlan, Threads) {
-        let Self { caster, filter, seconds, threads, memory } = self;
+        let Self { filter, seconds, threads, memory } = self;
         let plan = FramePlan::new(world, *filter);
         let samples = filter.samples(frame.size());
         let threads = Threads::new(frame.size(), samples, *threads);
@@ -183,9 +176,8 @@ impl Renderer {
             Projection::of_samples(camera, frame.size(), frame.pixel_aspect(), samples.get());
         let scene =
             FrameContext { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
-        let caster = Some(&*caster).filter(|caster| !caster.is_default());
         let list = &mut memory.list;
-        memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);
+        memory.next_change = visibility::fill(scene, &mut memory.visibility, list, stats);
         let sky = &SkyView::new(scene, list.shows_sky(), &mut memory.sky);
         let bands = (frame, &mut memory.surfaces);
         draw_bands(threads, samples, bands, &mut memory.threads, stats, |memory, target| {

@@ -42,7 +42,6 @@ pub use stats::{FrameStats, Pass, PassStats, WalkStats};
 pub use surface::Surface;
 pub(crate) use texture_stepper::FaceTexels;
 
-use crate::cast::DynCaster;
 use crate::world::{Camera, World};
 use layers::LayerMemory;
 use walk::WalkMemory;
@@ -65,11 +64,10 @@ pub(crate) struct VisibilityMemory {
     layers: LayerMemory,
 }
 
-/// Fills `list` with the contents of `scene`. The rays from the camera use `caster`, or the exact caster if it
-/// is `None`. Returns the time at which a thing in view next changes its appearance; `None` for never.
+/// Fills `list` with the contents of `scene`. Returns the time at which a thing in view next changes its
+/// appearance; `None` for never.
 pub(crate) fn fill(
     scene: FrameContext<'_>,
-    caster: Option<&DynCaster>,
     memory: &mut VisibilityMemory,
     list: &mut DrawList,
     stats: &mut StatsCounter,
@@ -83,7 +81,7 @@ pub(crate) fn fill(
     }
     list.sectors.begin(scene.world, walk::top_of_sky(scene));
     list.directions.begin(scene.projection);
-    let counts = walk::walk(scene, caster, walk, list);
+    let counts = walk::walk(scene, walk, list);
     let considered = layers::fill(scene, layers, list);
     stats.change(|stats| {
         let drawn = list.billboards.iter().filter(|it| it.is_drawn && it.is_of_thing());

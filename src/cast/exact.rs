@@ -26,19 +26,14 @@ impl Caster for Exact {
         Some(Hit::entering(ray, wall.cell, wall.side))
     }
 
-    #[inline]
-    fn is_exact(&self) -> bool {
-        true
-    }
-
-    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+    fn cast_through(&self, world: &World, ray: &Ray, passed: &mut dyn FnMut(Hit)) -> Option<Hit> {
         let grid = world.grid();
         if let Some(traversal) = MajorAxisTraversal::new(grid, ray) {
-            return through::cast(traversal.cell(), traversal, world, ray, |_| false, passed);
+            return through::cast(traversal.cell(), traversal, world, ray, passed);
         }
         let mut walk = Walk::new(grid, ray);
         let (start, solid_cells) = (walk.cell(), iter::from_fn(|| walk.first_solid()));
-        through::cast(start, solid_cells, world, ray, |_| false, passed)
+        through::cast(start, solid_cells, world, ray, passed)
     }
 }
 

@@ -20,14 +20,13 @@ use crate::numeric::{cross, sign_of_cross};
 use crate::world::{Cell, Grid, Line, Opening, Outline, TileId, TileKind, World};
 
 /// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`. Calls
-/// `passed` with the transparent faces that it enters. A tile that `ends` the ray is a hit.
+/// `passed` with the transparent faces that it enters.
 pub(crate) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
     world: &World,
     ray: &Ray,
-    ends: impl Fn(TileId) -> bool,
-    mut passed: impl FnMut(Hit),
+    passed: &mut dyn FnMut(Hit),
 ) -> Option<Hit> {
     let grid = world.grid();
     let leaf_in = |cell| meet_leaf(grid, ray, cell, world.opening(cell));
@@ -40,9 +39,6 @@ pub(crate) fn cast(
         return start;
     }
     for crossing in solid_cells {
-        if ends(crossing.tile) {
-            return Some(Hit::entering(ray, crossing.cell, crossing.side));
-        }
         match world.tile(crossing.tile).kind {
             TileKind::Door(_) => {
                 if let Some(hit) = leaf_in(crossing.cell) {

@@ -7,10 +7,9 @@ use clap::{Args, ValueHint};
 use glam::DVec2;
 use serde::Serialize;
 
-use super::options::{EXACT, STANDARD_INPUT};
+use super::options::STANDARD_INPUT;
 use super::{Error, level};
 use crate::cast::{Caster, Ray, Side};
-use crate::render::DynCaster;
 use crate::world::World;
 
 /// Read rays from standard input, and write hits to standard output
@@ -26,6 +25,9 @@ pub(crate) struct Cast {
     pub(crate) caster: String,
 }
 
+/// The name of the only caster in this program.
+pub(crate) const EXACT: &str = "exact";
+
 const LONG_ABOUT: &str = r##"Read rays from standard input, and write hits to standard output
 
 Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
@@ -40,7 +42,7 @@ const EXAMPLES: &str = "Examples:\n  echo \"1.5 1.5 1 0\" | cellcaster cast my.t
 ///
 /// # Errors
 /// After all lines are answered, a user error if any line was not a ray.
-pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: &Cast, caster: &dyn Caster) -> Result<(), Error> {
     if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) {
         return Err(Error::mistake(
             "cast reads rays from standard input, so the map can't come from there too: name a \
@@ -89,13 +91,13 @@ enum OutputLine {
     Error { error: String },
 }
 
-fn answer(world: &World, caster: &DynCaster, line: &[u8]) -> OutputLine {
+fn answer(world: &World, caster: &dyn Caster, line: &[u8]) -> OutputLine {
     let ray = match read_ray(line) {
         Ok(ray) => ray,
         Err(error) => return OutputLine::Error { error },
     };
     let mut nearest = None;
-    let behind = caster.cast_through(world, &ray, |hit| _ = nearest.get_or_insert(hit));
+    let behind = caster.cast_through(world, &ray, &mut |hit| _ = nearest.get_or_insert(hit));
     let Some(hit) = nearest.or(behind) else {
         return OutputLine::Escaped { escaped: true };
     };

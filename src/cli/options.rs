@@ -101,9 +101,6 @@ pub(crate) fn replace_art(folder: Option<&Path>) -> Result<(), Error> {
     map::replace_art(folder).map_err(|error| Error::mistake(error.to_string()))
 }
 
-/// The name of the only caster in this program.
-pub(crate) const EXACT: &str = "exact";
-
 /// A parser for a value with one of these names. Shell completions offer the names.
 pub(crate) fn named<T: Clone + Send + Sync + 'static>(
     names: impl IntoIterator<Item = &'static str>,

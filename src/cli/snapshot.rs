@@ -13,13 +13,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use self::format::SnapshotFormat;
-use super::options::{EXACT, LevelOptions, PictureOptions, replace_art, size, within};
+use super::options::{LevelOptions, PictureOptions, replace_art, size, within};
 use super::parse::ValidValues;
 use super::{Error, level};
 use crate::game::Game;
 use crate::generate::{Generator, Site};
 use crate::map::Level;
-use crate::render::{DynCaster, Renderable};
+use crate::render::Renderable;
 use crate::space::{self, Elevation, Scene};
 use crate::testing::MAX_CELLS;
 use crate::tui::{FirstPerson, View};
@@ -50,10 +50,6 @@ pub(crate) struct Snapshot {
     pitch: Option<Pitch>,
     #[command(flatten)]
     look: PictureOptions,
-    /// The method that finds walls: exact; with cellcaster-lab also dda, dda32, accumulate, fixed:BITS, table:ANGLES or
-    /// march:STEP
-    #[arg(long, value_name = "METHOD", default_value = EXACT)]
-    pub(crate) caster: String,
     /// The output format: characters (text), characters with colours (ansi), a list of cells (json), a text for tests and
     /// reviews (grid; see "compare"), or a picture (png)
     #[arg(long, value_enum, default_value_t)]
@@ -94,7 +90,7 @@ fn pitch(text: &str) -> Result<Pitch, ValidValues> {
 const BAND: u16 = 64;
 
 /// Writes the frame that `options` describe.
-pub(crate) fn run(options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
+pub(crate) fn run(options: &Snapshot) -> Result<(), Error> {
     let is_png = options.format == SnapshotFormat::Png && !options.explain;
     if is_png && io::stdout().is_terminal() {
         return Err(Error::mistake(
@@ -111,22 +107,21 @@ pub(crate) fn run(options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
     replace_art(options.look.art.as_deref())?;
     if let Some(generator) = options.place.generate {
         let (world, camera) = generated_world(generator, options)?;
-        return output(&world, &camera, View::with_caster(caster.clone()), options)
+        return output(&world, &camera, View::default(), options)
             .map_err(|error| Error::of_output(&error));
     }
-    draw(&level::load(options.place.map.as_deref())?, options, caster)
+    draw(&level::load(options.place.map.as_deref())?, options)
 }
 
 /// Draws the frame of `level`.
-fn draw(level: &Level, options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
+fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
             // Guards are figures of a game, and not yet part of a map's world.
             let game = (!world.guards().is_empty()).then(|| Game::new((**world).clone()));
             let world = game.as_ref().map_or(&**world, Game::world);
             let camera = camera(world, options.camera, options);
-            let view = View::with_caster(caster.clone());
-            output(world, &camera, view, options)
+            output(world, &camera, View::default(), options)
         }
         Level::Space(scene) => {
             let camera = scene_camera(scene, options)?;

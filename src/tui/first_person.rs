@@ -10,9 +10,7 @@ use super::canvas::{Canvas, draw_characters};
 use super::correction::{Edge, outline};
 use super::{CellAspect, Correction, GlyphSet, ascii, blocks};
 use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::render::{
-    DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
-};
+use crate::render::{Filter, Frame, FrameSize, Options, PixelAspect, Renderable};
 use crate::world::World;
 #[cfg(feature = "terminal")]
 use crate::world::{Camera, Figure};
@@ -242,11 +240,6 @@ impl<S: Renderable> View<S> {
 }
 
 impl View {
-    /// A view whose renderer finds walls with `caster`.
-    pub fn with_caster(caster: DynCaster) -> Self {
-        Self { renderer: Renderer::with_caster(caster), ..Self::default() }
-    }
-
     /// Returns true if `figure` may be visible in the last picture, wherever the figure was then. `world`
     /// and `camera` must be the world and the camera of the picture.
     #[cfg(feature = "terminal")]

@@ -20,7 +20,7 @@ use glam::DVec2;
 use super::face::CellFace;
 use super::{FrameContext, Projection, WalkStats};
 use crate::cast::{
-    Caster, CommonOrder, Course, DynCaster, MajorAxisTraversal, MirrorTransform, Order, Ray, Side,
+    CommonOrder, Course, Crossing, MajorAxisTraversal, MirrorTransform, Order, Ray, Side,
 };
 use crate::world::{Cell, Grid, SectorId, Sectors, TileId};
 
@@ -64,8 +64,6 @@ pub(crate) struct Fan<'a> {
     pub(crate) scene: FrameContext<'a>,
     pub(crate) sectors: &'a Sectors,
     pub(crate) directions: &'a Directions,
-    /// The caster of the rays from the camera; `None` for the exact one.
-    pub(crate) caster: Option<&'a DynCaster>,
     order: CommonOrder,
     /// The cost of the rays cast until now.
     pub(crate) counts: Counter<WalkStats>,
@@ -114,12 +112,11 @@ impl<'a> Fan<'a> {
         scene: FrameContext<'a>,
         sectors: &'a Sectors,
         directions: &'a Directions,
-        caster: Option<&'a DynCaster>,
         most_bounces: u32,
     ) -> Self {
         let origin = scene.projection.origin();
         let order = CommonOrder::new(scene.world.grid(), origin, most_bounces);
-        Self { scene, sectors, directions, caster, order, counts: Counter::default() }
+        Self { scene, sectors, directions, order, counts: Counter::default() }
     }
 
     /// Writes the faces through which the rays of `columns` leave the sector of `view` to `borders`, from left
@@ -135,8 +132,7 @@ impl<'a> Fan<'a> {
         let grid = self.grid_of(view);
         let cast = |column: u32| self.cast(view, grid, column);
         let is_each_cast = !self.scene.projection.fans_out()
-            || matches!(view.sector, SectorId::BEYOND | SectorId::SOLID)
-            || view.is_at_camera && self.caster.is_some();
+            || matches!(view.sector, SectorId::BEYOND | SectorId::SOLID);
         if is_each_cast {
             columns.for_each(|column| extend(borders, column..column + 1, cast(column)));
             return;
@@ -193,22 +189,12 @@ impl<'a> Fan<'a> {
     #[inline]
     fn cast_through(&self, grid: &Grid, direction: DVec2) -> Option<FaceHit> {
         let ray = Ray::of_camera(self.scene.projection.origin(), direction);
-        let (cell, side) = match self.caster {
-            None => {
-                let mut traversal = MajorAxisTraversal::new(grid, &ray)?;
-                let (start, crossing) = (traversal.cell(), traversal.next()?);
-                if let Some((start, _)) = start {
-                    let cell = crossing.cell;
-                    let cells = start.column.abs_diff(cell.column) + start.row.abs_diff(cell.row);
-                    self.count(u64::from(cells), traversal.lookups());
-                }
-                (crossing.cell, crossing.side)
-            }
-            Some(caster) => {
-                let hit = caster.cast(grid, &ray)?;
-                (hit.cell, hit.side)
-            }
-        };
+        let mut traversal = MajorAxisTraversal::new(grid, &ray)?;
+        let (start, Crossing { cell, side, .. }) = (traversal.cell(), traversal.next()?);
+        if let Some((start, _)) = start {
+            let cells = start.column.abs_diff(cell.column) + start.row.abs_diff(cell.row);
+            self.count(u64::from(cells), traversal.lookups());
+        }
         let place = [i64::from(cell.column), i64::from(cell.row)];
         let is_ahead = direction[side as usize] > 0.0;
         let tile = self.scene.world.grid().tile_in(cell)?;

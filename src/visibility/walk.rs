@@ -22,9 +22,7 @@ use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_fr
 use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
 use super::projection::RelativeHeight;
 use super::{FrameContext, WalkStats};
-use crate::cast::{
-    Caster, Course, DynCaster, Hit, Intersection, MirrorTransform, Ray, from_left, is_from_left,
-};
+use crate::cast::{Course, Hit, Intersection, MirrorTransform, Ray, from_left, is_from_left};
 use crate::world::sprite::builtin;
 use crate::world::{
     Camera, Cell, FaceLight, GapObject, Glass, Paint, Pattern, PlaneSide, PlaneSurface, Sector,
@@ -179,14 +177,13 @@ pub(crate) fn top_of_sky(scene: FrameContext<'_>) -> f64 {
 /// Walks from the camera of `scene` to everything in view, and adds it to `list`, whose sectors must be known.
 pub(crate) fn walk(
     scene: FrameContext<'_>,
-    caster: Option<&DynCaster>,
     memory: &mut WalkMemory,
     list: &mut DrawList,
 ) -> WalkStats {
     let sectors = mem::take(&mut list.sectors);
     let directions = mem::take(&mut list.directions);
     let most_bounces = if scene.world.has_mirrors() { MAX_BOUNCES } else { 0 };
-    let fan = Fan::new(scene, &sectors, &directions, caster, most_bounces);
+    let fan = Fan::new(scene, &sectors, &directions, most_bounces);
     let has_things = !scene.world.things().is_empty()
         || !scene.world.figures().is_empty()
         || scene.world.has_mirrors();
@@ -288,13 +285,13 @@ impl SectorWalk<'_> {
         if sector.holds == GapObject::Standing {
             self.meet_standing(visit, sector, first_place);
         }
-        self.find_distances(visit.is_at_camera);
+        self.find_distances();
         self.close(visit, sector, visit.columns.clone());
         self.pass_borders(visit, sector);
     }
 
     /// Finds the distances at which the rays leave the sector.
-    fn find_distances(&mut self, are_at_camera: bool) {
+    fn find_distances(&mut self) {
         let origin = self.scene.projection.origin();
         let WalkMemory { borders, columns, .. } = &mut *self.memory;
         for Border { columns: range, face, .. } in &*borders {
@@ -303,15 +300,6 @@ impl SectorWalk<'_> {
             let across = &self.fan.directions.across(face.side)[range.clone()];
             for (t, direction) in columns.t[range].iter_mut().zip(across) {
                 *t = (offset / direction).abs();
-            }
-        }
-        if let Some(caster) = self.fan.caster.filter(|_| are_at_camera) {
-            let grid = self.scene.world.level_grid().unwrap_or(self.scene.world.grid());
-            for column in borders.iter().flat_map(|border| border.columns.clone()) {
-                let ray = Ray::of_camera(origin, self.fan.directions.of(column));
-                if let Some(hit) = caster.cast(grid, &ray) {
-                    columns.t[column as usize] = hit.t;
-                }
             }
         }
     }

@@ -93,7 +93,7 @@ fn no_ray_leaps_across_a_door(side: u32) {
     let hit = |world: &World, x: f64| {
         let middle = f64::from(side / 2) + 0.5;
         let ray = Ray::new(DVec2::new(x, middle), DVec2::X).unwrap();
-        Exact.cast_through(world, &ray, |_| ()).map(|hit| hit.cell.column)
+        Exact.cast_through(world, &ray, &mut |_| ()).map(|hit| hit.cell.column)
     };
     let far = side - 1;
     let half = Opening::new(0.25).unwrap();

@@ -370,7 +370,7 @@ fn unseen_textures_are_not_made() {
     let world = map::load(Path::new("maps/museum.toml")).unwrap();
     assert_eq!(world.mip_levels_made(), 0);
     let ray = Ray::new(world.start().cell.center(), (1.0, 0.3).into()).unwrap();
-    assert!(Exact.cast_through(&world, &ray, |_| {}).is_some());
+    assert!(Exact.cast_through(&world, &ray, &mut |_| {}).is_some());
     assert_eq!(world.mip_levels_made(), 0, "a ray reads no texel");
     let mut renderer = Renderer::new();
     renderer.set_filter(Filter::Nearest);

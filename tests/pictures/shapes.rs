@@ -133,7 +133,7 @@ fn shapes(world: &World) -> impl Iterator<Item = (Cell, Outline)> {
 }
 
 fn cast(world: &World, ray: &Ray) -> Option<Hit> {
-    Exact.cast_through(world, ray, |_| panic!("there is nothing to see through"))
+    Exact.cast_through(world, ray, &mut |_| panic!("there is nothing to see through"))
 }
 
 /// Half of the points are multiples of an eighth of a cell, and half of the directions lead from

@@ -33,7 +33,6 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use cellcaster::cast::{Caster, Exact};
-use cellcaster::render::DynCaster;
 
 /// A method of casting, with its parameter.
 ///
@@ -103,16 +102,16 @@ impl Method {
         }
     }
 
-    /// The caster, for a [renderer](cellcaster::render::Renderer::with_caster).
-    pub fn caster(&self) -> DynCaster {
+    /// The caster.
+    pub fn caster(&self) -> Box<dyn Caster> {
         match self {
-            Self::Exact => DynCaster::default(),
-            Self::Dda => DynCaster::new(Dda),
-            Self::Dda32 => DynCaster::new(Dda32),
-            Self::Accumulate => DynCaster::new(Accumulate),
-            Self::Fixed(fixed) => DynCaster::new(*fixed),
-            Self::Table(table) => DynCaster::new(table.clone()),
-            Self::March(march) => DynCaster::new(*march),
+            Self::Exact => Box::new(Exact),
+            Self::Dda => Box::new(Dda),
+            Self::Dda32 => Box::new(Dda32),
+            Self::Accumulate => Box::new(Accumulate),
+            Self::Fixed(fixed) => Box::new(*fixed),
+            Self::Table(table) => Box::new(table.clone()),
+            Self::March(march) => Box::new(*march),
         }
     }
 }

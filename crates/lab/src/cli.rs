@@ -7,7 +7,7 @@ mod wire;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use cellcaster::cli::{Error, exit_code, parse, run_with_casters};
+use cellcaster::cli::{Error, exit_code, parse, run_cast};
 use clap::{Args, Parser, Subcommand};
 
 use crate::casters::Method;
@@ -32,9 +32,6 @@ enum Command {
     /// Run the game's command of this name with any of the lab's casters
     #[command(disable_help_flag = true)]
     Cast(Forwarded),
-    /// Run the game's command of this name with any of the lab's casters
-    #[command(disable_help_flag = true)]
-    Snapshot(Forwarded),
 }
 
 /// The arguments of a command that also exists in the game.
@@ -57,15 +54,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Wire(options) => wire::run(&options),
         #[cfg(target_os = "linux")]
         Command::Load(options) => load::run(&options),
-        Command::Cast(forwarded) => return forward("cast", forwarded),
-        Command::Snapshot(forwarded) => return forward("snapshot", forwarded),
+        Command::Cast(forwarded) => return cast(forwarded),
     })
 }
 
-/// Runs a command of the game with the casters of the laboratory.
-fn forward(command: &str, forwarded: Forwarded) -> ExitCode {
-    let words = ["cellcaster", command].into_iter().map(OsString::from).chain(forwarded.words);
-    run_with_casters(words, |name| {
+/// Runs the game's command `cast` with the casters of the laboratory.
+fn cast(forwarded: Forwarded) -> ExitCode {
+    let words = ["cellcaster", "cast"].into_iter().map(OsString::from).chain(forwarded.words);
+    run_cast(words, |name| {
         let method: Method =
             name.parse().map_err(|error| Error::mistake(format!("--caster {name}: {error}")))?;
         Ok(method.caster())

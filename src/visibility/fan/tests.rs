@@ -35,7 +35,7 @@ fn with_fan<T>(
     let (mut sectors, mut directions) = (Sectors::default(), Directions::default());
     sectors.begin(world, f64::INFINITY);
     directions.begin(projection);
-    let fan = Fan::new(scene, &sectors, &directions, None, 0);
+    let fan = Fan::new(scene, &sectors, &directions, 0);
     let place = [camera.position().x as i64, camera.position().y as i64];
     let tile = world.grid().tile(place[0], place[1]);
     let view = RayStarts {

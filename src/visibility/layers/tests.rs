@@ -49,7 +49,7 @@ proptest! {
         walked.make_room(projection.columns());
         list.sectors.begin(world, walk::top_of_sky(scene));
         list.directions.begin(projection);
-        walk::walk(scene, None, &mut walked, &mut list);
+        walk::walk(scene, &mut walked, &mut list);
         let mut memory = LayerMemory::default();
         look(scene, &mut memory, &list);
         let considered: Vec<BTreeSet<_>> = (0..list.images.len())

@@ -17,7 +17,6 @@ fn each_mistake_prints_one_sentence() {
         &["wire", "--scirpt", "x"],
         &["wire", "--size", "1000x1000"],
         &["wire", "--script"],
-        &["snapshot", "--caster", "marsh"],
         &["--caster", "marsh", "cast"],
         &["load", "--sessions", "many"],
         &["nonsense"],

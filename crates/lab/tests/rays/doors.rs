@@ -163,7 +163,7 @@ proptest! {
         let ray = Ray::new(origin, target - origin);
         prop_assume!(ray.is_ok());
         let ray = ray.unwrap();
-        let hit = Exact.cast_through(&world, &ray, |_| {});
+        let hit = Exact.cast_through(&world, &ray, &mut |_| {});
         prop_assert_eq!(fault(truth(&ray, part).as_ref(), hit.as_ref()), None, "{:?}", ray);
     }
 }

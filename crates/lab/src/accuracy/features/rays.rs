@@ -108,7 +108,7 @@ fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Possible
 }
 
 fn cast(world: &World, ray: &Ray) -> Option<Hit> {
-    Exact.cast_through(world, ray, |_| ())
+    Exact.cast_through(world, ray, &mut |_| ())
 }
 
 fn shapes(name: &'static str, world: World, seed: u64) -> Feature {
