@@ -69,12 +69,8 @@ pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option
         counts.pixels += 1;
         let drawn = frame.pixel(x, y);
         let color = meet(&solids, camera, frame, [x, y], [0.0; 2]).color;
-        if drawn
-            .channels()
-            .iter()
-            .zip(color.channels())
-            .all(|(one, other)| one.abs_diff(other) <= 1)
-        {
+        let [one, other] = [drawn, color].map(Rgb::channels);
+        if (0..3).all(|channel| one[channel].abs_diff(other[channel]) <= 1) {
             continue;
         }
         match clear_color(&solids, camera, frame, [x, y]) {
@@ -92,8 +88,7 @@ pub fn compare(world: &World, camera: &Camera, frame: &Frame) -> (Counts, Option
 fn without_player(world: &World, camera: &Camera) -> World {
     let mut world = world.clone();
     let (position, heading) = (camera.position(), camera.heading);
-    let sprite = SpriteId(0);
-    let player = Figure { sprite, position, base: 0.0, heading, frame: 0, opacity: 0 };
+    let player = Figure { sprite: SpriteId(0), position, base: 0.0, heading, frame: 0, opacity: 0 };
     let figures = world.figures().to_vec();
     world.set_figures(figures.into_iter().chain([player]));
     world

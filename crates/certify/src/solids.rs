@@ -165,11 +165,8 @@ impl<'a> Solids<'a> {
             });
             // One more hit may be as near as the last one.
             entries.truncate(last.map_or(usize::MAX, |last| last + 2));
-            let is_picture =
-                |it: &(f64, usize, Face)| matches!(self.all[it.1].form, Form::Picture(..));
-            met.is_tied |= entries
-                .windows(2)
-                .any(|pair| pair.iter().all(is_picture) && pair[1].0 - pair[0].0 < 1e-9);
+            entries.retain(|it| matches!(self.all[it.1].form, Form::Picture(..)));
+            met.is_tied |= entries.windows(2).any(|pair| pair[1].0 - pair[0].0 < 1e-9);
             let Some((axis, t)) = mirror else { break };
             sight.reflect(axis, t);
         }
@@ -189,10 +186,9 @@ impl<'a> Solids<'a> {
                 before[face] -= sight.direction[face].signum() / 2.0;
                 let DVec3 { x, y, .. } = before.floor();
                 let is_inside = self.world.grid().tile(x as i64, y as i64) == Some(tile);
-                let is_clear = matches!(solid.kind, Some(TileKind::Glass(it)) if it.opacity == 0);
                 // A mirror beside the cube reflects the line into it, through no side.
                 let is_reflected_here = sight.from > 0.0 && t - sight.from < 1e-9;
-                (face < FLAT && !is_inside && !is_clear && !is_reflected_here).then_some((t, face))
+                (face < FLAT && !is_inside && !is_reflected_here).then_some((t, face))
             }
             Form::Pillar(center, radius) => pillar_entry(sight, center, radius, heights),
             Form::Panel(start, way, _) => panel_entry(sight, start, way, heights),
@@ -425,13 +421,10 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
     }
     let stand = |form, paint| solid(form, tile.heights.floor(), tile.top_of_what_stands(), paint);
     let kind = Some(tile.kind);
+    let cube = |paint| Some(Solid { kind, ..stand(Form::Cube(corners, id), paint) });
     all.extend(match tile.kind {
-        TileKind::Glass(glass) => {
-            Some(Solid { kind, ..stand(Form::Cube(corners, id), Paint::Color(glass.color)) })
-        }
-        TileKind::Mask(texture) => {
-            Some(Solid { kind, ..stand(Form::Cube(corners, id), Paint::Texture(texture)) })
-        }
+        TileKind::Glass(glass) => cube(Paint::Color(glass.color)),
+        TileKind::Mask(texture) => cube(Paint::Texture(texture)),
         TileKind::Shape(shape) => {
             let form = match shape.outline {
                 Outline::Pillar(radius) => Form::Pillar(cell.center(), radius.cells()),
@@ -499,9 +492,7 @@ fn pillar_entry(sight: &Sight, center: DVec2, radius: f64, heights: Gap) -> Opti
     let (start, along) = (origin.truncate() - center, direction.truncate());
     let (a, b) = (along.length_squared(), start.dot(along));
     let discriminant = b * b - a * (start.length_squared() - radius * radius);
-    if discriminant < 0.0 {
-        return None;
-    }
+    // It is no number if the line passes the pillar: no comparison with it holds.
     let enters = (-b - discriminant.sqrt()) / a;
     let to_top = (heights.top - origin.z) / direction.z;
     let is_on_top = (start + along * to_top).length() <= radius;

@@ -14,6 +14,8 @@ use std::process::ExitCode;
 use arguments::{Arguments, ServerCommand};
 use cellcaster::cli::{Error, exit_code, parse};
 
+pub use replay::games;
+
 /// Runs the command in `words`, and returns the exit status. The first word is the program's own name.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     exit_code(parse::parse(words).and_then(|arguments| arguments.map_or(Ok(()), execute)))

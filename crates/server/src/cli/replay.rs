@@ -1,6 +1,6 @@
 //! `cellcaster-server replay`: shows a recorded room in the terminal, or prints its rounds and draws what a member saw.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -12,7 +12,7 @@ use cellcaster::cli::animation::{Frames, TooManyFrames};
 use cellcaster::cli::machine::own_settings;
 use cellcaster::cli::{Error, ROOM_RECORDING};
 use cellcaster::fault::printable_path;
-use cellcaster::game::{STEP, STEPS_PER_SECOND};
+use cellcaster::game::{Game, STEP, STEPS_PER_SECOND};
 
 use super::arguments::Replay;
 use crate::rooms::directory::CAST;
@@ -28,32 +28,16 @@ use crate::sessions::session::replayed::ReplayedScreen;
 /// # Errors
 /// If the file is not a recording of a room, or is damaged or too long, or if the animated PNG cannot be drawn.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
-    let path = options.file.display().to_string().replace(char::is_control, "?");
-    let cannot = |reason: &dyn std::fmt::Display| {
-        Error::mistake(format!("{path} cannot be replayed: {reason}"))
-    };
-    let length = fs::metadata(&options.file).map_err(|error| cannot(&error))?;
-    if !length.is_file() || length.len() > MAX_RECORDED_BYTES {
-        return Err(cannot(&format!("it is not a file of at most {MAX_RECORDED_BYTES} bytes")));
-    }
-    let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
-    if !text.starts_with(ROOM_RECORDING) {
-        return Err(cannot(&"it is not a recording of a room"));
-    }
-    if is_of_other_version(&text) {
-        return Err(cannot(&other_version(&options.file)));
-    }
-    let maps = options.maps.as_deref().map(HostMaps::read).transpose();
-    let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
-    let catalog = Arc::new(Catalog::with(&maps));
+    let (text, catalog) = read(&options.file, options.maps.as_deref())?;
     if !options.verify && options.png.is_none() {
-        let record = RoomRecord::parse(&text, &catalog).map_err(|fault| cannot(&fault))?;
+        let record = RoomRecord::parse(&text, &catalog);
+        let record = record.map_err(|fault| cannot(&options.file, &fault))?;
         return Ok(watch(record, catalog, own_settings()?)?);
     }
     let mut animation =
         options.png.as_ref().map(|_| MemberAnimation::new(options, &catalog)).transpose()?;
     let look = &mut |room: &Room| animation.as_mut().map_or(Ok(()), |it| it.look_at(room));
-    let rounds = replayed(&text, &catalog, look).map_err(|fault| cannot(&fault))?;
+    let rounds = replayed(&text, &catalog, look).map_err(|fault| cannot(&options.file, &fault))?;
     if let Some((animation, path)) = animation.zip(options.png.as_ref()) {
         animation.write(path)?;
     }
@@ -69,6 +53,44 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         _ = writeln!(lines, "  state {:016x}", round.checksum);
     }
     io::stdout().write_all(lines.as_bytes()).map_err(|error| Error::of_output(&error))
+}
+
+/// Passes the game of a recorded room to `look` before each step. `maps` is the map file or the folder of the host's maps.
+///
+/// # Errors
+/// If the file is not a recording of a room, or is damaged or too long, or if a map cannot be read.
+pub fn games(file: &Path, maps: Option<&Path>, look: &mut dyn FnMut(&Game)) -> Result<(), Error> {
+    let (text, catalog) = read(file, maps)?;
+    let rounds = replayed(&text, &catalog, &mut |room| {
+        look(room.game());
+        Ok(())
+    });
+    rounds.map(drop).map_err(|fault| cannot(file, &fault))
+}
+
+/// The text of a recording, and the levels that its rounds can use.
+fn read(file: &Path, maps: Option<&Path>) -> Result<(String, Arc<Catalog>), Error> {
+    let length = fs::metadata(file).map_err(|error| cannot(file, &error))?;
+    if !length.is_file() || length.len() > MAX_RECORDED_BYTES {
+        return Err(cannot(
+            file,
+            &format!("it is not a file of at most {MAX_RECORDED_BYTES} bytes"),
+        ));
+    }
+    let text = fs::read_to_string(file).map_err(|error| cannot(file, &error))?;
+    if !text.starts_with(ROOM_RECORDING) {
+        return Err(cannot(file, &"it is not a recording of a room"));
+    }
+    if is_of_other_version(&text) {
+        return Err(cannot(file, &other_version(file)));
+    }
+    let maps = maps.map(HostMaps::read).transpose();
+    let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
+    Ok((text, Arc::new(Catalog::with(&maps))))
+}
+
+fn cannot(file: &Path, reason: &dyn Display) -> Error {
+    Error::mistake(format!("{} cannot be replayed: {reason}", printable_path(file)))
 }
 
 /// The reason why a recording of another version is not replayed, and what shows it nevertheless.
