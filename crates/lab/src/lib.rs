@@ -56,7 +56,7 @@
 //! - [`speed`]: the scenes, and the loops with which drawing is compared.
 //! - [`wire`]: a script through every encoder, in bytes and in colours.
 //! - `load`: clients over SSH, on one server or a cluster.
-//! - The folder `benches`: the same code by Criterion, and counts of instructions by Callgrind.
+//! - The folder `benches`: the price list, steps of the game with guards, and counts of instructions by Callgrind.
 
 #![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
 

@@ -9,23 +9,11 @@
 
 mod classic;
 mod drawing;
-mod footprint;
 mod growth;
-mod pipeline;
 
-pub use drawing::measure_drawing;
-pub(crate) use footprint::measure_footprint;
-pub use growth::{CROWDS, Ground, SIDES, Vista, crossing_rays};
+pub(crate) use drawing::measure_drawing;
 pub(crate) use growth::{measure_crowds, measure_maps};
-pub(crate) use pipeline::measure_pipeline;
 
-use std::ffi::OsStr;
-
-use ratatui::layout::Size;
-
-use cellcaster::app::{Replay, Settings};
-use cellcaster::cli::replay::SHOWCASE;
-use cellcaster::cli::{Error, level};
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
 use cellcaster::render::{FrameSize, PixelAspect};
@@ -72,12 +60,6 @@ fn pixel_aspect(size: FrameSize) -> PixelAspect {
     let (width, height) = (f64::from(size.width.get()), f64::from(size.height.get()));
     let across = width / 2.0 / FieldOfView::default().half_width();
     PixelAspect::new(across / height).unwrap_or(PixelAspect::SQUARE)
-}
-
-/// A game of the showcase's level in a window of this size.
-fn showcase(size: Size) -> Result<Replay, Error> {
-    let levels = level::load_series(Some(OsStr::new(SHOWCASE.level)))?;
-    Ok(Replay::new(levels, Settings::default(), size))
 }
 
 #[cfg(test)]

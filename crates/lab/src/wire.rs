@@ -24,7 +24,6 @@ use cellcaster::app::Replay;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::terminal::{Effort, Fidelity};
-pub(crate) use encoder::Sink;
 use encoder::{COLUMNS, Encoder, EncoderRun};
 pub use tour::{report_glyphs, report_palettes};
 

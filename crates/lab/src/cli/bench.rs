@@ -6,15 +6,13 @@ use std::time::Duration;
 use clap::{Args, ValueHint};
 
 use crate::report::{Format, Origin, Report};
-use crate::speed::{
-    measure_crowds, measure_drawing, measure_footprint, measure_maps, measure_pipeline,
-};
+use crate::speed::{measure_crowds, measure_drawing, measure_maps};
 use cellcaster::cli::Error;
 use cellcaster::cli::options::within;
 use cellcaster::cli::output_file::OutputFile;
 use cellcaster::cli::parse::ValidValues;
 
-/// Measure how fast this machine draws and encodes frames
+/// Measure how fast this machine draws
 #[derive(Args, Debug)]
 pub(crate) struct Bench {
     /// The time to measure, from 1 to 60 seconds, without the preparation
@@ -37,15 +35,8 @@ pub(crate) fn run(options: &Bench) -> Result<(), Error> {
     // A file that cannot be written is reported before the measurement starts.
     let plot = options.plot.as_deref().map(OutputFile::create).transpose()?;
     let time = Duration::from_secs(options.seconds.into());
-    // The footprint comes first, because nothing has allocated memory yet.
-    let footprint = measure_footprint()?;
-    let tables = [
-        measure_drawing(time * 2 / 5),
-        measure_maps(time * 2 / 15),
-        measure_crowds(time / 15),
-        measure_pipeline(time * 2 / 5)?,
-        footprint,
-    ];
+    let tables =
+        [measure_drawing(time * 2 / 3), measure_maps(time * 2 / 9), measure_crowds(time / 9)];
     if let Some(file) = plot {
         let report = Report { origin: &Origin::this(), tables: &tables };
         file.write(|output| report.write(Format::Svg, output))?;

@@ -44,7 +44,7 @@ const TURNS: usize = 3;
 ///
 /// For each camera, all renderers take turns, so that a busy machine slows all of them. A result is
 /// the mean of the medians of all visited cameras.
-pub fn measure_drawing(time: Duration) -> Table {
+pub(crate) fn measure_drawing(time: Duration) -> Table {
     let textured = &[ClassicFloor::ByColumn, ClassicFloor::ByScanline];
     let planes = Scene { name: "planes", world: textured_scene(), floors: textured };
     let walls = Scene { name: "walls", world: plain_scene(), floors: &[ClassicFloor::None] };

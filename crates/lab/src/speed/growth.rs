@@ -20,9 +20,9 @@ use cellcaster::world::{Camera, FieldOfView, World};
 
 /// The sides of the open maps: of a usual map, of a large map, and of the
 /// largest map.
-pub const SIDES: [u32; 3] = [64, 1024, 4096];
+const SIDES: [u32; 3] = [64, 1024, 4096];
 /// The numbers of things in a crowded map.
-pub const CROWDS: [usize; 3] = [100, 10_000, 100_000];
+const CROWDS: [usize; 3] = [100, 10_000, 100_000];
 /// The size of the pictures, in pixels.
 const PICTURE: FrameSize = size(160, 90);
 /// The number of timings in a turn, and the smallest number in total.
@@ -166,7 +166,7 @@ fn compared(times: Vec<f64>, size: usize) -> impl Iterator<Item = (f64, f64)> {
 
 /// The contents of an open map, apart from the walls around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+enum Ground {
     /// Nothing.
     Hall,
     /// A pillar in one cell of 4096.
@@ -178,10 +178,10 @@ const RAYS: u32 = 256;
 
 impl Ground {
     /// All grounds.
-    pub const ALL: [Self; 2] = [Self::Hall, Self::Plain];
+    const ALL: [Self; 2] = [Self::Hall, Self::Plain];
 
     /// The name.
-    pub const fn name(self) -> &'static str {
+    const fn name(self) -> &'static str {
         match self {
             Self::Hall => "hall",
             Self::Plain => "plain",
@@ -189,7 +189,7 @@ impl Ground {
     }
 
     /// The text of the map of `side` × `side` cells; `side` is at least 4.
-    pub fn map(self, side: u32) -> String {
+    fn map(self, side: u32) -> String {
         let last = side - 1;
         let mut text = String::from("grid = '''\n");
         text.reserve(side as usize * (side as usize + 1));
@@ -209,14 +209,6 @@ impl Ground {
         _ = writeln!(text, "'''\n[tiles]\n'#'.wall = 'brick'\n[things]\n'@'.start = 0");
         text
     }
-
-    /// The same map, parsed.
-    ///
-    /// # Panics
-    /// Panics if a map cannot have this size.
-    pub fn world(self, side: u32) -> World {
-        map::parse_str(&self.map(side)).expect("the map is sound, but for its size")
-    }
 }
 
 /// Returns whether a plain has a pillar there. There is one in each block of 64 × 64 cells, at or
@@ -229,10 +221,7 @@ fn is_pillar(column: u32, row: u32) -> bool {
 
 /// Rays that cross a map of `side` × `side` cells, half of them along rows and half along columns.
 /// On a plain, pillars stop some of them.
-///
-/// # Panics
-/// Never: their directions are not zero.
-pub fn crossing_rays(side: u32) -> Vec<Ray> {
+fn crossing_rays(side: u32) -> Vec<Ray> {
     let ray = |index: u32| {
         let share = f64::from(index) / f64::from(RAYS);
         let start = DVec2::new(1.5, f64::from(side) * (0.45 + 0.1 * share));
@@ -251,7 +240,7 @@ pub fn crossing_rays(side: u32) -> Vec<Ray> {
 /// The visible part of a map: a hall with about sixty plants. The rest of the map is full of
 /// plants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vista {
+enum Vista {
     /// A hall along the axes. The other things are outside the rectangle that contains the view.
     Straight,
     /// A diagonal hall. Ten thousand other things are inside the rectangle that contains the view.
@@ -263,10 +252,10 @@ const MIN_SIDE: u32 = 100;
 
 impl Vista {
     /// All vistas.
-    pub const ALL: [Self; 2] = [Self::Straight, Self::Diagonal];
+    const ALL: [Self; 2] = [Self::Straight, Self::Diagonal];
 
     /// The name.
-    pub const fn name(self) -> &'static str {
+    const fn name(self) -> &'static str {
         match self {
             Self::Straight => "straight",
             Self::Diagonal => "diagonal",
@@ -274,11 +263,7 @@ impl Vista {
     }
 
     /// A map with this hall and `count` things, including the things in view.
-    ///
-    /// # Panics
-    /// Panics if `count` is less than the number of things in view, or more than the map has room
-    /// for.
-    pub fn world(self, count: usize) -> World {
+    fn world(self, count: usize) -> World {
         let side = MIN_SIDE.max((count as f64).sqrt() as u32 + 10);
         let places = || (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
         let in_view = places().filter(|&(column, row)| self.is_plant(column, row)).count();

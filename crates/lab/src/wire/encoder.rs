@@ -26,14 +26,7 @@ pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];
 
 /// A writer that is shared with a backend.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sink(Rc<RefCell<Vec<u8>>>);
-
-impl Sink {
-    /// The number of bytes written since the last call.
-    pub(crate) fn drain(&self) -> usize {
-        self.0.borrow_mut().drain(..).len()
-    }
-}
+struct Sink(Rc<RefCell<Vec<u8>>>);
 
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{complaint_about, output_of};
+use crate::support::output_of;
 use serde_json::Value;
 
 #[test]
@@ -12,10 +12,8 @@ fn one_run_reports_and_plots_all_figures() {
     let report: Value = serde_json::from_slice(&report).unwrap();
     has_every_size(&report);
     has_every_map(&report);
-    has_every_encoder(&report);
-    has_a_footprint(&report);
     let plot = fs::read_to_string(plot).unwrap();
-    for words in ["drawing", "classic", "2073600", "ns/ray", "plain", "4096", "pipeline", "stock"] {
+    for words in ["drawing", "classic", "2073600", "ns/ray", "plain", "4096", "diagonal"] {
         assert!(plot.contains(words), "no {words} in\n{plot}");
     }
 }
@@ -77,54 +75,10 @@ fn has_every_map(report: &Value) {
     }
 }
 
-fn has_every_encoder(report: &Value) {
-    let pipeline = rows(report, "pipeline");
-    for window in pipeline.chunks_exact(4) {
-        let encoders: Vec<&str> =
-            window.iter().map(|row| row["encoder"].as_str().unwrap()).collect();
-        assert_eq!(encoders, ["stock", "exact", "high", "low"]);
-        assert_eq!(window[0]["time/stock"], 1.0);
-        let bytes: Vec<f64> = window.iter().map(|row| row["bytes"].as_f64().unwrap()).collect();
-        let [stock, exact, high, low] = bytes[..] else { panic!("{bytes:?}") };
-        assert!(stock > exact && exact > high && exact > low, "{bytes:?}");
-        for row in window {
-            let rate = |link: &str| row[link].as_f64().unwrap();
-            let [slow, usual, fast] = ["1 Mbit/s", "10 Mbit/s", "100 Mbit/s"].map(rate);
-            assert!(0.0 < slow && slow <= usual && usual <= fast);
-            assert!(row["frames"].as_u64().unwrap() >= 20 && is_positive(&row["time, µs/frame"]));
-        }
-    }
-    assert_eq!(pipeline.len(), 8);
-}
-
-fn has_a_footprint(report: &Value) {
-    let [start, program, memory] = rows(report, "footprint") else { panic!("{report}") };
-    assert!(is_positive(&start["value"]));
-    assert!(program["value"].as_f64().unwrap() > 1.0);
-    if cfg!(target_os = "linux") {
-        let mebibytes = memory["value"].as_f64().unwrap();
-        assert!((1.0..256.0).contains(&mebibytes), "{mebibytes}");
-    }
-}
-
 #[test]
 fn the_table_is_readable() {
     let table = String::from_utf8(output_of(&["bench", "--seconds", "1"])).unwrap();
-    for word in ["classic", "1920x1080", "200x60", "stock", "Mbit/s", "first frame", "100000"] {
+    for word in ["classic", "1920x1080", "ns/ray", "100000"] {
         assert!(table.contains(word), "no {word} in\n{table}");
     }
-}
-
-#[test]
-fn mistakes_are_explained() {
-    insta::assert_snapshot!(
-        [
-            complaint_about(&["bench", "cellar"]),
-            complaint_about(&["bench", "--seconds", "0"]),
-            complaint_about(&["bench", "--format", "gif"]),
-            complaint_about(&["bench", "--secnods", "2"]),
-            complaint_about(&["bench", "--plot"]),
-        ]
-        .join("")
-    );
 }
