@@ -55,7 +55,7 @@ pub fn edit(mut editor: Editor, settings: Settings, store: Store) -> Result<Opti
     let given_glyphs = settings.given.glyphs.is_some() || store.preferences().glyphs.is_some();
     let mut store = Some(store);
     loop {
-        if let Some(game) = editor.take_test() {
+        if let Some(game) = editor.test.take() {
             let mut app = trial(game, &settings, store.take().unwrap_or_default(), &detection);
             let must_end = app.run(&mut session)?;
             detection = mem::take(&mut app.detection);
@@ -63,9 +63,9 @@ pub fn edit(mut editor: Editor, settings: Settings, store: Store) -> Result<Opti
             if must_end {
                 return Ok(editor.unsaved_sentence());
             }
-            editor.redraw();
+            editor.is_stale = true;
         }
-        if editor.has_left() {
+        if editor.has_left {
             return Ok(None);
         }
         session.set_mouse(true)?;
@@ -75,8 +75,8 @@ pub fn edit(mut editor: Editor, settings: Settings, store: Store) -> Result<Opti
             settings.glyphs = look.glyphs;
         }
         let is_settled = protocol.is_settled();
-        if (editor.is_stale() || !is_settled) && session.is_ready() {
-            if editor.is_stale() {
+        if (editor.is_stale || !is_settled) && session.is_ready() {
+            if editor.is_stale {
                 editor.check();
                 session.draw(|screen| editor.draw(screen, &settings, &look))?;
             } else {
@@ -90,11 +90,13 @@ pub fn edit(mut editor: Editor, settings: Settings, store: Store) -> Result<Opti
             | Some(Event::Ready | Event::FocusGained | Event::FocusLost | Event::TmuxTold(_)) => {}
             Some(Event::Key(event)) => editor.key(event),
             Some(Event::Mouse(event)) => editor.mouse(event),
-            Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => editor.redraw(),
+            Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => {
+                editor.is_stale = true;
+            }
             Some(Event::KeyReleases(reported)) => detection.reports_releases = Some(reported),
             Some(Event::Suspend) => {
                 session.suspend()?;
-                editor.redraw();
+                editor.is_stale = true;
             }
             Some(Event::Quit(_)) => return Ok(editor.unsaved_sentence()),
         }
@@ -143,8 +145,10 @@ pub struct Editor {
     view: View,
     /// The text of the journal that is offered.
     offered: Option<String>,
+    /// The game to play, if the user wants to test the map.
     test: Option<Game>,
     has_left: bool,
+    /// `true` if the screen does not show the current state.
     is_stale: bool,
 }
 
@@ -286,24 +290,6 @@ impl Editor {
             (self.cursor, self.heading) = (start.cell, start.heading.degrees());
         }
         self.brush = self.document.definitions().first().map_or('.', |first| first.character);
-    }
-
-    /// Returns true if the screen does not show the current state.
-    fn is_stale(&self) -> bool {
-        self.is_stale
-    }
-
-    fn redraw(&mut self) {
-        self.is_stale = true;
-    }
-
-    fn has_left(&self) -> bool {
-        self.has_left
-    }
-
-    /// The game to play, if the user wants to test the map.
-    fn take_test(&mut self) -> Option<Game> {
-        self.test.take()
     }
 
     fn is_changed(&self) -> bool {

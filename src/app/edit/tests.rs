@@ -113,7 +113,7 @@ impl Rig {
     /// Leaves without writing the file, and removes the folder.
     fn leave(mut self) {
         self.types(":q!\n");
-        assert!(self.editor.has_left() && !self.journal().exists());
+        assert!(self.editor.has_left && !self.journal().exists());
         fs::remove_dir_all(self.path.parent().unwrap()).unwrap();
     }
 
@@ -158,7 +158,7 @@ fn faults_are_marked_in_the_plan_and_said_below_it() {
     // The exit is hidden from the fault by nothing: the view still shows the map before it.
     assert!(text.contains("before the faults"), "{text}");
     rig.types("t");
-    assert!(rig.text().contains("the map has faults") && rig.editor.take_test().is_none());
+    assert!(rig.text().contains("the map has faults") && rig.editor.test.take().is_none());
     rig.types("kn");
     assert_eq!(rig.editor.cursor, Cell { column: 3, row: 2 });
     rig.types(":tile ? wall = \"moss\"\n");
@@ -170,16 +170,16 @@ fn faults_are_marked_in_the_plan_and_said_below_it() {
 fn a_test_begins_at_the_cursor_with_the_heading_of_the_view() {
     let mut rig = Rig::new("test", Some(MAP));
     rig.types("jll>>t");
-    let game = rig.editor.take_test().unwrap();
+    let game = rig.editor.test.take().unwrap();
     let camera = game.camera(crate::world::FieldOfView::default());
     assert_eq!((camera.position().x, camera.position().y), (3.5, 2.5));
     assert!((camera.heading.degrees() - 90.0).abs() < 1e-9);
     rig.types("0t");
-    assert!(rig.editor.take_test().is_none());
+    assert!(rig.editor.test.take().is_none());
     assert!(rig.text().contains("no room here"));
     assert_eq!(rig.editor.document.text(), MAP);
     rig.types(":q\n");
-    assert!(rig.editor.has_left());
+    assert!(rig.editor.has_left);
     rig.leave();
 }
 
@@ -191,7 +191,7 @@ fn changes_outlive_a_kill_and_are_offered() {
     let mut rig = rig.again();
     assert!(rig.text().contains("Restore the changes"));
     rig.types("\x1b");
-    assert!(rig.editor.has_left() && rig.journal().exists(), "leaving it alone keeps it");
+    assert!(rig.editor.has_left && rig.journal().exists(), "leaving it alone keeps it");
 
     let mut rig = rig.again();
     rig.types("\n");
@@ -204,7 +204,7 @@ fn changes_outlive_a_kill_and_are_offered() {
     assert_eq!(rig.file(), MAP.replace("#@.....#", "#@.#...#"));
     assert!(!rig.journal().exists());
     rig.types(":q\n");
-    assert!(rig.editor.has_left());
+    assert!(rig.editor.has_left);
     rig.leave();
 }
 
@@ -219,9 +219,9 @@ fn discarded_changes_are_gone() {
     let text = rig.text();
     assert!(text.contains("unsaved changes") && text.contains("> Go on editing"), "{text}");
     rig.types("\n");
-    assert!(!rig.editor.has_left() && rig.journal().exists());
+    assert!(!rig.editor.has_left && rig.journal().exists());
     rig.types(":q\n3");
-    assert!(rig.editor.has_left() && !rig.journal().exists());
+    assert!(rig.editor.has_left && !rig.journal().exists());
     assert_eq!(rig.file(), MAP);
     rig.leave();
 }
@@ -236,7 +236,7 @@ fn a_file_is_written_byte_for_byte_without_changes_and_not_over_others() {
     assert!(rig.text().contains("another program has changed the file"));
     assert_eq!(rig.file(), "grid = '#'");
     rig.types(":w!\n:q\n");
-    assert!(rig.editor.has_left());
+    assert!(rig.editor.has_left);
     rig.leave();
 }
 
@@ -247,7 +247,7 @@ fn a_missing_file_begins_as_a_small_level() {
     assert!(text.contains("a new level") && text.contains("no faults"), "{text}");
     assert!(!rig.path.exists() && !rig.journal().exists());
     rig.types(":wq\n");
-    assert!(rig.editor.has_left());
+    assert!(rig.editor.has_left);
     assert_eq!(map::load(&rig.path).unwrap().title(), "yard");
 }
 
@@ -346,7 +346,7 @@ fn a_test_leads_back_to_the_editor() {
     rig.types("jllllt");
     let trial_of =
         |game| trial(game, &Settings::default(), Store::in_memory(), &Detection::default());
-    let mut app = trial_of(rig.editor.take_test().unwrap());
+    let mut app = trial_of(rig.editor.test.take().unwrap());
     app.advance(Duration::from_secs(1));
     assert_eq!(app.pages.menu.heading().next(), Some("you found the way out"));
     let entries: Vec<String> = app.pages.menu.lines_of_entries().collect();
@@ -354,7 +354,7 @@ fn a_test_leads_back_to_the_editor() {
 
     for key in [Key::Escape, Key::Char('q')] {
         rig.types("ht");
-        let mut app = trial_of(rig.editor.take_test().unwrap());
+        let mut app = trial_of(rig.editor.test.take().unwrap());
         app.advance(Duration::from_secs(1));
         assert!(!app.has_left);
         let (base, modifiers, phase) = (None, Modifiers::default(), Phase::Press);
