@@ -67,17 +67,13 @@ impl RunLog {
     pub(crate) fn record(&mut self, intents: Intents, mut steps: u64) {
         self.steps += steps;
         while steps > 0 {
-            let last = self.stretches.last_mut().filter(|last| last.intents == intents);
-            let room = last.map_or(0, |last| {
-                let taken = steps.min(u64::from(Stretch::MAX_STEPS - last.steps)) as u32;
-                last.steps += taken;
-                taken
-            });
-            steps -= u64::from(room);
-            if room == 0 {
-                let taken = steps.min(Stretch::MAX_STEPS.into()) as u32;
-                self.stretches.push(Stretch { steps: taken, intents });
-                steps -= u64::from(taken);
+            match self.stretches.last_mut() {
+                Some(last) if last.intents == intents && last.steps < Stretch::MAX_STEPS => {
+                    let taken = steps.min(u64::from(Stretch::MAX_STEPS - last.steps));
+                    last.steps += taken as u32;
+                    steps -= taken;
+                }
+                _ => self.stretches.push(Stretch { steps: 0, intents }),
             }
         }
     }

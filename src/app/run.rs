@@ -473,11 +473,9 @@ impl Replay {
         &mut self,
         script: &Script,
         frames_per_second: NonZeroU32,
-        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+        show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.play_from(script, frames_per_second, 0, |frame, section, picture| {
-            show(frame, section, picture)
-        })
+        self.play_from(script, frames_per_second, 0, show)
     }
 
     /// As [`Replay::play`], but does not draw the frames before the one with the number `first`.

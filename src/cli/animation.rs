@@ -184,10 +184,12 @@ impl Frames {
 
     /// Returns an error if there are no frames.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if self.changes.is_empty() {
-            return Err(Error::mistake("--from is after the end of the replay"));
-        }
-        Ok(())
+        if self.changes.is_empty() { Err(Self::none()) } else { Ok(()) }
+    }
+
+    /// The error of an excerpt without frames.
+    pub(crate) fn none() -> Error {
+        Error::mistake("--from is after the end of the replay")
     }
 
     /// Writes the animation.

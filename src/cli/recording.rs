@@ -213,11 +213,6 @@ impl<W: Write> Asciicast<W> {
         self.write_event(time, "r", &format!("{}x{}", size.width, size.height))
     }
 
-    /// Flushes `output`.
-    pub(crate) fn finish(mut self) -> io::Result<()> {
-        self.output.flush()
-    }
-
     fn write_event(&mut self, time: Duration, code: &str, data: &str) -> io::Result<()> {
         // The times are rounded, not the intervals, because rounding errors of intervals would add
         // up.

@@ -15,7 +15,7 @@ use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
 use ratatui::backend::Backend;
 use ratatui::buffer::Buffer;
 
-use super::animation::{AnimationFormat, Excerpt, Frames, MAX_GIF_RATE, TooManyFrames};
+use super::animation::{AnimationFormat, Excerpt, Frames, MAX_GIF_RATE};
 use super::options::{LevelOptions, ViewOptions, fidelity};
 use super::output_file::{OutputFile, print};
 use super::recording::Asciicast;
@@ -136,60 +136,30 @@ fn made(
     };
     let mut replay = Replay::new(levels, settings, excerpt.size);
     let mut output = Limited::default();
-    let mut show = |show: &mut dyn FnMut(u64, &Buffer) -> Result<(), Stop>| {
+    let mut show = |show: &mut dyn FnMut(u64, &Buffer) -> Result<(), Error>| {
         let shown =
             replay.play_from(script, excerpt.frames_per_second, part.start, |frame, _, picture| {
-                if frame < part.end { show(frame, picture) } else { Err(Stop::End) }
+                // No error ends the part early.
+                if frame < part.end { show(frame, picture).map_err(Some) } else { Err(None) }
             });
-        match shown {
-            Ok(()) | Err(Stop::End) => Ok(()),
-            Err(Stop::Error(error)) => Err(error),
-        }
+        shown.or_else(|error| error.map_or(Ok(()), Err))
     };
     let animation = match format {
         ShareFormat::Gif => AnimationFormat::Gif,
         ShareFormat::Png => AnimationFormat::Png,
         ShareFormat::Svg => AnimationFormat::Svg,
         ShareFormat::Cast => {
-            let mut cast = CastWriter::begin(&mut output, options)?;
-            show(&mut |frame, picture| cast.draw(frame - part.start, picture))?;
-            let frames = cast.finish()?;
-            return Ok((output.bytes, frames));
+            let mut cast = limited(CastWriter::begin(&mut output, options))?;
+            show(&mut |frame, picture| limited(cast.draw(frame - part.start, picture)))?;
+            let frames = limited(cast.finish())?;
+            return if frames > 0 { Ok((output.bytes, frames)) } else { Err(Frames::none()) };
         }
     };
     let mut frames = Frames::new(excerpt)?;
     show(&mut |frame, picture| Ok(frames.push(frame, picture)?))?;
     frames.check()?;
-    frames.encode(animation, &mut output).map_err(|error| too_large(&error))?;
+    limited(frames.encode(animation, &mut output))?;
     Ok((output.bytes, frames.length()))
-}
-
-/// The reason why a replay stops.
-enum Stop {
-    /// The part has ended.
-    End,
-    Error(Error),
-}
-
-impl From<TooManyFrames> for Stop {
-    fn from(error: TooManyFrames) -> Self {
-        Self::Error(error.into())
-    }
-}
-
-impl From<io::Error> for Stop {
-    fn from(error: io::Error) -> Self {
-        Self::Error(too_large(&error))
-    }
-}
-
-impl From<Stop> for Error {
-    fn from(stop: Stop) -> Self {
-        match stop {
-            Stop::End => Self::failed(),
-            Stop::Error(error) => error,
-        }
-    }
 }
 
 /// A cast that is being written.
@@ -202,7 +172,7 @@ struct CastWriter<'o> {
 }
 
 impl<'o> CastWriter<'o> {
-    fn begin(output: &'o mut Limited, options: &ShareCommand) -> Result<Self, Stop> {
+    fn begin(output: &'o mut Limited, options: &ShareCommand) -> io::Result<Self> {
         let Excerpt { size, frames_per_second, .. } = options.excerpt;
         let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
         queue!(bytes, EnterAlternateScreen, Hide)?;
@@ -215,7 +185,7 @@ impl<'o> CastWriter<'o> {
     }
 
     /// Draws frame `frame` of the part.
-    fn draw(&mut self, frame: u64, picture: &Buffer) -> Result<(), Stop> {
+    fn draw(&mut self, frame: u64, picture: &Buffer) -> io::Result<()> {
         let Self { asciicast, writer, before, .. } = self;
         writer.draw(before.diff(picture).into_iter())?;
         writer.flush()?;
@@ -225,19 +195,16 @@ impl<'o> CastWriter<'o> {
         if bytes.is_empty() {
             return Ok(());
         }
-        Ok(asciicast.sent(Duration::from_secs(frame) / self.frames_per_second, &bytes)?)
+        asciicast.sent(Duration::from_secs(frame) / self.frames_per_second, &bytes)
     }
 
     /// Ends the cast, and returns its number of frames.
-    fn finish(self) -> Result<u64, Stop> {
+    fn finish(self) -> io::Result<u64> {
         let Self { mut asciicast, frames, frames_per_second, .. } = self;
-        if frames == 0 {
-            return Err(Stop::Error(Error::mistake("--from is after the end of the replay")));
-        }
+        let Some(last) = frames.checked_sub(1) else { return Ok(0) };
         let mut bytes = Vec::new();
         queue!(bytes, Show, LeaveAlternateScreen)?;
-        asciicast.sent(Duration::from_secs(frames - 1) / frames_per_second, &bytes)?;
-        asciicast.finish()?;
+        asciicast.sent(Duration::from_secs(last) / frames_per_second, &bytes)?;
         Ok(frames)
     }
 }
@@ -262,16 +229,16 @@ impl Write for Limited {
     }
 }
 
-/// The error of an output in memory.
-fn too_large(error: &io::Error) -> Error {
-    match error.kind() {
+/// The result of writing to an output in memory, with a sentence if the output is full.
+fn limited<T>(result: io::Result<T>) -> Result<T, Error> {
+    result.map_err(|error| match error.kind() {
         io::ErrorKind::FileTooLarge => Error::mistake(format!(
             "the file would be larger than {} MB: show less with --from and --to, or choose a smaller \
              --fps or --size",
             MAX_BYTES >> 20
         )),
         _ => Error::machine(error.to_string()),
-    }
+    })
 }
 
 /// A line about a file of `bytes` bytes that shows `frames` frames of the replay.
