@@ -42,9 +42,7 @@ pub mod parts {
     pub use crate::app::playback::player::{PLAYER_HELP, Perspective, Player, PlayerKey};
     pub use crate::app::playback::recorded::{Cursor, MarkKind, Reader, Record};
     pub use crate::app::played::Watch;
-    pub use crate::app::setting::{
-        Choice, Field, FieldAt, Setting, Value, reject_range, toml_string,
-    };
+    pub use crate::app::setting::{Choice, Field, FieldAt, Setting, Value, reject_range};
     pub use crate::app::settings::{Choices, settings_menu};
     pub use crate::app::status::{
         HealthSigns, Meter, Part, Stats, StatusLine, hint, of_steps, tenths, whole_seconds,

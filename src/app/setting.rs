@@ -8,7 +8,6 @@
 //! Rejected: serde. It stops at the first fault in a file, writes no comments, and does not support
 //! a settings page.
 
-use std::fmt::Write;
 use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
@@ -16,7 +15,7 @@ use toml::de::DeValue;
 
 use crate::app::controls::Preset;
 use crate::color::palette::ColorDepth;
-use crate::fault::document::Entry;
+use crate::fault::document::{Entry, toml_string};
 use crate::fault::{nearest, quoted};
 use crate::terminal::Fidelity;
 use crate::tui::{Correction, GlyphSet};
@@ -477,25 +476,6 @@ fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
     values[(index + by) % values.len()]
 }
 
-/// Formats `text` as a TOML string.
-///
-/// Rejected: `toml_writer`. It escapes some characters differently, so existing files would change.
-pub fn toml_string(text: &str) -> String {
-    let mut string = String::from("\"");
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => string.extend(['\\', character]),
-            character if character.is_control() => {
-                // Writing to a string never fails.
-                _ = write!(string, "\\u{:04x}", u32::from(character));
-            }
-            character => string.push(character),
-        }
-    }
-    string.push('"');
-    string
-}
-
 /// The player's stored choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
@@ -563,65 +543,44 @@ impl Preferences {
     }
 }
 
-/// The preferences, in the order of the file.
-pub(crate) const PREFERENCES: [Setting<Preferences>; 12] = [
-    Setting::CROSSHAIR,
-    Setting::COMPASS,
-    Setting::BELL,
-    Setting::GHOST,
-    Setting::DIFFICULTY,
-    Setting::GLYPHS,
-    Setting::COLORS,
-    Setting::CORRECTION,
-    Setting::FRAME_RATE,
-    Setting::MARKS,
-    Setting::RUNS,
-    Setting::FIELD_OF_VIEW,
-];
+/// The preferences as settings of any type that contains them: the key in the file, the label on a settings page, and
+/// the field.
+macro_rules! preferences {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $label:literal, $field:ident;)*) => {
+        impl<C: AsMut<Preferences> + Clone> Setting<C> {$(
+            $(#[$doc])*
+            pub const $name: Self =
+                Self::new($key, $label, &FieldAt(|it: &mut C| &mut it.as_mut().$field));
+        )*}
 
-/// The preferences as settings of any type that contains them, with their labels on a settings
-/// page.
-impl<C: AsMut<Preferences> + Clone> Setting<C> {
+        /// The preferences, in the order of the file.
+        pub(crate) const PREFERENCES: [Setting<Preferences>; 12] = [$(Setting::$name),*];
+    };
+}
+
+preferences! {
     /// Whether a dot marks the middle of the picture.
-    pub const CROSSHAIR: Self =
-        Self::new("crosshair", "Crosshair", &FieldAt(|it: &mut C| &mut it.as_mut().crosshair));
+    CROSSHAIR: "crosshair", "Crosshair", crosshair;
     /// Whether the compass is shown.
-    pub const COMPASS: Self =
-        Self::new("compass", "Compass", &FieldAt(|it: &mut C| &mut it.as_mut().compass));
+    COMPASS: "compass", "Compass", compass;
     /// Whether the terminal's bell rings when the player is noticed or hurt.
-    pub const BELL: Self = Self::new(
-        "bell",
-        "Bell when noticed or hurt",
-        &FieldAt(|it: &mut C| &mut it.as_mut().bell),
-    );
+    BELL: "bell", "Bell when noticed or hurt", bell;
     /// Whether the ghost of the best run is shown.
-    pub const GHOST: Self =
-        Self::new("ghost", "Ghost of the best run", &FieldAt(|it: &mut C| &mut it.as_mut().ghost));
-    /// Whether marks show what guards suspect.
-    pub const MARKS: Self =
-        Self::new("marks", "Marks above guards", &FieldAt(|it: &mut C| &mut it.as_mut().marks));
+    GHOST: "ghost", "Ghost of the best run", ghost;
     /// The difficulty of new games.
-    pub const DIFFICULTY: Self =
-        Self::new("difficulty", "Difficulty", &FieldAt(|it: &mut C| &mut it.as_mut().difficulty));
+    DIFFICULTY: "difficulty", "Difficulty", difficulty;
     /// The glyph set.
-    pub const GLYPHS: Self =
-        Self::new("glyphs", "Characters", &FieldAt(|it: &mut C| &mut it.as_mut().glyphs));
+    GLYPHS: "glyphs", "Characters", glyphs;
     /// The colour depth.
-    pub const COLORS: Self =
-        Self::new("colors", "Colours", &FieldAt(|it: &mut C| &mut it.as_mut().colors));
+    COLORS: "colors", "Colours", colors;
     /// The colour correction for the player's eyes.
-    pub const CORRECTION: Self =
-        Self::new("correction", "Picture", &FieldAt(|it: &mut C| &mut it.as_mut().correction));
+    CORRECTION: "correction", "Picture", correction;
     /// The maximum frame rate.
-    pub const FRAME_RATE: Self = Self::new(
-        "fps",
-        "Frames a second",
-        &FieldAt(|it: &mut C| &mut it.as_mut().frames_per_second),
-    );
+    FRAME_RATE: "fps", "Frames a second", frames_per_second;
+    /// Whether marks show what guards suspect.
+    MARKS: "marks", "Marks above guards", marks;
     /// Whether the player runs unless a key asks for walking.
-    pub const RUNS: Self =
-        Self::new("runs", "Run by default", &FieldAt(|it: &mut C| &mut it.as_mut().runs));
+    RUNS: "runs", "Run by default", runs;
     /// The field of view.
-    pub const FIELD_OF_VIEW: Self =
-        Self::new("fov", "Field of view", &FieldAt(|it: &mut C| &mut it.as_mut().field_of_view));
+    FIELD_OF_VIEW: "fov", "Field of view", field_of_view;
 }

@@ -37,10 +37,10 @@ use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen;
 use crate::app::setting::{
-    Choice, FRAME_RATE, Field, FieldAt, MapDisplay, Preferences, Setting, ViewAngle, toml_string,
+    Choice, FRAME_RATE, Field, FieldAt, MapDisplay, Preferences, Setting, ViewAngle,
 };
 use crate::color::palette::ColorDepth;
-use crate::fault::document::{self, Entry, FaultList};
+use crate::fault::document::{self, Entry, FaultList, toml_string};
 use crate::fault::{Fault, Faults, quoted};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, Key};

@@ -9,6 +9,7 @@
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -269,4 +270,23 @@ impl<'a, 't> Entry<'a, 't> {
         let help = nearest_or_all(self.key, known, "the nearest key is", "known keys:");
         Fault::new(self.key_place.clone(), message).label("unknown key").help(help)
     }
+}
+
+/// `text` as a TOML string on one line.
+///
+/// Rejected: `toml_writer`. It writes a text with line breaks on several lines.
+pub fn toml_string(text: &str) -> String {
+    let mut string = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => string.extend(['\\', character]),
+            '\n' => string.push_str("\\n"),
+            '\t' => string.push_str("\\t"),
+            // Writing to a string never fails.
+            it if it.is_control() => _ = write!(string, "\\u{:04X}", u32::from(it)),
+            it => string.push(it),
+        }
+    }
+    string.push('"');
+    string
 }

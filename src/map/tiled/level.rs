@@ -14,8 +14,9 @@ use super::legend::{Characters, Definition};
 use super::model::{
     Content, MAP, MAX_CELLS, Object, SheetRegion, TilePicture, TileView, TiledLayer, TiledMap,
 };
-use super::properties::{Property, toml_string};
+use super::properties::Property;
 use super::text::{GridOrigins, MapWriter, Translation};
+use crate::fault::document::toml_string;
 use crate::fault::{Fault, nearest, quoted};
 use crate::map::keys::CharacterTable;
 

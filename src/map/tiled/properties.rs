@@ -1,14 +1,13 @@
 //! Custom properties in Tiled, which are keys of a map file.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::rc::Rc;
 
 use serde_json::Value;
 use toml::de::DeValue;
 
 use super::model::beside;
-use crate::fault::document::{self, FaultList};
+use crate::fault::document::{self, FaultList, toml_string};
 use crate::fault::{Fault, quoted};
 
 /// The keys whose value may be a table or a list. Tiled has none, so they are text there.
@@ -159,21 +158,4 @@ pub(crate) fn toml_value(value: &DeValue<'_>) -> String {
 pub(crate) fn toml_key(key: &str) -> String {
     let is_bare = |it: char| it.is_ascii_alphanumeric() || "-_".contains(it);
     if !key.is_empty() && key.chars().all(is_bare) { key.to_owned() } else { toml_string(key) }
-}
-
-/// A text as a TOML string.
-pub(crate) fn toml_string(text: &str) -> String {
-    let mut string = String::with_capacity(text.len() + 2);
-    string.push('"');
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => string.extend(['\\', character]),
-            '\n' => string.push_str("\\n"),
-            '\t' => string.push_str("\\t"),
-            it if it.is_control() => _ = write!(string, "\\u{:04X}", u32::from(it)),
-            it => string.push(it),
-        }
-    }
-    string.push('"');
-    string
 }

@@ -7,7 +7,8 @@ use std::rc::Rc;
 
 use super::legend::Definition;
 use super::model::{MAP, SheetRegion};
-use super::properties::{Properties, toml_key, toml_string};
+use super::properties::{Properties, toml_key};
+use crate::fault::document::toml_string;
 use crate::fault::quoted;
 use crate::map::keys;
 
