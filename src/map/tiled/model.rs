@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::rc::Rc;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_NO_PAD;
 use flate2::read::{GzDecoder, ZlibDecoder};
 use serde_json::Value;
 
@@ -303,28 +305,10 @@ fn unpacked(bytes: &[u8], compression: &str, size: usize) -> Result<Vec<u8>, Str
     Ok(content)
 }
 
-/// The bytes that `text` encodes; `None` if it has a character that base64 has not.
+/// The bytes that `text` encodes, with or without padding.
 fn base64(text: &str) -> Option<Vec<u8>> {
-    let digits = text.bytes().filter(|byte| !byte.is_ascii_whitespace() && *byte != b'=');
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut count) = (0_u32, 0);
-    for digit in digits {
-        let value = match digit {
-            b'A'..=b'Z' => digit - b'A',
-            b'a'..=b'z' => digit - b'a' + 26,
-            b'0'..=b'9' => digit - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return None,
-        };
-        bits = bits << 6 | u32::from(value);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-        }
-    }
-    Some(bytes)
+    let is_digit = |byte: &u8| !byte.is_ascii_whitespace() && *byte != b'=';
+    STANDARD_NO_PAD.decode(text.bytes().filter(is_digit).collect::<Vec<u8>>()).ok()
 }
 
 impl Object {
