@@ -23,30 +23,33 @@ pub(crate) const MAP: &[&str] = &[
     "things",
 ];
 
-/// The keys of a tile. A key with an empty list makes a tile on its own. Any other key needs one of
-/// the keys in its list.
-const TILES: &[(&str, &[&str])] = &[
-    ("wall", &[]),
-    ("door", &[]),
-    ("mask", &[]),
-    ("glass", &[]),
-    ("mirror", &[]),
-    ("pillar", &[]),
-    ("diagonal", &[]),
-    ("thin", &[]),
-    ("floor", &[]),
-    ("ceiling", &[]),
-    ("light", &[]),
-    ("floor_height", &[]),
-    ("ceiling_height", &[]),
-    ("roof_height", &[]),
-    ("riser", &[]),
-    ("lintel", &[]),
-    ("secret", &[]),
-    ("water", &[]),
-    ("plate", &[]),
-    ("moves_to", &[]),
-    ("crumbles", &[]),
+/// The keys that make a tile on their own.
+const TILES: &[&str] = &[
+    "wall",
+    "door",
+    "mask",
+    "glass",
+    "mirror",
+    "pillar",
+    "diagonal",
+    "thin",
+    "floor",
+    "ceiling",
+    "light",
+    "floor_height",
+    "ceiling_height",
+    "roof_height",
+    "riser",
+    "lintel",
+    "secret",
+    "water",
+    "plate",
+    "moves_to",
+    "crumbles",
+];
+
+/// The other keys of a tile. Each needs one of the keys in its list.
+const OF_TILES: &[(&str, &[&str])] = &[
     ("key", &["door"]),
     ("opacity", &["glass", "mirror"]),
     ("height", &["wall", "mirror", "pillar", "diagonal", "thin", "secret"]),
@@ -56,23 +59,27 @@ const TILES: &[(&str, &[&str])] = &[
     ("switch", &["door", "wall", "moves_to"]),
 ];
 
-/// The keys of a thing, as in [`TILES`].
-const THINGS: &[(&str, &[&str])] = &[
-    ("start", &[]),
-    ("exit", &[]),
-    ("key", &[]),
-    ("sprite", &[]),
-    ("guard", &[]),
-    ("waypoint", &[]),
-    ("treasure", &[]),
-    ("healing", &[]),
-    ("pebbles", &[]),
-    ("darts", &[]),
-    ("flasks", &[]),
-    ("note", &[]),
-    ("checkpoint", &[]),
-    ("lever", &[]),
-    ("spikes", &[]),
+/// The keys that make a thing on their own.
+const THINGS: &[&str] = &[
+    "start",
+    "exit",
+    "key",
+    "sprite",
+    "guard",
+    "waypoint",
+    "treasure",
+    "healing",
+    "pebbles",
+    "darts",
+    "flasks",
+    "note",
+    "checkpoint",
+    "lever",
+    "spikes",
+];
+
+/// The other keys of a thing, as in [`OF_TILES`].
+const OF_THINGS: &[(&str, &[&str])] = &[
     ("anchor", &["sprite"]),
     ("blocks", &["sprite"]),
     ("douse", &["sprite"]),
@@ -83,26 +90,7 @@ const THINGS: &[(&str, &[&str])] = &[
     ("height", &["sprite"]),
     ("light", &["sprite"]),
     ("reach", &["sprite"]),
-    (
-        "on",
-        &[
-            "start",
-            "exit",
-            "key",
-            "sprite",
-            "guard",
-            "waypoint",
-            "treasure",
-            "healing",
-            "pebbles",
-            "darts",
-            "flasks",
-            "note",
-            "checkpoint",
-            "lever",
-            "spikes",
-        ],
-    ),
+    ("on", THINGS),
     ("delay", &["spikes"]),
     ("patrol", &["guard"]),
     ("wander", &["guard"]),
@@ -141,22 +129,25 @@ impl CharacterTable {
         }
     }
 
-    fn keys(self) -> &'static [(&'static str, &'static [&'static str])] {
+    /// The keys that make a tile or a thing on their own.
+    fn makers(self) -> &'static [&'static str] {
         match self {
             Self::Tiles => TILES,
             Self::Things => THINGS,
         }
     }
 
-    /// The keys that make a tile or a thing on their own.
-    fn makers(self) -> Vec<&'static str> {
-        let alone = self.keys().iter().filter(|(_, owners)| owners.is_empty());
-        alone.map(|&(key, _)| key).collect()
+    /// The other keys, each with the keys that it needs one of.
+    fn others(self) -> &'static [(&'static str, &'static [&'static str])] {
+        match self {
+            Self::Tiles => OF_TILES,
+            Self::Things => OF_THINGS,
+        }
     }
 
     /// The keys that `key` can be used with, if it needs another key; otherwise empty.
     pub(crate) fn owners(self, key: &str) -> &'static [&'static str] {
-        self.keys().iter().find(|(known, _)| *known == key).map_or(&[], |&(_, owners)| owners)
+        self.others().iter().find(|(known, _)| *known == key).map_or(&[], |&(_, owners)| owners)
     }
 
     /// The fault of an unknown key in a tile or a thing.
@@ -188,7 +179,8 @@ impl CharacterTable {
             return fault(format!("\"{key}\" makes {}, not {}", other.noun(), self.noun()))
                 .help(format!("move it to {}", other.name()));
         }
-        let known: Vec<&str> = self.keys().iter().map(|&(key, _)| key).collect();
+        let others = self.others().iter().map(|&(key, _)| key);
+        let known: Vec<&str> = self.makers().iter().copied().chain(others).collect();
         entry.unknown_key(self.noun(), &known)
     }
 }

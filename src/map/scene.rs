@@ -13,7 +13,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::definitions::title;
 use super::surfaces::{self, SkyText, colors};
-use super::values::{Quantity, color};
+use super::values::{HEADING, Quantity, SCALE, color};
 use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::fault::{Fault, quoted};
@@ -38,23 +38,11 @@ const AMBIENT: Quantity<Fraction> = Quantity {
     label: "this is not",
     help: "write 0.2 for dark shading, 1 for no shading",
 };
-const HEADING: Quantity<Heading> = Quantity {
-    of: Heading::from_degrees,
-    wanted: "a heading must be a finite number of degrees",
-    label: "this is not",
-    help: "",
-};
 const PITCH: Quantity<Elevation> = Quantity {
     of: Elevation::from_degrees,
     wanted: "a pitch must be degrees from -90, down, to 90, up",
     label: "this is not",
     help: "",
-};
-const SCALE: Quantity<Scale> = Quantity {
-    of: Scale::new,
-    wanted: "\"scale\" must be a finite number above 0",
-    label: "",
-    help: "write scale = 1.0",
 };
 
 /// A kind of body.
