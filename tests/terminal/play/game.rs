@@ -30,10 +30,7 @@ pub(crate) struct Game {
 #[derive(Clone, Copy)]
 pub(crate) enum Key {
     Char(char),
-    Left,
     Right,
-    PageUp,
-    Home,
     Escape,
     Enter,
 }
@@ -177,10 +174,7 @@ impl Key {
             Self::Char(character) => code(u32::from(character), phase),
             Self::Escape => code(27, phase),
             Self::Enter => code(13, phase),
-            Self::Left => format!("\x1b[1;1:{phase}D"),
             Self::Right => format!("\x1b[1;1:{phase}C"),
-            Self::PageUp => format!("\x1b[5;1:{phase}~"),
-            Self::Home => format!("\x1b[1;1:{phase}H"),
         }
     }
 
@@ -190,10 +184,7 @@ impl Key {
             Self::Char(character) => character.to_string(),
             Self::Escape => "\x1b".to_owned(),
             Self::Enter => "\r".to_owned(),
-            Self::Left => "\x1b[D".to_owned(),
             Self::Right => "\x1b[C".to_owned(),
-            Self::PageUp => "\x1b[5~".to_owned(),
-            Self::Home => "\x1b[H".to_owned(),
         }
     }
 }

@@ -48,15 +48,6 @@ fn moving_the_pointer_turns_and_tilts_by_as_much_as_it_moves() {
 }
 
 #[test]
-fn looking_up_ends_at_thirty_degrees() {
-    let game = Game::start();
-    switch_on(&game);
-    game.send(motion(40, 23));
-    game.send(motion(40, 2));
-    game.wait_for_picture(&["--pitch", "30"]);
-}
-
-#[test]
 fn a_terminal_that_reports_pixels_turns_by_less_than_a_cell() {
     let game = Game::start();
     game.wait_for_releases();
@@ -68,19 +59,6 @@ fn a_terminal_that_reports_pixels_turns_by_less_than_a_cell() {
     game.send(motion(346, 200));
     // A cell is 8 pixels wide, and corresponds to a turn of 2°.
     game.wait_for_picture(&["--camera", "1.5,1.5,6.5"]);
-}
-
-#[test]
-fn the_player_keeps_turning_while_the_pointer_is_at_the_edge() {
-    let game = Game::start();
-    switch_on(&game);
-    game.send(motion(70, 12));
-    game.send(motion(80, 12));
-    for points in ['↓', '←', '↑'] {
-        game.wait_for_arrow("turned on", |arrow| arrow.points == points);
-    }
-    game.send(motion(60, 12));
-    game.wait_for_rest();
 }
 
 #[test]
