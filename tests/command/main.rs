@@ -7,15 +7,12 @@ mod descents;
 mod full_disk;
 mod hostile;
 mod recordings;
-mod replay;
 mod scores;
 mod text_mode;
 mod tiled;
 
 #[path = "../support/asciicast.rs"]
 mod asciicast;
-#[path = "../support/geometry.rs"]
-mod geometry;
 #[path = "../support/looks.rs"]
 mod looks;
 #[allow(dead_code, reason = "this file uses a share of it")]

@@ -160,22 +160,6 @@ proptest! {
     }
 
     #[test]
-    fn waiting_equals_taking_as_many_steps(degrees in 0..360, wants in wants()) {
-        let mut game = game(&ROOMS, degrees);
-        for (held, steps) in wants {
-            walk(&mut game, steps, &held);
-            for held in [&held[..], &[]] {
-                if game.is_at_rest(intents(held)) {
-                    let (mut stepped, mut waited) = (game.clone(), game.clone());
-                    walk(&mut stepped, 300, held);
-                    waited.wait(300);
-                    prop_assert_eq!(stepped, waited);
-                }
-            }
-        }
-    }
-
-    #[test]
     fn all_doors_close_while_the_player_stands_still(degrees in 0..360, wants in wants()) {
         let mut game = game(&ROOMS, degrees);
         for (held, steps) in wants {
