@@ -24,9 +24,8 @@ mod ground;
 mod population;
 
 use std::num::NonZeroU32;
-use std::sync::Arc;
 
-use super::chunk::{Chunk, ChunkArea, Extent, Terrain};
+use super::chunk::Extent;
 use super::level::{GeneratedLevel, Generator};
 use super::purpose::{Purpose, generator, hash};
 use super::tileset::Tileset;
@@ -107,10 +106,11 @@ impl Draft {
     fn new(seed: u64, floor: u32, attempt: i64) -> Result<Option<Self>, Faults> {
         let kind = kind(seed, floor);
         let own_seed = hash(seed, Purpose::Floor, floor.into(), attempt);
-        let terrain = FloorTerrain::new(kind.terrain(own_seed), floor);
+        let terrain = kind.terrain(own_seed);
+        let legend = legend_of_floor(&terrain.legend(), floor);
         let (columns, rows) = size(floor);
         let extent = Extent::Cells { columns: columns.get(), rows: rows.get() };
-        let level = GeneratedLevel::new(terrain, extent)?;
+        let level = GeneratedLevel::with_legend(terrain, &legend, extent)?;
         let mut random = generator(own_seed, Purpose::Population, 0, 0);
         let Some(start) = level.start() else { return Ok(None) };
         let start = (start.column as u32, start.row as u32);
@@ -204,52 +204,20 @@ fn open_loops(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64)
     }
 }
 
-/// The terrain of a floor: a generator's terrain with another title and less light.
-#[derive(Debug)]
-struct FloorTerrain {
-    terrain: Arc<dyn Terrain>,
-    floor: u32,
-}
-
-impl FloorTerrain {
-    fn new(terrain: Arc<dyn Terrain>, floor: u32) -> Arc<Self> {
-        Arc::new(Self { terrain, floor })
-    }
-
-    /// A line of the legend, changed for this floor.
-    fn line(&self, line: &str) -> String {
-        match line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) {
-            Some(("title", _)) => format!("title = \"Floor {}\"\n", self.floor),
+/// `legend` of a terrain as the legend of a floor: its title is the number, and deeper floors are
+/// darker.
+fn legend_of_floor(legend: &str, floor: u32) -> String {
+    let line =
+        |line: &str| match line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) {
+            Some(("title", _)) => format!("title = \"Floor {floor}\"\n"),
             Some(("light", value)) => {
-                let share = 1.0 - DIMMING * f64::from(self.floor.min(DARKEST) - 1);
+                let share = 1.0 - DIMMING * f64::from(floor.min(DARKEST) - 1);
                 let light = value.parse::<f64>().unwrap_or(1.0) * share;
                 format!("light = {light:.3}\n")
             }
             _ => format!("{line}\n"),
-        }
-    }
-}
-
-impl Terrain for FloorTerrain {
-    fn seed(&self) -> u64 {
-        self.terrain.seed()
-    }
-
-    fn legend(&self) -> String {
-        self.terrain.legend().lines().map(|line| self.line(line)).collect()
-    }
-
-    fn chunk(&self, area: &ChunkArea) -> Chunk {
-        self.terrain.chunk(area)
-    }
-
-    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)> {
-        self.terrain.hub(area)
-    }
-
-    fn start(&self, area: &ChunkArea) -> (usize, usize) {
-        self.terrain.start(area)
-    }
+        };
+    legend.lines().map(line).collect()
 }
 
 #[cfg(test)]

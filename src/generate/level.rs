@@ -37,7 +37,17 @@ impl GeneratedLevel {
     /// # Errors
     /// All faults in the terrain's legend.
     pub fn new(terrain: Arc<dyn Terrain>, extent: Extent) -> Result<Self, Faults> {
-        let tileset = Arc::new(Tileset::of(&terrain.legend())?);
+        let legend = terrain.legend();
+        Self::with_legend(terrain, &legend, extent)
+    }
+
+    /// As [`GeneratedLevel::new`], with another legend than the terrain's own.
+    pub(crate) fn with_legend(
+        terrain: Arc<dyn Terrain>,
+        legend: &str,
+        extent: Extent,
+    ) -> Result<Self, Faults> {
+        let tileset = Arc::new(Tileset::of(legend)?);
         let endless = Self { terrain, tileset, extent, exit: None };
         let exit = endless.place_for_exit();
         Ok(Self { exit, ..endless })

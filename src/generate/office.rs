@@ -194,15 +194,6 @@ impl RoomArea {
         }
         building.open_to_corridors(&self);
     }
-
-    /// The columns in which a north-south wall could divide the block.
-    fn cuts_across(&self) -> Vec<usize> {
-        cuts(&self.columns)
-    }
-
-    fn cuts_down(&self) -> Vec<usize> {
-        cuts(&self.rows)
-    }
 }
 
 /// The odd positions that leave enough room on both sides.
@@ -230,7 +221,7 @@ impl Building<'_> {
 
     /// Divides large areas in two with a door between them, and furnishes the small ones.
     fn divide(&mut self, block: RoomArea) {
-        let (across, down) = (block.cuts_across(), block.cuts_down());
+        let (across, down) = (cuts(&block.columns), cuts(&block.rows));
         let longest = block.columns.len().max(block.rows.len());
         let is_done = longest <= MAX_ROOM_SIDE && self.random.one_in(3);
         let is_wide = block.columns.len() > block.rows.len();
