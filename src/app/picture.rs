@@ -340,7 +340,9 @@ fn draw_sounds(
     sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
     for heard in loudest.into_iter().take(MAX) {
         let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
-        let Some(area) = free_place(ring, angle(heard, heading), &text, &taken) else { continue };
+        let Some(area) = free_place(ring, angle(heard.bearing, heading), &text, &taken) else {
+            continue;
+        };
         canvas.draw_widget(Line::raw(text).style(style(heard.kind, depth)), area);
         taken.push(area);
     }
@@ -379,13 +381,13 @@ const fn sign(kind: SoundKind) -> (char, Option<&'static str>) {
     }
 }
 
-/// The angle from the direction of view to the sound: clockwise, from −180 to 180 degrees.
-fn angle(heard: &Heard, heading: Heading) -> f64 {
-    let clockwise = heard.bearing.degrees() - heading.degrees();
+/// The angle from the direction of view to `bearing`: clockwise, from −180 to 180 degrees.
+fn angle(bearing: Heading, heading: Heading) -> f64 {
+    let clockwise = bearing.degrees() - heading.degrees();
     (clockwise + 540.0).rem_euclid(360.0) - 180.0
 }
 
-/// The side of the ring that shows a sound.
+/// A side of the picture, or of the ring that shows sounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RingSide {
     Ahead,
@@ -409,12 +411,13 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     let strength = usize::from(heard.strength.clamp(1, 3));
     let (character, word) = sign(heard.kind);
     let characters: String = std::iter::repeat_n(character, strength).collect();
-    let characters = match (word.filter(|_| has_words), RingSide::of(angle(heard, heading))) {
+    let characters = match (word.filter(|_| has_words), RingSide::of(angle(heard.bearing, heading)))
+    {
         (None, _) => characters,
         (Some(word), RingSide::Right) => format!("{word} {characters}"),
         (Some(word), _) => format!("{characters} {word}"),
     };
-    match RingSide::of(angle(heard, heading)) {
+    match RingSide::of(angle(heard.bearing, heading)) {
         RingSide::Ahead => format!("^{characters}"),
         RingSide::Right => format!("{characters}>"),
         RingSide::Behind => format!("v{characters}"),
@@ -458,16 +461,20 @@ fn place(ring: Rect, angle: f64, width: u16) -> Rect {
 }
 
 fn style(kind: SoundKind, depth: ColorDepth) -> Style {
-    let bold = Style::new().add_modifier(Modifier::BOLD);
-    match (depth, is_threat(kind)) {
-        (ColorDepth::Mono, false) => Style::new().add_modifier(Modifier::REVERSED),
-        (ColorDepth::Mono, true) => bold.add_modifier(Modifier::REVERSED),
-        (ColorDepth::Indexed16, false) => Style::new().fg(Color::Indexed(14)),
-        (ColorDepth::Indexed16, true) => bold.fg(Color::Indexed(9)),
-        (ColorDepth::Indexed256, false) => Style::new().fg(Color::Indexed(153)),
-        (ColorDepth::Indexed256, true) => bold.fg(Color::Indexed(203)),
-        (ColorDepth::True, false) => Style::new().fg(Color::Rgb(0xa8, 0xd0, 0xf0)),
-        (ColorDepth::True, true) => bold.fg(Color::Rgb(0xff, 0x60, 0x50)),
+    if is_threat(kind) {
+        colored(depth, 9, 203, (0xff, 0x60, 0x50)).add_modifier(Modifier::BOLD)
+    } else {
+        colored(depth, 14, 153, (0xa8, 0xd0, 0xf0))
+    }
+}
+
+/// The style with this colour among 16, among 256 and among all colours.
+fn colored(depth: ColorDepth, of_16: u8, of_256: u8, (red, green, blue): (u8, u8, u8)) -> Style {
+    match depth {
+        ColorDepth::Mono => Style::new().add_modifier(Modifier::REVERSED),
+        ColorDepth::Indexed16 => Style::new().fg(Color::Indexed(of_16)),
+        ColorDepth::Indexed256 => Style::new().fg(Color::Indexed(of_256)),
+        ColorDepth::True => Style::new().fg(Color::Rgb(red, green, blue)),
     }
 }
 
@@ -521,13 +528,7 @@ impl Suspicion {
             Self::Searching => (14, 215, (0xff, 0xa8, 0x48)),
             Self::Alarmed => (9, 203, (0xff, 0x60, 0x50)),
         };
-        let bold = Style::new().add_modifier(Modifier::BOLD);
-        match depth {
-            ColorDepth::Mono => bold.add_modifier(Modifier::REVERSED),
-            ColorDepth::Indexed16 => bold.fg(Color::Indexed(of_16)),
-            ColorDepth::Indexed256 => bold.fg(Color::Indexed(of_256)),
-            ColorDepth::True => bold.fg(Color::Rgb(color.0, color.1, color.2)),
-        }
+        colored(depth, of_16, of_256, color).add_modifier(Modifier::BOLD)
     }
 }
 
@@ -546,9 +547,7 @@ const OTHER_SIDES: f64 = 0.08;
 /// The side of the picture from which the player was hurt; `None` if the flash covers all sides.
 fn side_of(flash: &Flash, heading: Heading) -> Option<RingSide> {
     let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { return None };
-    let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
-    let clockwise_from_ahead = [RingSide::Ahead, RingSide::Right, RingSide::Behind, RingSide::Left];
-    Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4])
+    Some(RingSide::of(angle(bearing, heading)))
 }
 
 /// Tints the pixels at the edge of `frame`.
