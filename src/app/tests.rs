@@ -6,7 +6,6 @@ mod gestures;
 mod guards;
 mod interruption;
 mod kept;
-mod levels;
 mod missions;
 mod panels;
 mod playback;

@@ -69,7 +69,10 @@ fn help_scrolls_if_it_does_not_fit() {
 
 #[test]
 fn maps_show_heights() {
-    let maps = [("cistern", super::levels::CISTERN), ("observatory", super::levels::OBSERVATORY)];
+    let maps = [
+        ("cistern", include_str!("../../../tests/maps/cistern.toml")),
+        ("observatory", include_str!("../../../tests/maps/observatory.toml")),
+    ];
     for (level, map) in maps {
         let mut app = app_in(parse_str(map).unwrap(), ascii(MapDisplay::All));
         press(&mut app, Key::Char('3'));
