@@ -192,40 +192,6 @@ fn the_exit_ends_the_game() {
 }
 
 #[test]
-fn a_walk_ends_at_the_same_place_on_every_machine() {
-    use Intent::{Back, Forward, Run, StrafeLeft, StrafeRight, TurnLeft, TurnRight};
-    let mut game = Game::new(world(&CELLAR, 17.0));
-    let script: [(usize, &[Intent]); 7] = [
-        (50, &[Forward]),
-        (25, &[Forward, TurnRight, Run]),
-        (90, &[Forward, StrafeLeft]),
-        (31, &[TurnLeft, Run, StrafeRight]),
-        (77, &[Forward, Run]),
-        (13, &[Back, TurnRight]),
-        (5, &[]),
-    ];
-    for (steps, held) in script {
-        walk(&mut game, steps, held);
-    }
-    let camera = game.camera(FieldOfView::default());
-    insta::assert_debug_snapshot!(
-        (camera.position().to_array(), camera.direction().to_array()),
-        @r"
-    (
-        [
-            8.203787533664316,
-            5.624213200187348,
-        ],
-        [
-            0.8502489054169883,
-            0.5263808496110145,
-        ],
-    )
-    "
-    );
-}
-
-#[test]
 fn a_player_keeps_their_place_in_a_changed_world_if_it_is_free() {
     let rows = ["#######", "#@....#", "#....E#", "#######"];
     let mut game = Game::new(world(&rows, 0.0));

@@ -24,35 +24,6 @@ fn a_block_that_saves_a_colour_change_is_chosen() {
 
 proptest! {
     #[test]
-    fn pixels_look_the_same_with_any_glyphs(cells in any_pixels(24)) {
-        let size = Size::new(6, 4);
-        let (mut terminal, screen) = terminal(size);
-        let content = Buffer { area: Rect::from(size), content: cells };
-        draw(&mut terminal, &content);
-        assert_shown(&screen, &content);
-    }
-
-    /// A picture that turns: stretches of rows move by some columns from frame to frame.
-    #[test]
-    fn cells_that_move_sideways_are_drawn_correctly(
-        cells in any_pixels(160),
-        moves in prop::collection::vec((0..4_usize, 0..40_usize, 0..40_usize, 0..9_usize), 1..8),
-    ) {
-        let size = Size::new(40, 4);
-        let (mut terminal, screen) = terminal(size);
-        let mut content = Buffer { area: Rect::from(size), content: cells };
-        draw(&mut terminal, &content);
-        for (row, one, other, by) in moves {
-            let stretch = 40 * row + one.min(other)..40 * row + one.max(other) + 1;
-            let stretch = &mut content.content[stretch];
-            let count = stretch.len();
-            stretch.rotate_left(by % count);
-            draw(&mut terminal, &content);
-            assert_shown(&screen, &content);
-        }
-    }
-
-    #[test]
     fn a_terminal_shows_the_drawn_cells_after_any_history(
         (size, history) in any_size()
             .prop_flat_map(|size| (Just(size), prop::collection::vec(any_buffer(size), 1..6)))
@@ -88,32 +59,6 @@ proptest! {
         terminal.backend_mut().set_size(after.area.as_size());
         draw(&mut terminal, &after);
         assert_shown(&screen, &after);
-    }
-}
-
-proptest! {
-    #[test]
-    fn a_resting_picture_becomes_exact_within_ten_frames(
-        history in prop::collection::vec(any_pixels(24), 1..4),
-        tolerance: u8,
-    ) {
-        let size = Size::new(6, 4);
-        let (mut terminal, screen) = terminal(size);
-        terminal.backend_mut().set_fidelity(Fidelity::new(tolerance));
-        let pictures = history.into_iter().map(|content| Buffer { area: Rect::from(size), content });
-        let pictures: Vec<_> = pictures.collect();
-        for content in &pictures {
-            draw(&mut terminal, content);
-        }
-        let last = pictures.last().unwrap();
-        for _ in 0..10 {
-            draw(&mut terminal, last);
-        }
-        assert_shown(&screen, last);
-        prop_assert!(terminal.backend().is_settled());
-        let writes = screen.writes();
-        draw(&mut terminal, last);
-        prop_assert_eq!(screen.writes(), writes);
     }
 }
 
