@@ -14,8 +14,8 @@ mod rebinding;
 mod redraws;
 mod saved;
 mod screens;
-mod table;
 mod taking_back;
+mod taps;
 mod titles;
 mod tmux_offers;
 
@@ -108,6 +108,12 @@ impl Rig {
     fn degrees(&self) -> f64 {
         self.game().camera(FieldOfView::default()).heading.degrees()
     }
+}
+
+/// All keyboards: every combination of delay and rate, and a terminal that reports releases.
+fn keyboards() -> impl Iterator<Item = Option<Rate>> {
+    let delays = [250, 400, 500, 660].into_iter();
+    delays.flat_map(|delay| [15, 25, 30, 40].map(|rate| Some((delay, rate)))).chain([None])
 }
 
 /// A level with an open floor. The player starts in the middle, looking east.

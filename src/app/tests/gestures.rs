@@ -33,12 +33,6 @@ const E: Key = Key::Char('e');
 const LEFT: Key = Key::Left;
 const RIGHT: Key = Key::Right;
 
-/// All keyboards: every combination of delay and rate, and a terminal that reports releases.
-fn keyboards() -> impl Iterator<Item = Option<Rate>> {
-    let delays = [250, 400, 500, 660].into_iter();
-    delays.flat_map(|delay| [15, 25, 30, 40].map(|rate| Some((delay, rate)))).chain([None])
-}
-
 /// The expected effect of a key.
 #[derive(Clone, Debug)]
 enum Effect {

@@ -113,25 +113,6 @@ fn a_player_goes_from_the_title_to_a_death_a_retry_and_out() {
 }
 
 #[test]
-fn a_game_left_unfinished_is_offered_again() {
-    let data = folder("left");
-    let mut player = start(&data, (80, 24));
-    choose(&player, "New game");
-    choose(&player, "Normal");
-    player.wait_for("? help");
-    player.send("w");
-    thread::sleep(Duration::from_millis(500));
-    player.send("qq");
-    player.wait_for_end().assert_given_back();
-    let mut player = start(&data, (80, 24));
-    choose(&player, "Continue");
-    player.wait_for("? help");
-    player.send("q\r");
-    player.wait_for_end().assert_given_back();
-    assert!(data.join("progress.toml").exists());
-}
-
-#[test]
 fn a_map_started_by_its_path_is_saved_and_asked_about() {
     let data = folder("by-path");
     let map = test_map("pit");
