@@ -115,7 +115,7 @@ pub(crate) fn slide<O: Obstacles>(
             return MovingBody { position, velocity };
         };
         let Some(contact) = first_contact(obstacles, path, radius) else {
-            let position = path.last_clear(obstacles, path.length(), radius);
+            let position = path.last_clear(obstacles, path.length, radius);
             return MovingBody { position, velocity };
         };
         position = contact.position;
@@ -142,7 +142,7 @@ pub(crate) fn fly<O: Obstacles>(
     let Some(path) = StraightPath::new(position, displacement) else { return (position, false) };
     match first_contact(obstacles, path, radius) {
         Some(contact) => (contact.position, true),
-        None => (path.last_clear(obstacles, path.length(), radius), false),
+        None => (path.last_clear(obstacles, path.length, radius), false),
     }
 }
 
@@ -407,14 +407,6 @@ impl StraightPath {
         (length > 0.0).then(|| Self { from, direction: displacement / length, length })
     }
 
-    fn length(self) -> f64 {
-        self.length
-    }
-
-    fn direction(self) -> DVec2 {
-        self.direction
-    }
-
     fn at(self, distance: f64) -> DVec2 {
         self.from + self.direction * distance
     }
@@ -464,10 +456,10 @@ fn first_contact<O: Obstacles>(
                 column += columns;
                 row += rows;
             }
-            PathEventKind::Touch(obstacle) => {
-                let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
+            PathEventKind::Touch { kind, cell } => {
+                let (position, normal) = kind.contact(obstacles, path, distance, radius);
                 let remaining = path.direction * (path.length - distance);
-                let cell = obstacle.cell().map(|(columns, rows)| (column + columns, row + rows));
+                let cell = cell.map(|(columns, rows)| (column + columns, row + rows));
                 return Some(Contact { position, normal, remaining, cell });
             }
         }
@@ -493,18 +485,21 @@ enum PathEventKind {
     /// The centre crosses into a neighbouring open cell.
     Leave { columns: i64, rows: i64 },
     /// The circle touches something solid.
-    Touch(Obstacle),
+    Touch {
+        kind: TouchKind,
+        /// The cell of the obstacle, as an offset of columns and rows; `None` for another circle.
+        cell: Option<(i64, i64)>,
+    },
 }
 
-enum Obstacle {
-    /// A flat wall, touched from `position`.
-    Wall { position: DVec2, normal: DVec2 },
-    /// The corner of a solid cell at an offset of columns and rows.
-    Corner { vertex: DVec2, cell: (i64, i64) },
-    /// Another circle of the same radius.
-    Circle { center: DVec2 },
-    /// The shape in a cell at an offset of columns and rows.
-    Shape { touch: TouchKind, cell: (i64, i64) },
+/// The part of an obstacle that a circle touches.
+#[derive(Clone, Copy, Debug)]
+enum TouchKind {
+    /// A round part around this centre: a corner, a pillar, an end of a line, or another circle.
+    Round(DVec2),
+    /// A wall, or the side of a line. The circle's centre is at `position`, and `normal` points to
+    /// it.
+    Flat { position: DVec2, normal: DVec2 },
 }
 
 /// The side of an open cell that a path approaches along one axis.
@@ -571,8 +566,7 @@ impl<O: Obstacles> OpenCell<'_, O> {
             let row = self.row + i64::from(rows > 0);
             let vertex = DVec2::new(column as f64, row as f64);
             let distance = distance_to_disc(path, vertex, self.radius.0)?;
-            let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
-            Some(PathEvent { distance, kind: PathEventKind::Touch(corner) })
+            Some(PathEvent::touch(distance, TouchKind::Round(vertex), Some((columns, rows))))
         };
         [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
     }
@@ -580,7 +574,7 @@ impl<O: Obstacles> OpenCell<'_, O> {
     fn circle_events(&self, path: StraightPath) -> impl Iterator<Item = PathEvent> {
         self.obstacles.circles().iter().filter_map(move |&center| {
             let distance = distance_to_disc(path, center, 2.0 * self.radius.0)?;
-            Some(PathEvent { distance, kind: PathEventKind::Touch(Obstacle::Circle { center }) })
+            Some(PathEvent::touch(distance, TouchKind::Round(center), None))
         })
     }
 
@@ -589,9 +583,8 @@ impl<O: Obstacles> OpenCell<'_, O> {
         around.filter_map(move |(columns, rows)| {
             let cell = cell_on_map(self.column + columns, self.row + rows)?;
             let outline = self.obstacles.outline(cell)?;
-            let touch = first_touch(outline, cell, path, self.radius)?;
-            let shape = Obstacle::Shape { touch: touch.kind, cell: (columns, rows) };
-            Some(PathEvent { distance: touch.distance, kind: PathEventKind::Touch(shape) })
+            let (distance, kind) = first_touch(outline, cell, path, self.radius)?;
+            Some(PathEvent::touch(distance, kind, Some((columns, rows))))
         })
     }
 }
@@ -600,13 +593,22 @@ impl CellSide {
     /// The event at this side, when the centre is at `position`.
     fn event(&self, position: DVec2) -> PathEvent {
         let (columns, rows) = self.neighbor;
-        let kind = if self.is_wall {
+        if self.is_wall {
             let normal = -DVec2::new(columns as f64, rows as f64);
-            PathEventKind::Touch(Obstacle::Wall { position, normal })
+            PathEvent::touch(
+                self.distance,
+                TouchKind::Flat { position, normal },
+                Some(self.neighbor),
+            )
         } else {
-            PathEventKind::Leave { columns, rows }
-        };
-        PathEvent { distance: self.distance, kind }
+            PathEvent { distance: self.distance, kind: PathEventKind::Leave { columns, rows } }
+        }
+    }
+}
+
+impl PathEvent {
+    fn touch(distance: f64, kind: TouchKind, cell: Option<(i64, i64)>) -> Self {
+        Self { distance, kind: PathEventKind::Touch { kind, cell } }
     }
 }
 
@@ -622,63 +624,28 @@ fn distance_to_disc(path: StraightPath, center: DVec2, radius: f64) -> Option<f6
     Some((closest - half_chord).max(0.0))
 }
 
-impl Obstacle {
-    /// The obstacle's cell, as an offset of columns and rows from the cell of the centre.
-    fn cell(&self) -> Option<(i64, i64)> {
-        match *self {
-            Self::Wall { normal, .. } => Some((-normal.x as i64, -normal.y as i64)),
-            Self::Corner { cell, .. } | Self::Shape { cell, .. } => Some(cell),
-            Self::Circle { .. } => None,
-        }
-    }
-
-    /// The position of a circle that touches this obstacle at `distance` on its path, and the
-    /// normal of the contact.
-    fn touched<O: Obstacles>(
-        &self,
+impl TouchKind {
+    /// The position of a circle that touches this part at `distance` on its path, and the normal of
+    /// the contact.
+    fn contact<O: Obstacles>(
+        self,
         obstacles: &O,
         path: StraightPath,
         distance: f64,
         radius: Radius,
     ) -> (DVec2, DVec2) {
-        match *self {
-            Self::Wall { position, normal } if is_clear(obstacles, position, radius) => {
+        match self {
+            Self::Flat { position, normal } if is_clear(obstacles, position, radius) => {
                 (position, normal)
             }
-            Self::Wall { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
-            Self::Shape { touch: TouchKind::Flat { position, normal }, .. } => {
-                if is_clear(obstacles, position, radius) {
-                    (position, normal)
-                } else {
-                    (path.last_clear(obstacles, distance, radius), normal)
-                }
-            }
-            Self::Corner { vertex, .. }
-            | Self::Circle { center: vertex }
-            | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
+            Self::Flat { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
+            Self::Round(center) => {
                 let position = path.last_clear(obstacles, distance, radius);
-                let outward = position - vertex;
+                let outward = position - center;
                 (position, outward / outward.length())
             }
         }
     }
-}
-
-/// A contact of a circle with a shape.
-#[derive(Clone, Copy, Debug)]
-struct Touch {
-    /// The distance along the path.
-    distance: f64,
-    /// The part of the shape that is nearest to the circle's centre at the contact.
-    kind: TouchKind,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum TouchKind {
-    /// A round part around this centre: a pillar, or an end of a line.
-    Round(DVec2),
-    /// The side of a line. The circle's centre is at `position`, and `normal` points to it.
-    Flat { position: DVec2, normal: DVec2 },
 }
 
 /// Whether a circle around `center` does not overlap an outline in `cell`. It may touch it.
@@ -691,16 +658,15 @@ fn is_clear_of_outline(
     outline.distance(cell, center) >= radius
 }
 
-/// The first contact of a circle on `path` with an outline in `cell`.
+/// The first contact of a circle on `path` with an outline in `cell`, and its distance along the path.
 fn first_touch(
     outline: Outline,
     cell: Cell,
     path: StraightPath,
     Radius(radius): Radius,
-) -> Option<Touch> {
+) -> Option<(f64, TouchKind)> {
     let round = |center: DVec2, radius: f64| {
-        let distance = distance_to_disc(path, center, radius)?;
-        Some(Touch { distance, kind: TouchKind::Round(center) })
+        Some((distance_to_disc(path, center, radius)?, TouchKind::Round(center)))
     };
     match outline {
         Outline::Pillar(pillar) => round(cell.center(), radius + pillar.cells()),
@@ -711,22 +677,24 @@ fn first_touch(
                 round(start, radius),
                 round(start + line.stretch(), radius),
             ];
-            touches
-                .into_iter()
-                .flatten()
-                .min_by(|one, other| one.distance.total_cmp(&other.distance))
+            touches.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0))
         }
     }
 }
 
-fn first_touch_of_side(line: Line, start: DVec2, path: StraightPath, radius: f64) -> Option<Touch> {
+fn first_touch_of_side(
+    line: Line,
+    start: DVec2,
+    path: StraightPath,
+    radius: f64,
+) -> Option<(f64, TouchKind)> {
     let stretch = line.stretch();
     let length = stretch.length();
     let normal = stretch.perp() / length;
     let offset = path.at(0.0) - start;
     let normal = if offset.dot(normal) < 0.0 { -normal } else { normal };
     let away = offset.dot(normal) - (radius + SKIN);
-    let approach = -path.direction().dot(normal);
+    let approach = -path.direction.dot(normal);
     if approach <= PARALLEL {
         return None;
     }
@@ -736,7 +704,7 @@ fn first_touch_of_side(line: Line, start: DVec2, path: StraightPath, radius: f64
     // The centre is off by rounding, or because the path began inside the skin.
     let position = point + normal * (radius + SKIN - (point - start).dot(normal));
     let kind = TouchKind::Flat { position, normal };
-    (0.0..=length).contains(&along).then_some(Touch { distance, kind })
+    (0.0..=length).contains(&along).then_some((distance, kind))
 }
 
 #[cfg(test)]
