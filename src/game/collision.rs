@@ -383,7 +383,7 @@ fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
 }
 
 /// The parts of `gap` below and above `filled`.
-fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
+pub(crate) fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
     let below = Gap { top: gap.top.min(filled.bottom), ..gap };
     let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };
     let is_open = |gap: &Gap| gap.bottom < gap.top;

@@ -14,6 +14,7 @@
 
 use std::collections::BTreeSet;
 
+use super::collision::around;
 use super::fall::GRAVITY;
 use super::player::{JUMP_HEIGHT, RADIUS, RUN, STEP_HEIGHT};
 use super::stance::DUCKING;
@@ -359,13 +360,7 @@ fn high_enough(gaps: Vec<Gap>) -> EnterableGaps {
 
 /// The parts of `gaps` below and above `filled`.
 fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
-    let left = gaps.iter().flat_map(|&gap| {
-        let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;
-        let below = Gap { top: filled.bottom, ..gap };
-        let above = Gap { bottom: filled.top, ..gap };
-        if is_apart { [Some(gap), None] } else { [Some(below), Some(above)] }
-    });
-    left.flatten().filter(|gap| gap.bottom < gap.top).collect()
+    gaps.iter().flat_map(|&gap| around(gap, filled)).collect()
 }
 
 #[cfg(test)]
