@@ -141,8 +141,8 @@ impl App {
                 line.both(Part::Notice, format_args!("{message}"))?;
             } else if let Some(goal) = notice.or(Some(goal)).filter(|goal| goal.is_shown()) {
                 let [short, long] = line.forms(Part::Notice);
-                short.push_str(goal.short());
-                long.push_str(goal.text());
+                short.push_str(&goal.short);
+                long.push_str(&goal.text);
             }
             if let Some(stats) = stats {
                 line.write_stats(stats)?;

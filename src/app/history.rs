@@ -11,9 +11,9 @@ use crate::game::{Game, Intents};
 pub(crate) struct History {
     start: Game,
     /// The number of steps of the run before the game started.
-    begun: u64,
+    pub(crate) begun: u64,
     /// The number of steps now.
-    steps: u64,
+    pub(crate) steps: u64,
     /// Stored games.
     states: States<Vec<u8>>,
 }
@@ -22,16 +22,6 @@ impl History {
     /// The history of a game at its start, after `begun` steps of a run.
     pub(crate) fn new(start: Game, begun: u64) -> Self {
         Self { start, begun, steps: begun, states: States::default() }
-    }
-
-    /// The number of steps of the run up to now.
-    pub(crate) fn steps(&self) -> u64 {
-        self.steps
-    }
-
-    /// The number of steps of the run before the game started.
-    pub(crate) fn begun(&self) -> u64 {
-        self.begun
     }
 
     /// Records that `game` is the state after `steps` steps of the run.
@@ -84,7 +74,7 @@ mod tests {
             for (_, intents) in script.iter() {
                 game.step(intents);
                 log.record(intents, 1);
-                history.record(log.steps(), &game);
+                history.record(log.steps, &game);
                 checksums.push(game.checksum());
             }
             for (steps, &checksum) in checksums.iter().enumerate().step_by(97) {

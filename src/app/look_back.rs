@@ -34,7 +34,8 @@ const PAUSE: usize = 12;
 /// The last seconds before a death.
 #[derive(Clone, Debug)]
 pub(crate) struct LookBack {
-    sentence: String,
+    /// A sentence about the guard who noticed the player first.
+    pub(crate) sentence: String,
     /// Oldest first; there is at least one.
     moments: Vec<Moment>,
     begun: Duration,
@@ -60,8 +61,8 @@ struct Noticed {
 impl LookBack {
     /// The last seconds of the run `log`, which ends now; `None` if no guard follows the player.
     pub(crate) fn of(history: &History, log: &RunLog, now: Duration) -> Option<Self> {
-        let end = history.steps();
-        let first = end.saturating_sub(SEARCHED).max(history.begun());
+        let end = history.steps;
+        let first = end.saturating_sub(SEARCHED).max(history.begun);
         let mut game = history.at(first, |first| log.since(first));
         let mut noticed: Vec<Option<Noticed>> = Vec::new();
         let mut moments = Vec::new();
@@ -87,11 +88,6 @@ impl LookBack {
         };
         let sentence = earliest.sentence(game.world(), &when);
         (!moments.is_empty()).then_some(Self { sentence, moments, begun: now })
-    }
-
-    /// A sentence about the guard who noticed the player first.
-    pub(crate) fn sentence(&self) -> &str {
-        &self.sentence
     }
 
     /// The number of intervals since the beginning.

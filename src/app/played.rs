@@ -228,8 +228,10 @@ const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 /// A goal, and the remaining time for which it is shown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Goal {
-    text: String,
-    short: String,
+    /// The goal as a sentence without the full stop.
+    pub(crate) text: String,
+    /// The shorter form for narrow windows.
+    pub(crate) short: String,
     steps_left: u64,
 }
 
@@ -249,16 +251,6 @@ impl Goal {
     /// A goal with a shorter form for narrow windows. Both are sentences without the full stop.
     pub(crate) fn new(text: &str, short: &str) -> Self {
         Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
-    }
-
-    /// The goal as a sentence without the full stop.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// The shorter form for narrow windows.
-    pub(crate) fn short(&self) -> &str {
-        &self.short
     }
 
     /// Returns true if the goal is still shown.

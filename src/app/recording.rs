@@ -57,7 +57,8 @@ impl App {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RunLog {
     stretches: Vec<Stretch>,
-    steps: u64,
+    /// The number of recorded steps.
+    pub(crate) steps: u64,
     /// The number of times that the player has taken time back.
     pub(crate) taken_back: u32,
 }
@@ -81,11 +82,6 @@ impl RunLog {
     /// Returns true if nothing has been recorded.
     pub(crate) fn is_empty(&self) -> bool {
         self.stretches.is_empty()
-    }
-
-    /// The number of recorded steps.
-    pub(crate) fn steps(&self) -> u64 {
-        self.steps
     }
 
     /// The intents of each step from step `first` on.
@@ -171,13 +167,13 @@ impl Ghost {
         if let Some(intents) = self.next {
             self.game.step(intents);
             self.next = self.steps.next();
-            self.history.record(self.history.steps() + 1, &self.game);
+            self.history.record(self.history.steps + 1, &self.game);
         }
     }
 
     /// Goes back to the state after `steps` steps.
     pub(crate) fn go_back_to(&mut self, steps: u64) {
-        if steps < self.history.steps() {
+        if steps < self.history.steps {
             let run = |first| self.run.clone().skip(first as usize);
             self.game = self.history.at(steps, run);
             self.history.forget_after(steps);

@@ -2,7 +2,6 @@
 //! end of the last level.
 
 use crate::app::App;
-use crate::app::look_back::LookBack;
 use crate::app::page::Menu;
 use crate::app::recording::{self, RunLog, Steps};
 use crate::app::screen::MenuChoice;
@@ -139,7 +138,7 @@ impl App {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };
-        let noticed = self.look_back.as_ref().map(LookBack::sentence);
+        let noticed = self.look_back.as_ref().map(|it| it.sentence.as_str());
         let menu = Menu::new("you are dead").line(cause).lines(noticed);
         if self.is_descent() {
             return self.with_leaving(menu.lines(self.descent_lines()));

@@ -39,7 +39,7 @@ impl App {
     /// there is no level name to save it under.
     fn as_save(&self) -> Option<Save> {
         let game = self.game.grid().filter(|_| self.demo.is_none())?;
-        let steps = self.log.steps();
+        let steps = self.log.steps;
         if let Some(kind) = self.levels.descent {
             return Some(Save { steps, ..save_of_descent(kind, game.rules()) });
         }

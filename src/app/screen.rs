@@ -307,7 +307,7 @@ impl App {
         let carried = self.game.grid().into_iter().flat_map(Game::keys);
         let menu = Menu::new("paused")
             .line(format!("{keys} resumes"))
-            .line(self.goal.text())
+            .line(&*self.goal.text)
             .lines(self.level_lines())
             .line(whole_seconds(self.game.elapsed()).to_string())
             .lines(carried.map(|key| format!("{key} key")))

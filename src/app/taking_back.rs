@@ -26,13 +26,13 @@ impl App {
     /// Begins the history of the level that has just begun.
     pub(crate) fn begin_history(&mut self) {
         let game = self.game.grid().filter(|game| game.corner().is_none());
-        self.history = game.map(|game| History::new(game.clone(), self.log.steps()));
+        self.history = game.map(|game| History::new(game.clone(), self.log.steps));
     }
 
     /// Adds the state after the last recorded step to the history.
     pub(crate) fn remember(&mut self) {
         if let Some((history, game)) = self.history.as_mut().zip(self.game.grid()) {
-            history.record(self.log.steps(), game);
+            history.record(self.log.steps, game);
         }
     }
 
@@ -65,7 +65,7 @@ impl App {
     pub(crate) fn take_back(&mut self) {
         let history = self.history.as_ref().filter(|_| self.can_take_back());
         let Some(history) = history else { return self.tell_why_not() };
-        let now = self.log.steps();
+        let now = self.log.steps;
         let taken = STEPS.min(now);
         let then = now - taken;
         let game = history.at(then, |first| self.log.since(first));

@@ -177,7 +177,7 @@ impl<W: Write> TextMode<W> {
             return self.print_menu();
         }
         let title = self.app.game.title().to_owned();
-        let goal = self.app.goal.text().to_owned();
+        let goal = self.app.goal.text.clone();
         writeln!(self.output, "{title}, {}.", self.app.difficulty.name())?;
         writeln!(self.output, "{}", sentence(&goal))?;
         if self.app.game.grid().is_none() {

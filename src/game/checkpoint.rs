@@ -19,7 +19,7 @@ pub(crate) struct Checkpoint {
     /// `None` in a level in which nothing kills.
     game: Option<Arc<Game>>,
     /// The cell of the checkpoint; `None` for the start.
-    cell: Option<Cell>,
+    pub(crate) cell: Option<Cell>,
 }
 
 impl Checkpoint {
@@ -31,11 +31,6 @@ impl Checkpoint {
     /// The game from which a dead player continues.
     pub(crate) fn game(&self) -> Option<&Game> {
         self.game.as_deref()
-    }
-
-    /// The cell of the checkpoint; `None` for the start.
-    pub(crate) fn cell(&self) -> Option<Cell> {
-        self.cell
     }
 }
 

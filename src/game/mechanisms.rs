@@ -52,12 +52,14 @@ pub(crate) struct Mechanisms {
     doors: Vec<(Cell, SwitchId)>,
     /// Whether the level has levers, flames or secret walls.
     #[serde(skip)]
-    has_handles: bool,
+    /// Whether the level has anything to open other than doors.
+    pub(crate) has_handles: bool,
     /// Whether the level has floors that crumble.
     #[serde(skip)]
     has_crumbling: bool,
     #[serde(skip)]
-    secrets: Share,
+    /// The number of secret walls found, and their total number.
+    pub(crate) secrets: Share,
 }
 
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -182,21 +184,11 @@ impl Mechanisms {
         self.secrets.found = secrets.filter(|cell| cell.is_driven).count() as u32;
     }
 
-    /// Whether the level has anything to open other than doors.
-    pub(crate) fn has_handles(&self) -> bool {
-        self.has_handles
-    }
-
     /// Toggles the levers of `switch`. Returns whether they are on now.
     pub(crate) fn turn(&mut self, switch: SwitchId) -> bool {
         let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
         state.is_turned = !state.is_turned;
         state.is_turned
-    }
-
-    /// The number of secret walls found, and their total number.
-    pub(crate) fn secrets(&self) -> Share {
-        self.secrets
     }
 
     /// Opens the secret wall whose moving cell has this index.
@@ -608,7 +600,7 @@ pub(crate) enum Handle {
 impl Game {
     /// The handle in front of the player.
     pub(crate) fn handle_ahead(&self) -> Option<Handle> {
-        if !self.mechanisms.has_handles() {
+        if !self.mechanisms.has_handles {
             return None;
         }
         self.thing_to_open().or_else(|| self.secret_ahead())

@@ -184,7 +184,7 @@ impl Serialize for GameState<'_> {
         let level = game.level_hash().to_le_bytes();
         let Changes { things: _, figures, is_lamplit } = game.world.changes();
         let shown = (game.revision, game.figure_revision, game.sprites.has_player(), is_lamplit);
-        let cell = game.checkpoint.cell();
+        let cell = game.checkpoint.cell;
         // Without a cell, the checkpoint is the start, which is known.
         let saved = game.checkpoint.game().filter(|_| cell.is_some()).map(GameState);
         (level, shown, figures, game.rules_state(), cell, saved).serialize(to)

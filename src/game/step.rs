@@ -106,7 +106,7 @@ impl Game {
     /// [`Intent::Open`] is among them if the level has levers or other handles.
     pub(crate) fn presses(&self, intents: Intents) -> Intents {
         let mut presses = intents.once();
-        if self.mechanisms.has_handles() && intents.contains(Intent::Open) {
+        if self.mechanisms.has_handles && intents.contains(Intent::Open) {
             presses.insert(Intent::Open);
         }
         presses

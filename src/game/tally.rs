@@ -117,7 +117,7 @@ impl Game {
 
     /// The secret walls: the number found, and the total in the level.
     pub fn secrets(&self) -> Share {
-        self.mechanisms.secrets()
+        self.mechanisms.secrets
     }
 
     /// The player's current results.

@@ -125,7 +125,7 @@ impl Draft {
     /// Returns true if at least `least` cells are reachable and, in an office, not too many of them
     /// are open.
     fn is_playable(&self, least: usize) -> bool {
-        let reachable = self.ground.reachable().len();
+        let reachable = self.ground.reachable.len();
         let is_divided = self.generator != Generator::Office
             || self.ground.open_count() * 100 <= reachable * MAX_OPEN;
         reachable >= least && is_divided
@@ -134,13 +134,13 @@ impl Draft {
     /// The world with its exit, items and guards.
     fn finish(mut self) -> Result<World, Faults> {
         let tileset = self.level.tileset();
-        let start = self.ground.start();
+        let start = self.ground.start;
         let exit = self.ground.place_exit(tileset, &mut self.random);
         let mut world = tileset.world();
         let items = Items::place(self.floor, &self.ground, exit, &mut world, &mut self.random)?;
         let guards = population::guards(self.floor, &self.ground, &items, &mut self.random);
         let (width, rows) = (self.ground.width(), self.ground.rows());
-        tileset.draw(&mut world, width, rows.into_iter(), items.things(), |grid| {
+        tileset.draw(&mut world, width, rows.into_iter(), &items.things, |grid| {
             let heading = best_heading(grid, start);
             Start { cell: start, heading }
         });

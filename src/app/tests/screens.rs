@@ -84,7 +84,7 @@ fn maps_show_heights() {
 fn the_goal_is_shown_until_the_player_has_acted_for_a_while() {
     let mut app = app("cellar", ascii(MapDisplay::Seen));
     let size = (80, 24);
-    let goal = app.goal.text().to_owned();
+    let goal = app.goal.text.clone();
     for second in 1..=60 {
         app.advance(Duration::from_secs(second));
     }

@@ -45,7 +45,7 @@ fn roam(rig: &mut Rig, seconds: u64) {
 }
 
 fn steps(rig: &Rig) -> u64 {
-    rig.app.log.steps()
+    rig.app.log.steps
 }
 
 /// Presses the key that takes time back, as a press that cannot be a repetition.

@@ -293,7 +293,7 @@ impl Guard {
     pub(crate) fn track(&mut self, context: &mut Context, target: usize, mark: u64, lost: u16) {
         // When a player with the highest index leaves, their trail is removed.
         let Some(trail) = context.trails.get(target) else { return self.give_up(context) };
-        let mark = mark.max(trail.first());
+        let mark = mark.max(trail.first);
         let Some(cell) = trail.cell(mark) else { return self.stop_tracking(lost, context.stride) };
         let newer = trail.cell(mark + 1).is_some();
         let speed = self.abilities().walk * 1.4;

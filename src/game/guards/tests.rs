@@ -565,7 +565,7 @@ proptest! {
                 break;
             }
             let mut known = crate::game::distances::Distances::default();
-            known.begin(goal, scene.guards.terrain.size());
+            known.begin(goal, scene.guards.terrain.size);
             let (terrain, world) = (&scene.guards.terrain, &scene.world);
             let costs = ways::ReverseCosts { terrain, world, gait };
             while known.advance(&costs) {}

@@ -17,7 +17,7 @@ const MAX: usize = 128;
 pub(crate) struct Trail {
     marks: VecDeque<TrailCell>,
     /// The number of the oldest mark. Marks are numbered from the start of the game.
-    first: u64,
+    pub(crate) first: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,11 +64,6 @@ impl Trail {
     pub(crate) fn cell(&self, number: u64) -> Option<Cell> {
         let place = usize::try_from(number.checked_sub(self.first)?).ok()?;
         self.marks.get(place).map(|mark| mark.cell)
-    }
-
-    /// The number of the oldest remaining mark.
-    pub(crate) fn first(&self) -> u64 {
-        self.first
     }
 
     /// Returns an error if there are too many marks, or marks later than the step `now`.

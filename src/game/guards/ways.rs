@@ -35,7 +35,7 @@ pub(crate) struct GuardTerrain {
     /// One bit for each cell, row by row: whether a thing in it blocks or is dangerous. Empty if
     /// there is no such thing.
     things: Vec<u64>,
-    size: (u32, u32),
+    pub(crate) size: (u32, u32),
 }
 
 /// The floor of a tile.
@@ -92,10 +92,6 @@ impl GuardTerrain {
                 self.things[place / 64] |= 1 << (place % 64);
             }
         }
-    }
-
-    pub(crate) fn size(&self) -> (u32, u32) {
-        self.size
     }
 
     /// The floor of `cell`; `None` outside the map and in cells where nobody can walk.
@@ -424,7 +420,7 @@ impl GuardPaths {
 
 impl GoalDistances {
     fn begin(&mut self, terrain: &GuardTerrain, now: u64) {
-        self.distances.begin(self.goal, terrain.size());
+        self.distances.begin(self.goal, terrain.size);
         (self.begun, self.used) = (now, now);
     }
 

@@ -13,11 +13,11 @@ pub(crate) struct Ground {
     cells: Vec<Vec<u8>>,
     /// The properties of each cell, row by row.
     kinds: Vec<CellProperties>,
-    start: Cell,
+    pub(crate) start: Cell,
     /// The number of steps from the start to each cell, row by row; `None` if there is no path.
     distances: Vec<Option<u32>>,
     /// The reachable cells, nearest first.
-    reachable: Vec<Cell>,
+    pub(crate) reachable: Vec<Cell>,
 }
 
 /// The properties of a cell that affect paths and visibility.
@@ -52,15 +52,6 @@ impl Ground {
         }
         ground.reachable = ways.into_iter().map(|(cell, _)| cell).collect();
         ground
-    }
-
-    pub(crate) fn start(&self) -> Cell {
-        self.start
-    }
-
-    /// The cells that can be reached from the start, nearest first.
-    pub(crate) fn reachable(&self) -> &[Cell] {
-        &self.reachable
     }
 
     /// The number of reachable cells that have nothing opaque around them.

@@ -42,7 +42,7 @@ const KINDS: [GuardKind; 5] = [
 
 /// The items, each with its cell.
 pub(crate) struct Items {
-    things: Vec<Thing>,
+    pub(crate) things: Vec<Thing>,
     /// The cell of the exit, which must stay free of items.
     exit: Cell,
 }
@@ -60,7 +60,7 @@ impl Items {
         let free = |&&cell: &&Cell| {
             ground.is_bare(cell) && cell != exit && ground.distance(cell) >= FROM_START
         };
-        let free: Vec<Cell> = ground.reachable().iter().filter(free).copied().collect();
+        let free: Vec<Cell> = ground.reachable.iter().filter(free).copied().collect();
         let mut items = Self { things: Vec::new(), exit };
         let mut sprites = Vec::new();
         for (kind, is_hidden) in list(floor) {
@@ -69,10 +69,6 @@ impl Items {
             items.things.extend(sprite.map(|sprite| Thing { kind, cell, sprite, frame: None }));
         }
         Ok(items)
-    }
-
-    pub(crate) fn things(&self) -> &[Thing] {
-        &self.things
     }
 
     /// Returns true if an item or the exit is in the cell.
@@ -183,7 +179,7 @@ pub(crate) fn guards(
     items: &Items,
     random: &mut SplitMix64,
 ) -> Vec<GuardPost> {
-    let start = ground.start();
+    let start = ground.start;
     let is_far = |cell: Cell| {
         let (columns, rows) = (cell.column.abs_diff(start.column), cell.row.abs_diff(start.row));
         columns * columns + rows * rows >= GUARD_DISTANCE * GUARD_DISTANCE
@@ -191,7 +187,7 @@ pub(crate) fn guards(
     let is_free = |&&cell: &&Cell| {
         ground.is_bare(cell) && is_far(cell) && !items.is_in(cell) && !ground.sees(start, cell)
     };
-    let free: Vec<Cell> = ground.reachable().iter().filter(is_free).copied().collect();
+    let free: Vec<Cell> = ground.reachable.iter().filter(is_free).copied().collect();
     let mut posts: Vec<GuardPost> = Vec::new();
     for (number, from) in from_difficulties(floor, ground).enumerate() {
         let Some(cell) = place_for(&posts, &free, random) else { break };
@@ -206,7 +202,7 @@ pub(crate) fn guards(
 
 /// The lowest difficulty at which each guard appears.
 fn from_difficulties(floor: u32, ground: &Ground) -> impl Iterator<Item = Difficulty> {
-    let room = ground.reachable().len() / CELLS_EACH;
+    let room = ground.reachable.len() / CELLS_EACH;
     let wanted = (MIN_GUARDS + floor / 2).min(MAX_GUARDS) as usize;
     let easy = wanted.min(room.max(1));
     let more = easy.div_ceil(2);
