@@ -76,7 +76,8 @@ pub(crate) struct Members {
     #[serde(skip)]
     pub(crate) targets: Scratch<Vec<PerceivedPlayer>>,
     #[serde(skip)]
-    in_the_way: Scratch<Vec<DVec2>>,
+    /// The positions of the players who are in the way of the current player.
+    pub(crate) in_the_way: Scratch<Vec<DVec2>>,
     #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     figures: Vec<Figure>,
 }
@@ -181,11 +182,6 @@ impl Members {
     fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
         free.or(Some(self.slots.len())).filter(|&index| index < MAX_PLAYERS)
-    }
-
-    /// The positions of the players who are in the way of the current player.
-    pub(crate) fn in_the_way(&self) -> &[DVec2] {
-        &self.in_the_way
     }
 
     /// Updates the figures of the players. Returns whether they have changed.

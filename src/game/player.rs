@@ -106,7 +106,7 @@ impl Player {
 
     /// Returns true if the player sees a message or a flash, or hears a sound.
     pub(crate) fn is_shown_anything(&self) -> bool {
-        self.notice.text().is_some() || self.flash.is_some() || !self.hearing.heard().is_empty()
+        self.notice.text().is_some() || self.flash.is_some() || !self.hearing.heard.is_empty()
     }
 
     /// Advances the player's clocks by `steps` steps, except the clocks of their hearing. Returns

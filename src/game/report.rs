@@ -136,7 +136,7 @@ impl Game {
 
     /// The recent sounds that the player has heard, newest last.
     pub fn heard(&self) -> &[Heard] {
-        self.player.hearing.heard()
+        &self.player.hearing.heard
     }
 
     /// The current flash at the edge of the screen.

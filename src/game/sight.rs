@@ -71,7 +71,7 @@ impl Game {
             let end = position + direction.rotate(DVec2::new(cosine, sine)) * range;
             let to = Point { position: end, height: guard.feet + SightCone::MIDDLE };
             let line = SightLine { world: &self.world, from, to };
-            let smoke = self.smoke.clouds().iter().filter_map(|cloud| cloud.nearest(position, end));
+            let smoke = self.smoke.clouds.iter().filter_map(|cloud| cloud.nearest(position, end));
             smoke.fold(line.free_part(), f64::min) * range
         });
         Some(SightCone { position, direction, half_angle, reaches })

@@ -226,18 +226,14 @@ pub struct Heard {
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Hearing {
     field: SoundField,
-    heard: Vec<Heard>,
+    /// The sounds heard in the last steps, newest last.
+    pub(crate) heard: Vec<Heard>,
     /// The sound for each entry of `heard`.
     sounds: Vec<Sound>,
     steps: u64,
 }
 
 impl Hearing {
-    /// The sounds heard in the last steps, newest last.
-    pub(crate) fn heard(&self) -> &[Heard] {
-        &self.heard
-    }
-
     /// Advances by one step, in which `sounds` are made. The player `listener`, at `position`,
     /// hears the sounds of others. Returns whether a sound is heard or fades away.
     pub(crate) fn step(

@@ -94,7 +94,7 @@ impl Game {
     pub(crate) fn move_player(&mut self, intents: Intents) {
         let before = self.player.motion;
         self.find_those_in_the_way();
-        let others = self.members.as_deref().map_or(&[][..], |members| members.in_the_way());
+        let others = self.members.as_deref().map_or(&[][..], |members| &members.in_the_way);
         self.player.motion = before.stepped(&self.world, others, intents, self.pace());
         if self.is_mission {
             self.give_way();
@@ -180,7 +180,7 @@ impl Game {
         let home = [self.target()];
         let Self { world, guards, sounds, smoke, members, .. } = self;
         let targets = members.as_deref().map_or(&home[..], |members| &members.targets);
-        let count = guards.step(world, targets, sounds, smoke.clouds()).len();
+        let count = guards.step(world, targets, sounds, &smoke.clouds).len();
         for index in 0..count {
             if let Some(effect) = self.guards.effect(index) {
                 self.apply(effect);

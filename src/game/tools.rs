@@ -122,7 +122,7 @@ impl Game {
             Supply::Pebbles => Missile::pebble(eye, ahead),
             Supply::Flasks => Missile::flask(eye, ahead),
             Supply::Darts => {
-                let clouds = self.smoke.clouds();
+                let clouds = &self.smoke.clouds;
                 let aim = self.guards.aim(&self.world, clouds, eye, ahead, AIM_COSINE);
                 Missile::dart(eye, ahead, aim, by)
             }

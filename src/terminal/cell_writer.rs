@@ -310,11 +310,11 @@ impl<W: Write> Backend for CellWriter<W> {
     }
 
     fn size(&self) -> io::Result<Size> {
-        Ok(self.pen.size())
+        Ok(self.pen.size)
     }
 
     fn window_size(&mut self) -> io::Result<WindowSize> {
-        Ok(WindowSize { columns_rows: self.pen.size(), pixels: Size::ZERO })
+        Ok(WindowSize { columns_rows: self.pen.size, pixels: Size::ZERO })
     }
 
     /// Writes the frame, unless it is empty.

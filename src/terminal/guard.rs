@@ -30,7 +30,7 @@ const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 /// The changes to the terminal's state, and the way to undo them.
 #[derive(Debug)]
 pub(crate) struct TerminalGuard {
-    device: Device,
+    pub(crate) device: Device,
     begun_at: Instant,
     state: Mutex<TerminalState>,
     given_back: Condvar,
@@ -81,10 +81,6 @@ impl TerminalGuard {
         if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), self)) {
             *current = None;
         }
-    }
-
-    pub(crate) fn device(&self) -> &Device {
-        &self.device
     }
 
     /// Returns true if a recorder receives the sent bytes.

@@ -192,7 +192,7 @@ impl Session {
     fn take(guard: &Arc<TerminalGuard>, mut options: SessionOptions) -> Result<Self, Error> {
         let signals =
             Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
-        let size = guard.device().size();
+        let size = guard.device.size();
         guard.record(|recorder| recorder.resized(size.cells()));
         // A recording must play on any terminal.
         options.probe_extensions &= !guard.is_recorded();
@@ -256,7 +256,7 @@ impl Session {
 
     /// The current size of the window. If it has changed, the recorder receives it, too.
     fn measured(&self) -> WindowSize {
-        let size = self.guard.device().size();
+        let size = self.guard.device.size();
         if size.cells() != self.protocol.size().cells() {
             self.guard.record(|recorder| recorder.resized(size.cells()));
         }
@@ -344,7 +344,7 @@ impl Session {
     fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<bool> {
         let timeout = wake_at.map(|time| time.saturating_sub(self.guard.now()));
         let has_queued = !self.guard.has_written_all();
-        let ready = self.guard.device().wait(&self.signals, has_queued, timeout)?;
+        let ready = self.guard.device.wait(&self.signals, has_queued, timeout)?;
         if ready.signals {
             self.receive_signals()?;
         }
@@ -368,7 +368,7 @@ impl Session {
                 Signal::Suspend => self.protocol.push_event(Event::Suspend),
                 Signal::Continued => {
                     // SIGSTOP cannot be caught, so the terminal was not given back.
-                    self.guard.device().make_raw()?;
+                    self.guard.device.make_raw()?;
                     let size = self.measured();
                     self.protocol.repaint(size);
                 }

@@ -262,7 +262,7 @@ impl<R: Record> Player<R> {
     fn neighbour_mark(&self, is_after: bool) -> Option<(u64, MarkKind)> {
         let place = self.place();
         let grace = if self.is_paused { 0 } else { JUST_PASSED };
-        let marks = self.reader.marks();
+        let marks = &self.reader.marks;
         let mark = if is_after {
             marks.iter().find(|mark| mark.step > place)
         } else {
@@ -296,7 +296,7 @@ impl<R: Record> Player<R> {
             steps: self.reader.steps(),
             read: self.reader.steps_read(),
             is_read: self.reader.is_read(),
-            marks: self.reader.marks(),
+            marks: &self.reader.marks,
             step: self.place(),
             speed: self.speed_name(),
             view: self.perspective.name(),

@@ -69,7 +69,8 @@ pub struct Reader<R: Record> {
     is_read: bool,
     /// The states on the way, each with the index of its part. There are none of starts.
     states: States<(usize, R::Stored)>,
-    marks: Vec<Mark>,
+    /// The marks of the part that was read, in order.
+    pub(crate) marks: Vec<Mark>,
     events: [u32; MarkKind::ALL.len()],
 }
 
@@ -136,11 +137,6 @@ impl<R: Record> Reader<R> {
     /// Whether the record was read to its end.
     pub fn is_read(&self) -> bool {
         self.is_read
-    }
-
-    /// The marks of the part that was read, in order.
-    pub(crate) fn marks(&self) -> &[Mark] {
-        &self.marks
     }
 
     /// The steps of the marks of a kind, in order.

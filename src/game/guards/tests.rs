@@ -383,12 +383,12 @@ fn guards_sound_weaker_behind_doors() {
             Sound { kind: SoundKind::Shout, cell: cell(8, 1), reach: 9, by: Source::Guard(0) };
         let changed = hearing.step(&scene.world, 0, scene.target.position, &[sound]);
         assert_eq!(changed, strength.is_some());
-        assert_eq!(hearing.heard().first().map(|heard| heard.strength), strength);
-        if let Some(heard) = hearing.heard().first() {
+        assert_eq!(hearing.heard.first().map(|heard| heard.strength), strength);
+        if let Some(heard) = hearing.heard.first() {
             assert_eq!(heard.bearing.degrees(), 0.0);
             let mut hears = || hearing.step(&scene.world, 0, scene.target.position, &[]);
             assert!((1..45).all(|_| !hears()) && hears());
-            assert!(hearing.heard().is_empty());
+            assert!(hearing.heard.is_empty());
         }
     }
 }

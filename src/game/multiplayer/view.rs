@@ -73,7 +73,7 @@ impl Game {
         let eye = Point { position: from.position(), height: from.head() - EYE };
         let middle = f64::midpoint(to.feet(), to.head());
         let body = Point { position: to.position(), height: middle };
-        is_in_sight(&self.world, self.smoke.clouds(), eye, body)
+        is_in_sight(&self.world, &self.smoke.clouds, eye, body)
     }
 }
 
@@ -155,7 +155,7 @@ impl<'a> PlayerView<'a> {
 
     /// The recent sounds that the player has heard, newest last.
     pub fn heard(&self) -> &'a [Heard] {
-        self.player.hearing.heard()
+        &self.player.hearing.heard
     }
 
     /// The current flash at the edge of the screen.
@@ -235,7 +235,7 @@ impl<'a> PlayerView<'a> {
         let motion = &player.motion;
         let eye = Point { position: motion.position(), height: motion.head() - EYE };
         let middle = Point { position, height: feet + MIDDLE };
-        is_in_sight(&game.world, game.smoke.clouds(), eye, middle)
+        is_in_sight(&game.world, &game.smoke.clouds, eye, middle)
     }
 
     /// The guards in the picture of `camera`, which is this player's, unless something hides both
@@ -255,7 +255,7 @@ impl<'a> PlayerView<'a> {
                 position: guard.position,
                 height: guard.feet + guard.kind.height() * part,
             });
-            let clouds = game.smoke.clouds();
+            let clouds = &game.smoke.clouds;
             parts.iter().any(|&to| is_in_sight(&game.world, clouds, from, to))
         })
     }

@@ -109,7 +109,7 @@ fn smoke_hides_a_player_from_a_guard_who_looks_at_them() {
     assert!(stage.hears(SoundKind::Crash));
     // The noise draws the guard into the smoke, in which they see nobody.
     let in_smoke = |stage: &Stage| {
-        let cloud = stage.game.smoke.clouds()[0];
+        let cloud = stage.game.smoke.clouds[0];
         cloud.position.distance(stage.guard(0).position) < cloud.radius
     };
     stage.steps_until(300, &[], in_smoke).unwrap();

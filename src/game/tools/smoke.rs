@@ -28,7 +28,8 @@ const PUFFS: [(f64, f64, f64); 7] = [
 /// All clouds, oldest first.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Smoke {
-    clouds: Vec<Cloud>,
+    /// The clouds, in the form that lines of sight need.
+    pub(crate) clouds: Vec<Cloud>,
     /// For each cloud, its height and the remaining steps.
     lives: Vec<Life>,
 }
@@ -61,11 +62,6 @@ impl Smoke {
     pub(crate) fn add(&mut self, position: DVec2, height: f64) {
         self.clouds.push(Cloud { position, radius: RADIUS });
         self.lives.push(Life { height, left: STEPS });
-    }
-
-    /// The clouds, in the form that lines of sight need.
-    pub(crate) fn clouds(&self) -> &[Cloud] {
-        &self.clouds
     }
 
     /// Whether there are no clouds.
@@ -112,7 +108,7 @@ mod tests {
         let mut smoke = Smoke::default();
         smoke.add(DVec2::new(2.5, 2.5), 0.0);
         (1..STEPS).for_each(|_| smoke.step());
-        assert_eq!(smoke.clouds().len(), 1);
+        assert_eq!(smoke.clouds.len(), 1);
         assert!(smoke.puffs().all(|puff| puff.opacity < 10));
         smoke.step();
         assert_eq!(smoke, Smoke::default());

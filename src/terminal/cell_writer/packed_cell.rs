@@ -192,7 +192,7 @@ impl PackedCell {
         let glyph = glyph_table.glyph(GlyphId::new(id as u16));
         let [foreground, background] = self.colors();
         let style = Style { foreground, background, modifier: glyph.modifier() };
-        Some((glyph.character(), style))
+        Some((glyph.character, style))
     }
 
     /// Returns true if the cell may be wider than one column.
@@ -292,7 +292,7 @@ fn halves(element: BlockElement, style: Style) -> Option<[PackedColor; 2]> {
 /// A character that is one cell wide, and its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Glyph {
-    character: char,
+    pub(crate) character: char,
     /// The modifiers as bits, because bits have an order.
     modifiers: u16,
 }
@@ -322,10 +322,6 @@ impl Glyph {
     #[inline]
     fn place(self) -> usize {
         (self.character as usize ^ usize::from(self.modifiers)) % RECENT
-    }
-
-    pub(crate) fn character(self) -> char {
-        self.character
     }
 
     pub(crate) fn modifier(self) -> Modifier {

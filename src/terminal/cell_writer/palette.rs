@@ -41,7 +41,7 @@ use crate::terminal::sequence::PALETTE;
 #[derive(Debug, Default)]
 pub(crate) struct TerminalPalette {
     /// Whether entries may be defined.
-    is_on: bool,
+    pub(crate) is_on: bool,
     /// The colour of each entry. [`PackedColor::DEFAULT`] for undefined entries.
     colors: Vec<PackedColor>,
     /// The colours of the entries in L\*a\*b\*, component by component.
@@ -114,11 +114,6 @@ impl TerminalPalette {
         let mut definitions = Bytes::default();
         self.quantizer.as_mut()?.quantize(screen, &mut definitions);
         (!definitions.is_empty()).then_some(definitions)
-    }
-
-    /// Returns true if entries may be defined.
-    pub(crate) fn is_on(&self) -> bool {
-        self.is_on
     }
 
     /// Forgets all definitions.

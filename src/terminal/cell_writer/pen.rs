@@ -32,13 +32,14 @@ pub(crate) struct Pen {
     /// The bytes of the frame. They begin with the start of synchronized output.
     frame: Bytes,
     /// The size of the terminal.
-    size: Size,
-    style: Option<Style>,
+    pub(crate) size: Size,
+    /// The terminal's style. `None` if it is unknown.
+    pub(crate) style: Option<Style>,
     /// The position of the cursor. `None` if it is unknown. In the column after the last one, the cursor waits to
     /// wrap.
     cursor: Option<PackedPosition>,
     /// Whether the terminal repeats characters (REP).
-    repeats: bool,
+    pub(crate) repeats: bool,
     /// The last block drawn, unless other bytes were written since.
     last: Option<(MosaicShape, BlockElement)>,
     /// The number of repetitions of that block that are drawn but not written yet.
@@ -108,16 +109,6 @@ impl Pen {
         }
     }
 
-    /// Returns true if the terminal repeats characters (REP).
-    pub(crate) fn repeats(&self) -> bool {
-        self.repeats
-    }
-
-    /// The terminal's style. `None` if it is unknown.
-    pub(crate) fn style(&self) -> Option<Style> {
-        self.style
-    }
-
     /// The position of the cursor. `None` if it is unknown.
     pub(crate) fn position(&self) -> Option<Position> {
         self.cursor().filter(|cursor| cursor.x < self.size.width)
@@ -129,11 +120,6 @@ impl Pen {
             self.move_to(Position::ORIGIN);
             Position::ORIGIN
         })
-    }
-
-    /// The size of the terminal.
-    pub(crate) fn size(&self) -> Size {
-        self.size
     }
 
     /// Sets the size of the terminal.
@@ -356,7 +342,7 @@ impl Pen {
             && row == y
             && !self.repeats
             && self.repeated == 0
-            && !self.palette.is_on()
+            && !self.palette.is_on
             && !self.frame.is_empty();
         is_sound.then_some(PixelState { colors, column: x.into() })
     }

@@ -38,7 +38,7 @@ pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: ScreenRow) {
         draw_intricate_row(pen, &mut row);
     } else {
         shift(pen, shifts, &mut row);
-        let cells = row.targets.iter().copied().enumerate().zip(shifts.losses());
+        let cells = row.targets.iter().copied().enumerate().zip(&shifts.losses);
         let wrong = cells.filter(|&(_, &loss)| loss > 0).map(|(cell, _)| cell);
         pen.draw_pixels(row.y, wrong, |pen, column, target| draw_target(pen, &row, column, target));
         row.shown.copy_from_slice(row.targets);
@@ -79,7 +79,7 @@ fn draw_cell(pen: &mut Pen, row: &mut ScreenRow, column: usize) {
 fn draw_target(pen: &mut Pen, row: &ScreenRow, column: usize, target: PackedCell) {
     let position = Position { x: column as u16, y: row.y };
     if let Some((shape, colors)) = target.block() {
-        let (element, style) = BlockElement::cheapest(colors, pen.style());
+        let (element, style) = BlockElement::cheapest(colors, pen.style);
         pen.draw_block(position, (shape, element), style);
     } else {
         draw_text(pen, row, position, target);
@@ -170,13 +170,13 @@ impl RowEncoder {
             // The extent of an intricate character is unknown.
             return draw_row(pen, shifts, row);
         }
-        let notation = notation(row.targets, pen.palette().is_on());
+        let notation = notation(row.targets, pen.palette().is_on);
         let price = Price::at(fidelity, notation);
         self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
         self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
         self.shift(pen, shifts, &mut row, price);
         self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
-        let terms = RowParameters { price, style: pen.style(), repeats: pen.repeats() };
+        let terms = RowParameters { price, style: pen.style, repeats: pen.repeats };
         let mut store = ColorTables { inks: &mut self.inks, palette: pen.palette() };
         let wanted =
             |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
@@ -249,7 +249,7 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
     match target.recolorable(glyph_table) {
         Some((Form::Block(_), colors)) => components(inks.of_both(colors)),
         Some((Form::Glyph(id), colors)) => {
-            let glyph = glyph_table.glyph(id).character();
+            let glyph = glyph_table.glyph(id).character;
             let inks = inks.of_both(colors);
             if let Some(share) = share_of_text(glyph)
                 && !colors.contains(&PackedColor::DEFAULT)
@@ -283,7 +283,7 @@ fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Opti
     let (shape, character) = match form {
         Form::Block(shape) => (shape, None),
         Form::Glyph(id) => {
-            (MosaicShape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8))
+            (MosaicShape::HALF, Some(glyph_table.glyph(id).character.len_utf8() as u8))
         }
     };
     Some(CellTarget { inks: inks.of_both(colors), shape, character })

@@ -65,7 +65,7 @@ const SHIFT: i32 = 20 * BYTE as i32;
 pub(crate) struct Shifts {
     landmarks: Landmarks,
     /// The current losses. The next two fields are the losses after a move and after the best move.
-    losses: Vec<Loss>,
+    pub(crate) losses: Vec<Loss>,
     moved: Vec<Loss>,
     moved_best: Vec<Loss>,
 }
@@ -114,11 +114,6 @@ impl Shifts {
         let moved = shift.columns.start..shift.columns.end - shift.by;
         self.losses[shift.covered()].copy_from_slice(&self.moved_best[moved]);
         self.losses[shift.uncovered()].fill(CELL);
-    }
-
-    /// The loss of each cell of the row.
-    pub(crate) fn losses(&self) -> &[Loss] {
-        &self.losses
     }
 
     /// Ends the row. The marks of its current targets become the previous marks for the next frame.

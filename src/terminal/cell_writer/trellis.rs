@@ -526,7 +526,7 @@ impl<'a> Branches<'a> {
 /// The smallest number of parameter bytes of a colour that takes `bytes` itself, or of an entry in its place.
 #[inline]
 fn shortest(bytes: f32, palette: &TerminalPalette) -> f32 {
-    if palette.is_on() { min(bytes, MIN_ENTRY_BYTES) } else { bytes }
+    if palette.is_on { min(bytes, MIN_ENTRY_BYTES) } else { bytes }
 }
 
 // The longer of the following functions are not inlined. On their own they compile to vector instructions, four paths

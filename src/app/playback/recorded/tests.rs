@@ -85,10 +85,10 @@ fn a_run_ends_with_its_last_level() {
     let level = builtin::LEVELS[0].world().unwrap();
     let (run, _) = read(Levels::new(level.into(), iter::empty()), &script);
     assert!(run.steps() + 3600 <= script.steps());
-    let last = run.marks().last().unwrap();
+    let last = run.marks.last().unwrap();
     assert_eq!((last.kind, last.step), (MarkKind::End, run.steps()));
-    let finds = run.marks().iter().filter(|mark| mark.kind == MarkKind::Find).count();
-    assert!(finds > 1, "{:?}", run.marks());
+    let finds = run.marks.iter().filter(|mark| mark.kind == MarkKind::Find).count();
+    assert!(finds > 1, "{:?}", run.marks);
 }
 
 #[test]
