@@ -93,8 +93,7 @@ impl Levels {
 
     /// The endless floors of the descent with this seed. The seed of a daily run is its date.
     pub(crate) fn descent(seed: u64, kind: Descent) -> Self {
-        let stage = move |number| Stage::Floor { seed, number };
-        Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
+        Self { descent: Some(kind), ..Self::floors(seed, 1) }
     }
 
     /// A game that tests a map in the editor.

@@ -16,7 +16,7 @@ use toml::de::DeValue;
 use crate::app::controls::Preset;
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{Entry, toml_string};
-use crate::fault::{nearest, quoted};
+use crate::fault::{nearest_or_all, quoted};
 use crate::terminal::Fidelity;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
@@ -453,12 +453,7 @@ fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
     if let Some(name) = known.iter().copied().find(|&name| name == text) {
         return Some(name);
     }
-    let help = if let Some(meant) = nearest(text, known) {
-        format!("the nearest is {}", quoted(meant))
-    } else {
-        let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
-        format!("write one of {}", all.join(", "))
-    };
+    let help = nearest_or_all(text, known, "the nearest is", "write one of");
     entry.reject(format!("{} is not a value of {}", quoted(text), quoted(entry.key)), "", help)
 }
 

@@ -35,7 +35,7 @@ use std::ops::Range;
 use std::{fmt, io};
 
 use super::{Intent, Intents, Rules, STEPS_PER_SECOND, intent};
-use crate::fault::{Fault, Faults, nearest, quoted};
+use crate::fault::{Fault, Faults, nearest_or_all, quoted};
 use crate::world::Difficulty;
 
 /// A script.
@@ -195,10 +195,8 @@ impl Intents {
 
     /// The set that the words of a script name; `None` if they do not name a set.
     pub fn from_words(text: &str) -> Option<Self> {
-        let header = Header::default();
-        let reader = ScriptReader { text, header, sections: Vec::new(), faults: Vec::new() };
         let words = words(text, 0..text.len());
-        if words.is_empty() { None } else { reader.intents(&words).ok() }
+        if words.is_empty() { None } else { read_intents(text, &words).ok() }
     }
 }
 
@@ -360,10 +358,9 @@ fn no_value(word: &str, value: &str, place: Range<usize>) -> Fault {
         _ => "a seed is a whole number from 0 to 18446744073709551615".to_owned(),
     };
     let names = Difficulty::ALL.map(Difficulty::name);
-    let meant = if word == DIFFICULTY { nearest(value, &names) } else { None };
-    let help = match meant {
-        Some(meant) => format!("the nearest is {}", quoted(meant)),
-        None => example(word),
+    let help = match word {
+        DIFFICULTY => nearest_or_all(value, &names, "the nearest is", "write one of"),
+        _ => example(word),
     };
     Fault::new(place, message).label("not valid").help(help)
 }
@@ -590,7 +587,7 @@ impl ScriptReader<'_> {
                 .label("an intent is missing")
                 .help(format!("write {STAND:?} to do nothing")));
         }
-        Ok(ScriptLine::Stretch(Stretch { steps, intents: self.intents(&words)? }))
+        Ok(ScriptLine::Stretch(Stretch { steps, intents: read_intents(self.text, &words)? }))
     }
 
     /// The number of steps of a line, and the rest of the line.
@@ -626,31 +623,6 @@ impl ScriptReader<'_> {
                 .help(format!("a second has {STEPS_PER_SECOND} steps")));
         }
         Ok((steps as u32, unit.end..rest.end))
-    }
-
-    fn intents(&self, words: &[Range<usize>]) -> Result<Intents, Fault> {
-        let mut intents = Intents::new();
-        for place in words.iter().cloned() {
-            match (&self.text[place.clone()], words.len()) {
-                (STAND, 1) => {}
-                (STAND, _) => {
-                    return Err(Fault::new(
-                        place,
-                        "\"stand\" cannot be combined with other intents",
-                    )
-                    .label("remove this, or all the others"));
-                }
-                (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
-                (word, _) => match Intent::named(word) {
-                    None => return Err(unknown(word, place)),
-                    Some(intent) if intents.contains(intent) => {
-                        return Err(wanted_twice(word, place));
-                    }
-                    Some(intent) => intents.insert(intent),
-                },
-            }
-        }
-        Ok(intents)
     }
 
     fn end(mut self, name: &str) -> Result<Script, Faults> {
@@ -702,16 +674,35 @@ fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents,
     Ok(intents.with_look(look))
 }
 
+fn read_intents(text: &str, words: &[Range<usize>]) -> Result<Intents, Fault> {
+    let mut intents = Intents::new();
+    for place in words.iter().cloned() {
+        match (&text[place.clone()], words.len()) {
+            (STAND, 1) => {}
+            (STAND, _) => {
+                return Err(Fault::new(place, "\"stand\" cannot be combined with other intents")
+                    .label("remove this, or all the others"));
+            }
+            (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
+            (word, _) => match Intent::named(word) {
+                None => return Err(unknown(word, place)),
+                Some(intent) if intents.contains(intent) => {
+                    return Err(wanted_twice(word, place));
+                }
+                Some(intent) => intents.insert(intent),
+            },
+        }
+    }
+    Ok(intents)
+}
+
 fn wanted_twice(word: &str, place: Range<usize>) -> Fault {
     Fault::new(place, format!("{} is repeated", quoted(word))).label("once is enough")
 }
 
 fn unknown(word: &str, place: Range<usize>) -> Fault {
     let names: Vec<&str> = Intent::ALL.into_iter().map(Intent::name).chain([STAND]).collect();
-    let help = match nearest(word, &names) {
-        Some(meant) => format!("the nearest is {}", quoted(meant)),
-        None => format!("known intents: {}", names.join(", ")),
-    };
+    let help = nearest_or_all(word, &names, "the nearest is", "known intents:");
     Fault::new(place, format!("unknown intent {}", quoted(word))).label("unknown").help(help)
 }
 

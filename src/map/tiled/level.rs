@@ -17,7 +17,7 @@ use super::model::{
 use super::properties::Property;
 use super::text::{GridOrigins, MapWriter, Translation};
 use crate::fault::document::toml_string;
-use crate::fault::{Fault, nearest, quoted};
+use crate::fault::{Fault, nearest_or_all, quoted};
 use crate::map::keys::CharacterTable;
 
 /// The largest number of stacks in the cells of a map: more than a map file may have kinds of tile.
@@ -297,10 +297,7 @@ impl<'m> Translator<'m> {
             (class, toml_string(value))
         } else {
             let names: Vec<&str> = classes::CLASSES.iter().map(|class| class.name).collect();
-            let help = match nearest(class, &names) {
-                Some(name) => format!("the nearest class is {name}"),
-                None => format!("choose one of {}", names.join(", ")),
-            };
+            let help = nearest_or_all(class, &names, "the nearest class is", "choose one of");
             self.fault(origin, format!("there is no class {}", quoted(class)), help);
             return None;
         };
