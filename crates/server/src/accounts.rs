@@ -43,8 +43,8 @@ pub(crate) mod worker;
 #[doc(hidden)]
 pub use rusqlite::types::Value as ColumnValue;
 
-pub(crate) use account::time_text;
 pub use account::{Account, AccountId, AccountKey, AccountSettings, UnixTime};
+pub(crate) use account::{serialized_as_text, time_text};
 pub(crate) use ban::applying;
 pub use ban::{AddressPrefix, Ban, BanScope, BanTarget, Identity};
 pub use day::Day;

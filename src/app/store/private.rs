@@ -28,7 +28,7 @@ pub fn open(file: &Path) -> io::Result<File> {
 ///
 /// # Errors
 /// [`io::ErrorKind::FileTooLarge`] if it has more than `most` bytes.
-pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut content = Vec::new();
     open(file)?.take(most.saturating_add(1)).read_to_end(&mut content)?;
     if content.len() as u64 > most {

@@ -5,15 +5,19 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use cellcaster::app::store::Preferences;
 use russh::keys::ssh_key::Fingerprint;
+use serde::{Deserialize, Serialize};
 
 use super::{Name, StoreFailure};
 
 /// Seconds since 1970-01-01, in UTC.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
+#[serde(from = "u64")]
 pub struct UnixTime(u64);
 
 /// The number of an account.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AccountId(pub(crate) i64);
 
 /// The SHA-256 of a public key's data: its fingerprint.
@@ -29,8 +33,30 @@ pub struct AccountId(pub(crate) i64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct AccountKey([u8; 32]);
 
+/// Implements serde's traits for types with `Display` and a function `parse`. They are serialized as their text.
+macro_rules! serialized_as_text {
+    ($($kind:ty: $what:literal),*) => {$(
+        impl serde::Serialize for $kind {
+            fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                to.collect_str(self)
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $kind {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                let text = <String as serde::Deserialize>::deserialize(from)?;
+                let fault = || serde::de::Error::custom(concat!("not ", $what));
+                Self::parse(&text).ok_or_else(fault)
+            }
+        }
+    )*};
+}
+pub(crate) use serialized_as_text;
+
+serialized_as_text!(AccountKey: "a fingerprint of a key");
+
 /// An account.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Account {
     /// Its number.
     pub id: AccountId,
@@ -47,7 +73,7 @@ pub struct Account {
 }
 
 /// The choices of an account's player.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct AccountSettings {
     /// The choices in the game.
     pub preferences: Preferences,
@@ -81,6 +107,12 @@ impl UnixTime {
     #[must_use]
     pub const fn after(self, seconds: u64) -> Self {
         Self::new(self.0.saturating_add(seconds))
+    }
+}
+
+impl From<u64> for UnixTime {
+    fn from(seconds: u64) -> Self {
+        Self::new(seconds)
     }
 }
 

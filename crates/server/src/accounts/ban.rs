@@ -4,11 +4,13 @@ use std::fmt;
 use std::net::IpAddr;
 
 use ipnet::IpNet;
+use serde::{Deserialize, Serialize};
 
+use super::account::serialized_as_text;
 use super::{AccountKey, Name, UnixTime};
 
 /// A ban.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ban {
     /// The forbidden thing.
     pub scope: BanScope,
@@ -25,7 +27,7 @@ pub struct Ban {
 }
 
 /// The thing that a ban forbids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BanScope {
     /// Visits to the host.
     Visit,
@@ -34,13 +36,15 @@ pub enum BanScope {
 }
 
 /// The visitors that a ban applies to.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum BanTarget {
     /// The account of a key.
     Key(AccountKey),
     /// Everybody with this name or a similar-looking one.
     Name(Name),
     /// Everybody with an address in this range.
+    #[serde(rename = "address")]
     Addresses(AddressPrefix),
 }
 
@@ -67,6 +71,8 @@ pub struct Identity<'a> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct AddressPrefix(IpNet);
+
+serialized_as_text!(AddressPrefix: "a range of addresses");
 
 impl Ban {
     /// Returns true if the ban is in force.

@@ -14,27 +14,24 @@
 //!   atomically. If it cannot be read, or belongs to another database, the memory starts empty.
 
 use std::collections::BTreeMap;
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use cellcaster::app::store::Preferences;
 use cellcaster::app::store::private;
 use serde::{Deserialize, Serialize};
 
 use super::waiting::{failure, replace};
-use super::{
-    Account, AccountId, AccountKey, AccountSettings, Ban, BanScope, BanTarget, NAME_HELD, Name,
-    StoreFailure, UnixTime,
-};
+use super::{Account, AccountKey, AccountSettings, Ban, NAME_HELD, StoreFailure, UnixTime};
 
 /// The most players that are remembered.
 const MAX_PLAYERS: usize = 2000;
 /// The most bytes of the file. A player takes about 500, with many settings of their own 17,000.
 const MAX_BYTES: usize = 4 << 20;
 
-/// The remembered players, and the bans.
-#[derive(Debug)]
+/// The remembered players, and the bans: the content of the file.
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct KnownPlayers {
+    #[serde(skip)]
     file: PathBuf,
     /// The name of the database, without a password.
     database: String,
@@ -42,12 +39,14 @@ pub struct KnownPlayers {
     players: BTreeMap<AccountKey, KnownPlayer>,
     /// The bytes of the players and the bans in the file. Counting all of them at each login took longer the more
     /// players were known.
+    #[serde(skip)]
     bytes: usize,
+    #[serde(skip)]
     is_saved: bool,
 }
 
 /// A player, as the database described them at a login.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct KnownPlayer {
     pub(crate) account: Account,
     pub(crate) settings: AccountSettings,
@@ -55,70 +54,29 @@ pub(crate) struct KnownPlayer {
     confirmed_at: UnixTime,
 }
 
-#[derive(Serialize, Deserialize)]
-struct FileContent {
-    database: String,
-    bans: Vec<BanEntry>,
-    players: Vec<PlayerEntry>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct BanEntry {
-    kind: String,
-    target: String,
-    until: Option<u64>,
-    reason: String,
-    by: String,
-    made_at: u64,
-}
-
-#[derive(Serialize, Deserialize)]
-struct PlayerEntry {
-    key: String,
-    account: i64,
-    name: String,
-    named_at: u64,
-    created_at: u64,
-    seen_at: u64,
-    preferences: Preferences,
-    configuration: String,
-    ignored: Vec<String>,
-    confirmed_at: u64,
-}
-
 impl KnownPlayers {
     /// Reads the players of `database` that are remembered in a folder. Also returns a sentence if the file cannot be
     /// read.
     pub fn open(folder: &Path, database: &str) -> (Self, Option<String>) {
         let file = folder.join("known_players");
-        let mut bytes = Vec::new();
-        let content = match private::open(&file) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        let read = match private::read(&file, 2 * MAX_BYTES as u64) {
+            Ok(content) => serde_json::from_slice::<Self>(&content)
+                .map_err(|error| format!("{} is damaged: {error}", file.display())),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Self::default()),
             Err(error) => Err(failure(&file, &error).to_string()),
-            Ok(found) => match found.take(2 * MAX_BYTES as u64).read_to_end(&mut bytes) {
-                Err(error) => Err(failure(&file, &error).to_string()),
-                Ok(_) => serde_json::from_slice::<FileContent>(&bytes)
-                    .map(Some)
-                    .map_err(|error| format!("{} is damaged: {error}", file.display())),
-            },
         };
-        let (content, sentence) = match content {
-            Ok(content) => (content, None),
-            Err(fault) => {
-                let sentence = format!("{fault}; players are remembered again as they log in");
-                (None, Some(sentence))
-            }
-        };
-        let database = database.to_owned();
-        let content = content.filter(|content| content.database == database);
-        let (bans, players) = content.map_or_else(Default::default, |it| (it.bans, it.players));
-        let bans: Vec<Ban> = bans.into_iter().filter_map(BanEntry::ban).collect();
-        let bytes = bytes_of(&bans);
-        let mut known =
-            Self { file, database, bans, players: BTreeMap::new(), bytes, is_saved: true };
-        players.into_iter().filter_map(PlayerEntry::player).for_each(|player| known.add(player));
+        let sentence = read.as_ref().err();
+        let sentence =
+            sentence.map(|fault| format!("{fault}; players are remembered again as they log in"));
+        let known = read.unwrap_or_default();
+        let mut known = if known.database == database { known } else { Self::default() };
+        known
+            .players
+            .retain(|key, player| player.account.key == *key && player.settings.checked().is_ok());
+        known.bytes =
+            bytes_of(&known.bans) + known.players.values().map(KnownPlayer::bytes).sum::<usize>();
         known.make_room();
-        (known, sentence)
+        (Self { file, database: database.to_owned(), is_saved: true, ..known }, sentence)
     }
 
     /// Remembers an account that the database has just confirmed.
@@ -172,13 +130,8 @@ impl KnownPlayers {
     /// If it can't be written. The memory stays.
     pub fn save(&mut self) -> Result<(), StoreFailure> {
         if !self.is_saved {
-            let content = FileContent {
-                database: self.database.clone(),
-                bans: self.bans.iter().map(BanEntry::of).collect(),
-                players: self.players.values().map(PlayerEntry::of).collect(),
-            };
             // Texts and numbers always have a form in JSON.
-            let content = serde_json::to_vec(&content).unwrap_or_default();
+            let content = serde_json::to_vec(self).unwrap_or_default();
             replace(&self.file, &content).map_err(|error| failure(&self.file, &error))?;
             self.is_saved = true;
         }
@@ -186,15 +139,11 @@ impl KnownPlayers {
     }
 
     fn insert(&mut self, player: KnownPlayer) {
-        self.add(player);
-        self.is_saved = false;
-        self.make_room();
-    }
-
-    fn add(&mut self, player: KnownPlayer) {
         self.remove(&player.account.key);
         self.bytes += player.bytes();
         self.players.insert(player.account.key, player);
+        self.is_saved = false;
+        self.make_room();
     }
 
     /// Returns true if the player was known.
@@ -227,67 +176,5 @@ impl KnownPlayer {
         let preferences = preferences.map_or(0, |text| text.len());
         let ignored: usize = self.settings.ignored.iter().map(|name| name.as_str().len()).sum();
         ENTRY_BYTES + preferences + self.settings.configuration.len() + ignored
-    }
-}
-
-impl PlayerEntry {
-    fn of(player: &KnownPlayer) -> Self {
-        let KnownPlayer { account, settings, confirmed_at } = player;
-        Self {
-            key: account.key.to_string(),
-            account: account.id.0,
-            name: account.name.as_str().to_owned(),
-            named_at: account.named_at.seconds(),
-            created_at: account.created_at.seconds(),
-            seen_at: account.seen_at.seconds(),
-            preferences: settings.preferences,
-            configuration: settings.configuration.clone(),
-            ignored: settings.ignored.iter().map(|name| name.as_str().to_owned()).collect(),
-            confirmed_at: confirmed_at.seconds(),
-        }
-    }
-
-    fn player(self) -> Option<KnownPlayer> {
-        let account = Account {
-            id: AccountId(self.account),
-            key: AccountKey::parse(&self.key)?,
-            name: Name::kept(&self.name),
-            named_at: UnixTime::new(self.named_at),
-            created_at: UnixTime::new(self.created_at),
-            seen_at: UnixTime::new(self.seen_at),
-        };
-        let settings = AccountSettings {
-            preferences: self.preferences,
-            configuration: self.configuration,
-            ignored: self.ignored.iter().map(|name| Name::kept(name)).collect(),
-        };
-        settings.checked().ok()?;
-        let confirmed_at = UnixTime::new(self.confirmed_at);
-        Some(KnownPlayer { account, settings, confirmed_at })
-    }
-}
-
-impl BanEntry {
-    fn of(ban: &Ban) -> Self {
-        let (kind, target) = ban.target.parts();
-        Self {
-            kind: kind.to_owned(),
-            target,
-            until: ban.until.map(UnixTime::seconds),
-            reason: ban.reason.clone(),
-            by: ban.by.clone(),
-            made_at: ban.made_at.seconds(),
-        }
-    }
-
-    fn ban(self) -> Option<Ban> {
-        Some(Ban {
-            scope: BanScope::Visit,
-            target: BanTarget::of_parts(&self.kind, &self.target)?,
-            until: self.until.map(UnixTime::new),
-            reason: self.reason,
-            by: self.by,
-            made_at: UnixTime::new(self.made_at),
-        })
     }
 }

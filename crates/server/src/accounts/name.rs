@@ -18,6 +18,7 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
 use unicode_script::{Script, UnicodeScript};
@@ -37,7 +38,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 /// assert_eq!(Name::new("server"), Err(NameFault::Reserved));
 /// # Ok::<(), NameFault>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct Name(String);
 
 /// The reason why a text is not a name.
@@ -171,6 +172,13 @@ impl Name {
             return Err(NameFault::Mixed);
         }
         Ok(Self(text))
+    }
+}
+
+/// Accepts the same texts as [`Name::kept`].
+impl<'de> Deserialize<'de> for Name {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from).map(|text| Self::kept(&text))
     }
 }
 

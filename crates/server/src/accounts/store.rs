@@ -263,10 +263,9 @@ impl HostStore {
         let settings = row.map(|row| {
             // Preferences of another version become the defaults.
             let preferences = serde_json::from_str(&row.get::<String>(0)?).unwrap_or_default();
-            let ignored: Vec<String> =
+            let mut ignored: Vec<Name> =
                 serde_json::from_str(&row.get::<String>(2)?).unwrap_or_default();
-            let ignored = ignored.iter().take(AccountSettings::MAX_IGNORED);
-            let ignored = ignored.map(|name| Name::kept(name)).collect();
+            ignored.truncate(AccountSettings::MAX_IGNORED);
             Ok(AccountSettings { preferences, configuration: row.get(1)?, ignored })
         });
         settings.unwrap_or_else(|| Ok(AccountSettings::default()))
@@ -286,8 +285,7 @@ impl HostStore {
                    VALUES (?1, ?2, ?3, ?4) \
                    ON CONFLICT (account) DO UPDATE SET preferences = excluded.preferences, \
                    configuration = excluded.configuration, ignored = excluded.ignored";
-        let ignored: Vec<&str> = ignored.iter().map(Name::as_str).collect();
-        let values = params![id, json(preferences), configuration, json(&ignored)];
+        let values = params![id, json(preferences), configuration, json(ignored)];
         self.database.once(|it| it.execute(sql, values).map(|_| ()))
     }
 }
@@ -563,7 +561,7 @@ impl BanScope {
 
 impl BanTarget {
     /// The kind and the text of a target, as the store keeps them.
-    pub(crate) fn parts(&self) -> (&'static str, String) {
+    fn parts(&self) -> (&'static str, String) {
         match self {
             Self::Key(key) => ("key", key.to_string()),
             Self::Name(name) => ("name", name.to_string()),
@@ -571,7 +569,7 @@ impl BanTarget {
         }
     }
 
-    pub(crate) fn of_parts(kind: &str, text: &str) -> Option<Self> {
+    fn of_parts(kind: &str, text: &str) -> Option<Self> {
         match kind {
             "key" => AccountKey::parse(text).map(Self::Key),
             "name" => Some(Self::Name(Name::kept(text))),

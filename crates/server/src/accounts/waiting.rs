@@ -16,8 +16,7 @@
 //!
 //! Rejected: a queue only in memory. A database is often restarted together with its hosts.
 
-use std::borrow::Cow;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -46,10 +45,12 @@ pub struct WaitingResults {
     is_saved: bool,
 }
 
-/// A waiting result.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A waiting result: a line of the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct WaitingResult {
     /// The key of the account.
+    #[serde(rename = "account")]
     pub key: AccountKey,
     /// When the run was verified.
     pub at: UnixTime,
@@ -72,15 +73,6 @@ pub enum LateOutcome {
     NotNow,
 }
 
-/// A line of the file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ResultLine<'a> {
-    account: String,
-    at: u64,
-    script: Cow<'a, str>,
-}
-
 impl WaitingResults {
     /// Reads the results that wait in a folder. Also returns a sentence if some of them cannot be read.
     ///
@@ -88,20 +80,14 @@ impl WaitingResults {
     /// If the file can't be read or replaced.
     pub fn open(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
         let file = folder.join("waiting_results");
-        let failed = |error| failure(&file, &error);
-        let mut bytes = Vec::new();
-        match private::open(&file) {
-            Ok(found) => {
-                // A host never writes more than this.
-                let most = 2 * MAX_BYTES as u64;
-                _ = found.take(most).read_to_end(&mut bytes).map_err(failed)?;
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => return Err(failed(error)),
-        }
+        // A host never writes more than this.
+        let bytes = match private::read(&file, 2 * MAX_BYTES as u64) {
+            Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+            read => read.map_err(|error| failure(&file, &error))?,
+        };
         let text = String::from_utf8_lossy(&bytes);
-        let read: Vec<_> = text.lines().map(WaitingResult::parse).collect();
-        let is_damaged = read.iter().any(Option::is_none);
+        let read: Vec<_> = text.lines().map(serde_json::from_str).collect();
+        let is_damaged = read.iter().any(Result::is_err);
         let results: Vec<WaitingResult> = read.into_iter().flatten().collect();
         let mut waiting = Self { file, results, is_saved: true };
         let sentence = is_damaged.then(|| waiting.put_aside()).transpose()?;
@@ -222,16 +208,8 @@ impl WaitingResult {
     }
 
     fn line(&self) -> String {
-        let (account, script) = (self.key.to_string(), Cow::Borrowed(self.script.as_str()));
-        let row = ResultLine { account, at: self.at.seconds(), script };
         // Texts and a number always have a form in JSON.
-        serde_json::to_string(&row).unwrap_or_default() + "\n"
-    }
-
-    fn parse(line: &str) -> Option<Self> {
-        let ResultLine { account, at, script } = serde_json::from_str(line).ok()?;
-        let (key, at) = (AccountKey::parse(&account)?, UnixTime::new(at));
-        Some(Self { key, at, script: script.into_owned() })
+        serde_json::to_string(self).unwrap_or_default() + "\n"
     }
 }
 

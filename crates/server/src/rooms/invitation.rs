@@ -11,9 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
-
-use crate::accounts::{AccountKey, AddressPrefix};
+use crate::accounts::{AccountKey, AddressPrefix, serialized_as_text};
 use crate::bucket::Bucket;
 use cellcaster::rng::SplitMix64;
 
@@ -23,9 +21,10 @@ const LETTERS: &[u8] = b"BCDFGHJKMPQRSTWXZ";
 pub(crate) const CODE_LETTERS: usize = 6;
 
 /// The code of a private room, with which others enter it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RoomCode([u8; CODE_LETTERS]);
+
+serialized_as_text!(RoomCode: "an invitation code");
 
 impl RoomCode {
     /// A new code.
@@ -52,20 +51,6 @@ impl RoomCode {
 impl fmt::Display for RoomCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|&letter| write!(f, "{}", char::from(letter)))
-    }
-}
-
-impl From<RoomCode> for String {
-    fn from(code: RoomCode) -> Self {
-        code.to_string()
-    }
-}
-
-impl TryFrom<String> for RoomCode {
-    type Error = &'static str;
-
-    fn try_from(text: String) -> Result<Self, &'static str> {
-        Self::parse(&text).ok_or("an invitation code")
     }
 }
 

@@ -124,19 +124,25 @@ proptest! {
     #[test]
     fn no_file_panics(player in "[ -~]{0,40}", number: u64, bytes: Vec<u8>) {
         let folder = Folder::new();
-    fs::create_dir_all(&folder.0).unwrap();
+        fs::create_dir_all(&folder.0).unwrap();
+        let key = AccountKey::new([1; 32]);
         let entry = serde_json::json!({
-            "key": AccountKey::new([1; 32]).to_string(), "account": 7, "name": player, "named_at": number,
-            "created_at": 0, "seen_at": 0, "preferences": {}, "configuration": player,
+            "account": {
+                "id": 7, "key": key, "name": player, "named_at": number, "created_at": 0, "seen_at": 0,
+            },
+            "settings": { "preferences": {}, "configuration": player, "ignored": [player] },
             "confirmed_at": number,
         });
         let bans = [serde_json::json!({
-            "kind": player, "target": player, "until": number, "reason": "", "by": "", "made_at": 0,
+            "scope": "Visit", "target": { "name": player }, "until": number, "reason": "", "by": "",
+            "made_at": 0,
         })];
-        let content = serde_json::json!({ "database": DATABASE, "bans": bans, "players": [entry] });
-        for content in [content.to_string().into_bytes(), bytes] {
+        let players = serde_json::json!({ key.to_string(): entry });
+        let content = serde_json::json!({ "database": DATABASE, "bans": bans, "players": players });
+        for (content, is_known) in [(content.to_string().into_bytes(), true), (bytes, false)] {
             fs::write(folder.0.join("known_players"), content).unwrap();
-            _ = KnownPlayers::open(&folder.0, DATABASE).0.find(&AccountKey::new([1; 32]), second(0));
+            let found = KnownPlayers::open(&folder.0, DATABASE).0.find(&key, second(0));
+            prop_assert!(found.is_none() || is_known);
         }
     }
 }
