@@ -13,10 +13,13 @@
 //!
 //! Rejected: a TCP port with a password. Every user of the machine could reach it.
 
+use std::net::IpAddr;
+
 use serde::{Deserialize, Serialize};
 
-use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
+use crate::accounts::{AccountKey, BanTarget, Name};
 use crate::admission::counted_address;
+use crate::visitors::SessionId;
 
 /// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,7 +46,7 @@ pub enum AdminRequest {
         /// The name of the visitor who wrote it.
         from: String,
         /// The name of the visitor who reads it.
-        to: String,
+        to: Name,
         /// The line.
         text: String,
     },
@@ -58,18 +61,15 @@ pub enum AdminRequest {
     Drain,
 }
 
-/// Some visitors, described by a text.
+/// The visitors whose sessions a request ends.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
-    /// The visitors with this name or a similar-looking one.
-    Name(String),
-    /// The visitors with the key of this fingerprint.
-    Key(String),
-    /// The visitors with an address in this range.
-    Address(String),
     /// The visitor with this session.
-    Session(String),
+    Session(SessionId),
+    /// The visitors to whom a ban would apply.
+    #[serde(untagged)]
+    Visitors(BanTarget),
 }
 
 /// The reply of a server.
@@ -98,15 +98,14 @@ pub enum AdminReply {
 /// A visitor. `cellcaster-server admin who --format json` prints the fields, so their names must stay.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisitorRow {
-    /// The session; empty if the host's version has no sessions.
-    #[serde(default)]
-    pub session: String,
+    /// The session.
+    pub session: SessionId,
     /// The name; `None` until it is chosen.
-    pub name: Option<String>,
+    pub name: Option<Name>,
     /// The address from which the visitor connects.
-    pub address: String,
-    /// The fingerprint of the visitor's key; `None` for a guest.
-    pub key: Option<String>,
+    pub address: IpAddr,
+    /// The visitor's key; `None` for a guest.
+    pub key: Option<AccountKey>,
     /// The room; `None` for the lobby.
     pub room: Option<String>,
     /// How long the visitor has been connected, in seconds.
@@ -176,42 +175,9 @@ impl AdminRequest {
 
 impl VisitorRow {
     /// The target of a mute of this visitor: the key or, for a guest, the address. An owner of an IPv6 address has the
-    /// whole /64. `None` if a host of another version has written the row.
-    pub(crate) fn talker(&self) -> Option<BanTarget> {
-        if let Some(key) = &self.key {
-            return AccountKey::parse(key).map(BanTarget::Key);
-        }
-        let address = self.address.parse().ok()?;
-        Some(BanTarget::Addresses(counted_address(address)))
-    }
-}
-
-impl Target {
-    /// The target of a ban of these visitors.
-    ///
-    /// # Errors
-    /// A sentence, if the text is not a name, a fingerprint or a range of addresses, or if the target is a session.
-    pub fn to_ban(&self) -> Result<BanTarget, String> {
-        match self {
-            Self::Name(name) => {
-                let name = Name::kept(name);
-                let has_text = !name.as_str().is_empty();
-                has_text
-                    .then_some(BanTarget::Name(name))
-                    .ok_or("the name contains no printable character".to_owned())
-            }
-            Self::Key(key) => AccountKey::parse(key).map(BanTarget::Key).ok_or_else(|| {
-                "write a key as its fingerprint, SHA256: and 43 characters".to_owned()
-            }),
-            Self::Address(range) => {
-                let range = AddressPrefix::parse(range).map(BanTarget::Addresses);
-                range.ok_or_else(|| {
-                    "write one address, or a range such as 203.0.113.0/24".to_owned()
-                })
-            }
-            Self::Session(_) => {
-                Err("a session can't be banned: name a player, a key or addresses".to_owned())
-            }
-        }
+    /// whole /64.
+    pub(crate) fn talker(&self) -> BanTarget {
+        let by_address = || BanTarget::Addresses(counted_address(self.address));
+        self.key.map_or_else(by_address, BanTarget::Key)
     }
 }

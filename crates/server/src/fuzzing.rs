@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-use tokio::sync::Notify;
+use tokio::sync::watch;
 
 use crate::accounts::{AccountKey, AccountSettings, Day};
 use crate::admin::RoomRow;
@@ -348,7 +348,7 @@ impl Default for FuzzedHost {
             visitor
         });
         let visitors = visitors.collect();
-        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()), None);
+        let operator = Operator::new(all, Vec::<RoomRow>::new, watch::Sender::default(), None);
         Self { operator, _visitors: visitors }
     }
 }

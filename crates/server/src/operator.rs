@@ -5,15 +5,14 @@ pub mod socket;
 
 use std::sync::Arc;
 
-use tokio::sync::Notify;
+use tokio::sync::watch;
 
-use crate::accounts::Name;
 use crate::admin::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
 use crate::cluster::SharedRooms;
 use crate::line::Line;
 use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
-use crate::visitors::{Heard, Present, SessionId, Visitors};
+use crate::visitors::{Heard, Present, Visitors};
 
 /// The parts of a server that an operator can see and change. Clones share them.
 #[derive(Clone)]
@@ -22,8 +21,8 @@ pub struct Operator {
     visitors: Visitors,
     /// Returns the current rooms.
     rooms: Arc<dyn Fn() -> Vec<RoomRow> + Send + Sync>,
-    /// Notified when the server has to end.
-    drain: Arc<Notify>,
+    /// How many times the server was asked to end.
+    ends: watch::Sender<u32>,
     /// The other hosts, in a cluster.
     cluster: Option<SharedRooms>,
 }
@@ -36,14 +35,14 @@ const REASON_COLUMNS: usize = 200;
 const NO_CLUSTER: &str = "this host is not in a cluster";
 
 impl Operator {
-    /// Creates an operator of these visitors and rooms. It notifies `drain` to end the server.
+    /// Creates an operator of these visitors and rooms. It counts a request to end the server in `ends`.
     pub(crate) fn new(
         visitors: Visitors,
         rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
-        drain: Arc<Notify>,
+        ends: watch::Sender<u32>,
         cluster: Option<SharedRooms>,
     ) -> Self {
-        Self { visitors, rooms: Arc::new(rooms), drain, cluster }
+        Self { visitors, rooms: Arc::new(rooms), ends, cluster }
     }
 
     /// Carries out a request, on all hosts of a cluster if the request is for all of them.
@@ -80,15 +79,12 @@ impl Operator {
             AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
             AdminRequest::Remove { target, reason, banned, moderator } => {
                 let sentence = farewell(reason, *banned, moderator.as_deref());
-                match self.remove(target, &sentence, *banned) {
-                    Err(sentence) => AdminReply::Fault(sentence),
-                    Ok(count) => AdminReply::Count(count),
-                }
+                AdminReply::Count(self.remove(target, &sentence, *banned))
             }
             AdminRequest::Tell { from, to, text } => {
                 let (from, text) = (from.clone(), text.clone());
                 let line = Heard { from, text, is_private: true };
-                AdminReply::Count(self.visitors.tell(&Name::kept(to), &line))
+                AdminReply::Count(self.visitors.tell(to, &line))
             }
             AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
                 None => AdminReply::Fault("the line contains no printable character".to_owned()),
@@ -99,27 +95,26 @@ impl Operator {
                 }
             },
             AdminRequest::Drain => {
-                self.drain.notify_one();
+                self.ends.send_modify(|count| *count = 1.max(*count));
                 AdminReply::Count(self.visitors.list().len())
             }
         }
     }
 
     /// Ends the sessions of `target`, and returns their number.
-    fn remove(&self, target: &Target, sentence: &str, is_banned: bool) -> Result<usize, String> {
-        if let Target::Session(text) = target
-            && !is_banned
-        {
-            let session =
-                SessionId::parse(text).ok_or("write the id of a session, such as 3f9a-7")?;
-            let count = usize::from(self.visitors.remove_session(session, sentence));
-            logging::removed_session(session, count);
-            return Ok(count);
+    fn remove(&self, target: &Target, sentence: &str, is_banned: bool) -> usize {
+        match target {
+            Target::Session(session) => {
+                let count = usize::from(self.visitors.remove_session(*session, sentence));
+                logging::removed_session(*session, count);
+                count
+            }
+            Target::Visitors(target) => {
+                let count = self.visitors.remove(target, sentence);
+                logging::removed(target, count, is_banned);
+                count
+            }
         }
-        let target = target.to_ban()?;
-        let count = self.visitors.remove(&target, sentence);
-        logging::removed(&target, count, is_banned);
-        Ok(count)
     }
 
     /// The name of this host in a cluster.
@@ -144,10 +139,10 @@ pub(crate) fn farewell(reason: &str, is_banned: bool, moderator: Option<&str>) -
 
 fn row(present: Present, host: Option<String>) -> VisitorRow {
     VisitorRow {
-        session: present.session.to_string(),
-        name: present.name.map(|name| name.as_str().to_owned()),
-        address: present.address.to_string(),
-        key: present.key.map(|key| key.to_string()),
+        session: present.session,
+        name: present.name,
+        address: present.address,
+        key: present.key,
         room: present.room,
         seconds: present.since.elapsed().as_secs(),
         host,

@@ -18,7 +18,9 @@ use std::sync::{Arc, Mutex};
 use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
-use crate::accounts::{AccountKey, Ban, BanTarget, Identity, Name, UnixTime, applying};
+use crate::accounts::{
+    AccountKey, Ban, BanTarget, Identity, Name, UnixTime, applying, serialized_as_text,
+};
 use crate::lock::locked;
 
 /// The visitors of a server. Clones share the same list.
@@ -62,6 +64,8 @@ pub struct SessionId {
     run: u16,
     number: u64,
 }
+
+serialized_as_text!(SessionId: "the id of a session, such as 3f9a-7");
 
 /// A visitor, as listed for the operator.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,15 +5,14 @@
 
 use std::io::{self, Write};
 use std::path::Path;
-use std::time::Duration;
 use std::{env, iter};
 
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use super::arguments::{Admin, AdminAction, ListFormat, ListOptions};
+use super::arguments::{Admin, AdminAction, BanTerms, ListFormat, ListOptions};
 use super::host_store::{StoreLocation, failed};
-use crate::accounts::{Ban, BanScope, BanTarget, HostStore, Name, UnixTime, time_text};
+use crate::accounts::{Ban, BanScope, BanTarget, HostStore, UnixTime, time_text};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
 use crate::operator::socket::{AdminFailure, ask};
 use cellcaster::cli::Error;
@@ -47,16 +46,12 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
                 format!("the server is shutting down; it waits for {}\n", visitors(count))
             })
         }
-        AdminAction::Kick { player, session, reason } => host.kicks(player.target(session), reason),
-        AdminAction::Ban { player, time, reason } => {
-            ban(&mut host, database, &player.target(None), time, &reason)
-        }
-        AdminAction::Unban { player } => unban(database, &player.target(None)),
+        AdminAction::Kick { player, reason } => host.kicks(player.target(), reason),
+        AdminAction::Ban { player, terms } => ban(&mut host, database, player.target(), &terms),
+        AdminAction::Unban { player } => unban(database, player.target()),
         AdminAction::Bans(list) => bans(database, BanScope::Visit, &list),
-        AdminAction::Mute { player, session, time, reason } => {
-            mute(&mut host, database, &player.target(session), time, &reason)
-        }
-        AdminAction::Unmute { player } => unmute(&mut host, database, &player.target(None)),
+        AdminAction::Mute { player, terms } => mute(&mut host, database, player.target(), &terms),
+        AdminAction::Unmute { player } => unmute(&mut host, database, player.target()),
         AdminAction::Mutes(list) => bans(database, BanScope::Talk, &list),
     };
     for remark in host.remarks {
@@ -148,12 +143,15 @@ fn other_version() -> Error {
 }
 
 fn of_visitor(row: &VisitorRow, has_host: bool) -> Vec<String> {
-    let or = |text: &Option<String>, other: &str| text.clone().unwrap_or(other.to_owned());
-    let (name, room) = (or(&row.name, "-"), or(&row.room, "lobby"));
-    let (address, time) = (row.address.clone(), time_text(row.seconds));
-    let host = has_host.then(|| or(&row.host, "-"));
-    let cells = [row.session.clone(), name, room, address, time].into_iter();
-    cells.chain(host).chain([or(&row.key, "guest")]).collect()
+    let name = or(row.name.as_ref(), "-");
+    let (room, address) = (or(row.room.as_ref(), "lobby"), row.address.to_string());
+    let host = has_host.then(|| or(row.host.as_ref(), "-"));
+    let cells = [row.session.to_string(), name, room, address, time_text(row.seconds)];
+    cells.into_iter().chain(host).chain([or(row.key.as_ref(), "guest")]).collect()
+}
+
+fn or(value: Option<&impl ToString>, other: &str) -> String {
+    value.map_or_else(|| other.to_owned(), ToString::to_string)
 }
 
 fn of_room(row: &RoomRow) -> Vec<String> {
@@ -192,36 +190,32 @@ fn summary_of_maps(keys: &[String]) -> String {
     }
 }
 
-/// Bans a target, and ends the sessions that the ban applies to.
+/// Bans a player, and ends the sessions that the ban applies to.
 fn ban(
     host: &mut RunningHost<'_>,
     database: &StoreLocation,
-    target: &Target,
-    time: Option<Duration>,
-    reason: &str,
+    target: BanTarget,
+    terms: &BanTerms,
 ) -> Result<String, Error> {
     let mut store = open(database)?;
-    let targets = targets(&mut store, target)?;
-    let banned = forbid(&mut store, BanScope::Visit, &targets, time, reason)?;
-    let ended = match remove(host, &targets, reason)? {
+    let targets = with_account(&mut store, target)?;
+    let banned = forbid(&mut store, BanScope::Visit, &targets, terms)?;
+    let ended = match remove(host, targets, &terms.reason)? {
         None => "no server runs".to_owned(),
         Some(count) => format!("ended {}", sessions(count)),
     };
     Ok(format!("banned {banned}; {ended}\n"))
 }
 
-/// Mutes a target.
 fn mute(
     host: &mut RunningHost<'_>,
     database: &StoreLocation,
-    target: &Target,
-    time: Option<Duration>,
-    reason: &str,
+    target: Target,
+    terms: &BanTerms,
 ) -> Result<String, Error> {
     let mut store = open(database)?;
     let targets = muted_targets(host, &mut store, target)?;
-    let muted = forbid(&mut store, BanScope::Talk, &targets, time, reason)?;
-    Ok(format!("muted {muted}\n"))
+    Ok(format!("muted {}\n", forbid(&mut store, BanScope::Talk, &targets, terms)?))
 }
 
 /// Writes a ban for each target, and describes them in words.
@@ -229,8 +223,7 @@ fn forbid(
     store: &mut HostStore,
     scope: BanScope,
     targets: &[BanTarget],
-    time: Option<Duration>,
-    reason: &str,
+    BanTerms { time, reason }: &BanTerms,
 ) -> Result<String, Error> {
     let now = UnixTime::now();
     for target in targets {
@@ -238,55 +231,52 @@ fn forbid(
             scope,
             target: target.clone(),
             until: time.map(|time| now.after(time.as_secs())),
-            reason: reason.to_owned(),
+            reason: reason.clone(),
             by: operator(),
             made_at: now,
         };
         store.ban(&ban).map_err(failed)?;
     }
-    let names: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
     let time =
         time.map_or("forever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
-    Ok(format!("{} {time}", names.join(" and ")))
+    Ok(format!("{} {time}", joined(targets)))
 }
 
-/// Ends the bans of a target.
-fn unban(database: &StoreLocation, target: &Target) -> Result<String, Error> {
+fn unban(database: &StoreLocation, target: BanTarget) -> Result<String, Error> {
     let mut store = open(database)?;
-    let targets = targets(&mut store, target)?;
-    let ended = allow(&mut store, BanScope::Visit, &targets)?.ok_or_else(|| {
-        Error::mistake("there is no such ban; \"cellcaster-server admin bans\" lists them")
-    })?;
-    Ok(format!("{ended} may come back\n"))
+    let targets = with_account(&mut store, target)?;
+    Ok(format!("{} may come back\n", allow(&mut store, BanScope::Visit, targets)?))
 }
 
-/// Ends the mutes of a target.
 fn unmute(
     host: &mut RunningHost<'_>,
     database: &StoreLocation,
-    target: &Target,
+    target: BanTarget,
 ) -> Result<String, Error> {
     let mut store = open(database)?;
-    let targets = muted_targets(host, &mut store, target)?;
-    let ended = allow(&mut store, BanScope::Talk, &targets)?.ok_or_else(|| {
-        Error::mistake("there is no such mute; \"cellcaster-server admin mutes\" lists them")
-    })?;
-    Ok(format!("{ended} may talk again\n"))
+    let targets = muted_targets(host, &mut store, Target::Visitors(target))?;
+    Ok(format!("{} may talk again\n", allow(&mut store, BanScope::Talk, targets)?))
 }
 
-/// Ends the bans of some targets, and names the targets with a ban; `None` if there are none.
-fn allow(
-    store: &mut HostStore,
-    scope: BanScope,
-    targets: &[BanTarget],
-) -> Result<Option<String>, Error> {
+/// Ends the bans of some targets, and names the targets with a ban.
+fn allow(store: &mut HostStore, scope: BanScope, targets: Vec<BanTarget>) -> Result<String, Error> {
     let mut ended = Vec::new();
     for target in targets {
-        if store.unban(scope, target).map_err(failed)? {
-            ended.push(target.to_string());
+        if store.unban(scope, &target).map_err(failed)? {
+            ended.push(target);
         }
     }
-    Ok((!ended.is_empty()).then(|| ended.join(" and ")))
+    if ended.is_empty() {
+        let ban = if scope == BanScope::Visit { "ban" } else { "mute" };
+        return Err(Error::mistake(format!(
+            "there is no such {ban}; \"cellcaster-server admin {ban}s\" lists them"
+        )));
+    }
+    Ok(joined(&ended))
+}
+
+fn joined(targets: &[BanTarget]) -> String {
+    targets.iter().map(BanTarget::to_string).collect::<Vec<_>>().join(" and ")
 }
 
 /// Lists the bans of a scope in force.
@@ -344,8 +334,7 @@ fn document(json: &Value) -> String {
 }
 
 /// The target of a ban, and for a name also the key of the account with that name.
-fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
-    let target = target.to_ban().map_err(Error::mistake)?;
+fn with_account(store: &mut HostStore, target: BanTarget) -> Result<Vec<BanTarget>, Error> {
     let account = match &target {
         BanTarget::Name(name) => store.account_named(name).map_err(failed)?,
         BanTarget::Key(_) | BanTarget::Addresses(_) => None,
@@ -357,46 +346,38 @@ fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Err
 fn muted_targets(
     host: &mut RunningHost<'_>,
     store: &mut HostStore,
-    target: &Target,
+    target: Target,
 ) -> Result<Vec<BanTarget>, Error> {
-    let is_meant = |row: &VisitorRow| match target {
+    let is_meant = |row: &&VisitorRow| match &target {
         Target::Session(session) => row.session == *session,
-        Target::Name(name) => {
-            let name = Name::kept(name);
-            row.key.is_none()
-                && row.name.as_ref().is_some_and(|it| Name::kept(it).looks_like(&name))
+        Target::Visitors(BanTarget::Name(name)) => {
+            row.key.is_none() && row.name.as_ref().is_some_and(|it| it.looks_like(name))
         }
-        Target::Key(_) | Target::Address(_) => false,
+        Target::Visitors(_) => false,
     };
     let rows = match host.answers(&AdminRequest::Who) {
         Ok(AdminReply::Visitors(rows)) => rows,
         Ok(_) => return Err(other_version()),
-        Err(AdminFailure::NoServer(_)) if !matches!(target, Target::Session(_)) => Vec::new(),
+        Err(AdminFailure::NoServer(_)) if matches!(target, Target::Visitors(_)) => Vec::new(),
         Err(failure) => return Err(failure.into()),
     };
-    match rows.iter().find(|row| is_meant(row)) {
-        Some(row) => row.talker().map(|target| vec![target]).ok_or_else(other_version),
-        None if matches!(target, Target::Session(_)) => Err(no_session()),
-        None => targets(store, target),
+    match (rows.iter().find(is_meant), target) {
+        (Some(row), _) => Ok(vec![row.talker()]),
+        (None, Target::Session(_)) => Err(no_session()),
+        (None, Target::Visitors(target)) => with_account(store, target),
     }
 }
 
 /// Ends the sessions of `targets`, and returns their number; `None` if no server runs.
 fn remove(
     host: &mut RunningHost<'_>,
-    targets: &[BanTarget],
+    targets: Vec<BanTarget>,
     reason: &str,
 ) -> Result<Option<usize>, Error> {
     let mut removed = 0;
     for target in targets {
-        let text = target.to_string();
-        let target = match target {
-            BanTarget::Key(_) => Target::Key(text),
-            BanTarget::Name(_) => Target::Name(text),
-            BanTarget::Addresses(_) => Target::Address(text),
-        };
         let request = AdminRequest::Remove {
-            target,
+            target: Target::Visitors(target),
             reason: reason.to_owned(),
             banned: true,
             moderator: None,

@@ -12,7 +12,7 @@ use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 use super::host_store::StoreLocation;
-use crate::accounts::{AccountKey, AddressPrefix};
+use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
 use crate::admin::Target;
 use crate::logging::LogFormat;
 use crate::visitors::SessionId;
@@ -129,10 +129,7 @@ pub(crate) enum AdminAction {
     /// End the sessions of a player, or one session
     Kick {
         #[command(flatten)]
-        player: PlayerSelector,
-        /// The id of one session, from "cellcaster-server admin who"
-        #[arg(long, value_name = "ID", value_parser = session, group = "target")]
-        session: Option<SessionId>,
+        player: SessionSelector,
         /// The reason, which the player sees
         #[arg(long, value_name = "TEXT", default_value = "")]
         reason: String,
@@ -141,12 +138,8 @@ pub(crate) enum AdminAction {
     Ban {
         #[command(flatten)]
         player: PlayerSelector,
-        /// The duration, such as 30m or 7d [default: forever]
-        #[arg(long = "for", value_name = "TIME", value_parser = time)]
-        time: Option<Duration>,
-        /// The reason, which the player sees
-        #[arg(long, value_name = "TEXT", default_value = "")]
-        reason: String,
+        #[command(flatten)]
+        terms: BanTerms,
     },
     /// End a ban
     Unban {
@@ -158,16 +151,9 @@ pub(crate) enum AdminAction {
     /// Mute a player, who can still play; an online guest is muted by address
     Mute {
         #[command(flatten)]
-        player: PlayerSelector,
-        /// The id of one session, from "cellcaster-server admin who"
-        #[arg(long, value_name = "ID", value_parser = session, group = "target")]
-        session: Option<SessionId>,
-        /// The duration, such as 30m or 7d [default: forever]
-        #[arg(long = "for", value_name = "TIME", value_parser = time)]
-        time: Option<Duration>,
-        /// The reason, which the player sees
-        #[arg(long, value_name = "TEXT", default_value = "")]
-        reason: String,
+        player: SessionSelector,
+        #[command(flatten)]
+        terms: BanTerms,
     },
     /// End a mute
     Unmute {
@@ -197,7 +183,8 @@ pub(crate) struct ListOptions {
 #[group(id = "target", required = true, multiple = false)]
 pub(crate) struct PlayerSelector {
     /// The player's name
-    name: Option<String>,
+    #[arg(value_parser = name)]
+    name: Option<Name>,
     /// The player's public key, as ssh-keygen -l prints its fingerprint
     #[arg(long, value_name = "FINGERPRINT", value_parser = key)]
     key: Option<AccountKey>,
@@ -207,15 +194,40 @@ pub(crate) struct PlayerSelector {
 }
 
 impl PlayerSelector {
-    /// The target. `session` names it if nothing else does.
-    pub(crate) fn target(self, session: Option<SessionId>) -> Target {
+    pub(crate) fn target(self) -> BanTarget {
         let Self { name, key, address } = self;
-        name.map(Target::Name)
-            .or(key.map(|key| Target::Key(key.to_string())))
-            .or(address.map(|range| Target::Address(range.to_string())))
-            .or(session.map(|session| Target::Session(session.to_string())))
-            .unwrap_or_else(|| Target::Name(String::new()))
+        let others = key.map(BanTarget::Key).or(address.map(BanTarget::Addresses));
+        // The name is missing only if there is another one.
+        others.unwrap_or_else(|| BanTarget::Name(name.unwrap_or(Name::kept(""))))
     }
+}
+
+/// A player, or one session.
+#[derive(Args, Debug)]
+pub(crate) struct SessionSelector {
+    #[command(flatten)]
+    player: PlayerSelector,
+    /// The id of one session, from "cellcaster-server admin who"
+    #[arg(long, value_name = "ID", value_parser = session, group = "target")]
+    session: Option<SessionId>,
+}
+
+impl SessionSelector {
+    pub(crate) fn target(self) -> Target {
+        let player = || Target::Visitors(self.player.target());
+        self.session.map_or_else(player, Target::Session)
+    }
+}
+
+/// The time and the reason of a ban or a mute.
+#[derive(Args, Debug)]
+pub(crate) struct BanTerms {
+    /// The duration, such as 30m or 7d [default: forever]
+    #[arg(long = "for", value_name = "TIME", value_parser = time)]
+    pub(crate) time: Option<Duration>,
+    /// The reason, which the player sees
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    pub(crate) reason: String,
 }
 
 /// List the leaderboards of a host
@@ -301,6 +313,12 @@ impl fmt::Debug for ClusterAddress {
 fn address(text: &str) -> Result<SocketAddr, ValidValues> {
     text.parse()
         .map_err(|_| ValidValues("an address and a port, such as 0.0.0.0:2222 or [::]:2222"))
+}
+
+fn name(text: &str) -> Result<Name, ValidValues> {
+    let name = Name::kept(text);
+    let has_text = !name.as_str().is_empty();
+    has_text.then_some(name).ok_or(ValidValues("a name with a printable character"))
 }
 
 fn key(text: &str) -> Result<AccountKey, ValidValues> {

@@ -48,9 +48,8 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let known = store.database().map(|database| warned(KnownPlayers::open(&folder, database)));
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
     let ended = runtime.block_on(async {
-        let no_signals = |error| Error::machine(format!("signals can't be caught: {error}"));
-        let signals = Signals::catch().map_err(no_signals)?;
-        let hangups = Hangups::catch().map_err(no_signals)?;
+        let (ends, hangups) = catch_signals()
+            .map_err(|error| Error::machine(format!("signals can't be caught: {error}")))?;
         let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
         let cannot = |error| cannot_listen(wanted, &error);
         let metrics_listener = match config.metrics {
@@ -97,7 +96,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             let boards = Box::new(host.store_calls(web::read_boards));
             services.spawn(Web::new(server.config(), rooms, load, boards).serve(listener));
         }
-        let operator = host.operator(signals.drain());
+        let operator = host.operator(ends.clone());
         services.spawn(operator.clone().answer_others());
         #[cfg(unix)]
         if let Some(admin) = admin {
@@ -106,8 +105,8 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         services.spawn(configuration.follow(hangups, server.config(), logging));
         let ending = host.ending();
         tokio::select! {
-            () = server.run(host, signals.first()) => ending.await,
-            () = signals.second() => {}
+            () = server.run(host, asked(&ends, 1)) => ending.await,
+            () = asked(&ends, 2) => {}
         }
         // Otherwise the process might end before the socket is removed.
         services.shutdown().await;
@@ -245,9 +244,9 @@ impl Configuration {
     }
 
     /// Reads the file again at each hang-up. If the file has a fault, the configuration stays unchanged.
-    async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
+    async fn follow(self, hangups: Arc<Notify>, live: LiveConfig, logging: Logging) {
         loop {
-            hangups.next().await;
+            hangups.notified().await;
             match self.read_again() {
                 Ok(config) => {
                     logging.set_filter(&config.log);
@@ -305,100 +304,44 @@ fn refused(error: MapsError) -> Error {
     }
 }
 
-/// The caught signals of this process.
-#[derive(Default)]
-struct Signals {
-    /// How many times the server was asked to end.
-    count: watch::Sender<u32>,
-    drain: Arc<Notify>,
-}
-
-/// Hang-ups, one at a time. Only Unix has them.
-struct Hangups {
-    #[cfg(unix)]
-    signal: tokio::signal::unix::Signal,
-}
-
-impl Signals {
-    /// Starts to catch signals. Call this within a runtime.
-    fn catch() -> io::Result<Self> {
-        let signals = Self::default();
-        listen(&signals.count)?;
-        Ok(signals)
-    }
-
-    /// The handle that an operator notifies to end the server as a signal does.
-    fn drain(&self) -> Arc<Notify> {
-        self.drain.clone()
-    }
-
-    /// Ready when a signal or an operator asks the server to end.
-    fn first(&self) -> impl Future<Output = ()> + Send + use<> {
-        let (count, drain, asked) = (self.count.clone(), self.drain.clone(), self.asked(1));
-        async move {
-            tokio::select! {
-                () = asked => {}
-                () = drain.notified() => count.send_modify(|count| *count = 1.max(*count)),
-            }
-        }
-    }
-
-    /// Ready when a signal asks a second time.
-    fn second(&self) -> impl Future<Output = ()> + Send + use<> {
-        self.asked(2)
-    }
-
-    fn asked(&self, times: u32) -> impl Future<Output = ()> + Send + use<> {
-        let mut count = self.count.subscribe();
-        async move { _ = count.wait_for(|count| *count >= times).await }
-    }
-}
-
+/// Catches signals. Returns how many times they asked the server to end, and the hang-ups, which only Unix has. Call
+/// this within a runtime.
 #[cfg(unix)]
-fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
+fn catch_signals() -> io::Result<(watch::Sender<u32>, Arc<Notify>)> {
     use tokio::signal::unix::{SignalKind, signal};
-    for kind in [SignalKind::terminate(), SignalKind::interrupt()] {
-        let (mut signal, count) = (signal(kind)?, count.clone());
+    let (ends, hangups) = (watch::Sender::default(), Arc::<Notify>::default());
+    for kind in [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup()] {
+        let (mut signal, ends, hangups) = (signal(kind)?, ends.clone(), Arc::clone(&hangups));
         tokio::spawn(async move {
             while signal.recv().await.is_some() {
-                count.send_modify(|count| *count += 1);
+                if kind == SignalKind::hangup() {
+                    hangups.notify_one();
+                } else {
+                    ends.send_modify(|count| *count += 1);
+                }
             }
         });
     }
-    Ok(())
+    Ok((ends, hangups))
 }
 
 /// Catches only Ctrl-C.
 #[cfg(not(unix))]
-fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
-    let count = count.clone();
+fn catch_signals() -> io::Result<(watch::Sender<u32>, Arc<Notify>)> {
+    let ends = watch::Sender::default();
+    let count = ends.clone();
     tokio::spawn(async move {
         while tokio::signal::ctrl_c().await.is_ok() {
             count.send_modify(|count| *count += 1);
         }
     });
-    Ok(())
+    Ok((ends, Arc::default()))
 }
 
-impl Hangups {
-    /// Starts to catch hang-ups. Call this within a runtime.
-    fn catch() -> io::Result<Self> {
-        #[cfg(unix)]
-        use tokio::signal::unix::{SignalKind, signal};
-        Ok(Self {
-            #[cfg(unix)]
-            signal: signal(SignalKind::hangup())?,
-        })
-    }
-
-    /// Waits for the next hang-up.
-    async fn next(&mut self) {
-        #[cfg(unix)]
-        if self.signal.recv().await.is_some() {
-            return;
-        }
-        std::future::pending::<()>().await;
-    }
+/// Ready when the server was asked to end `times` times.
+fn asked(ends: &watch::Sender<u32>, times: u32) -> impl Future<Output = ()> + Send + use<> {
+    let mut count = ends.subscribe();
+    async move { _ = count.wait_for(|count| *count >= times).await }
 }
 
 #[cfg(test)]
@@ -412,27 +355,13 @@ mod tests {
         pin!(future).poll(&mut Context::from_waker(Waker::noop())).is_ready()
     }
 
-    fn signal(signals: &Signals) {
-        signals.count.send_modify(|count| *count += 1);
-    }
-
     #[test]
     fn the_second_signal_is_distinguished_from_the_first() {
-        let signals = Signals::default();
-        assert!(!is_ready(signals.first()));
-        signal(&signals);
-        assert!(is_ready(signals.first()));
-        assert!(!is_ready(signals.second()));
-        signal(&signals);
-        assert!(is_ready(signals.second()));
-    }
-
-    #[test]
-    fn a_signal_after_a_drain_request_counts_as_the_second() {
-        let signals = Signals::default();
-        signals.drain().notify_one();
-        assert!(is_ready(signals.first()));
-        signal(&signals);
-        assert!(is_ready(signals.second()));
+        let ends = watch::Sender::default();
+        assert!(!is_ready(asked(&ends, 1)));
+        ends.send_modify(|count| *count += 1);
+        assert!(is_ready(asked(&ends, 1)) && !is_ready(asked(&ends, 2)));
+        ends.send_modify(|count| *count += 1);
+        assert!(is_ready(asked(&ends, 2)));
     }
 }

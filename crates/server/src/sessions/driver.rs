@@ -29,7 +29,7 @@ use std::sync::{Arc, Mutex, Weak};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-use tokio::sync::{Notify, Semaphore, watch};
+use tokio::sync::{Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
 
 use self::results::ResultRecorder;
@@ -254,10 +254,10 @@ impl GameHost {
         }
     }
 
-    /// An operator of this host. The operator notifies `drain` to shut the host down.
-    pub fn operator(&self, drain: Arc<Notify>) -> Operator {
+    /// An operator of this host, who counts requests to shut the host down in `ends`.
+    pub fn operator(&self, ends: watch::Sender<u32>) -> Operator {
         let Shared { visitors, cluster, .. } = &*self.shared;
-        Operator::new(visitors.clone(), self.room_rows(), drain, cluster.clone())
+        Operator::new(visitors.clone(), self.room_rows(), ends, cluster.clone())
     }
 
     /// The rooms, and the measurements of how busy the host is.

@@ -1,16 +1,15 @@
 //! Requests of one host's operator that concern all hosts.
 
 use std::net::IpAddr;
-use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::runtime::Builder;
-use tokio::sync::Notify;
+use tokio::sync::watch;
 use tokio::time::{Instant, sleep};
 
 use super::{ClusterRun, HOSTS};
-use crate::accounts::AccountKey;
-use crate::admin::{AdminReply, AdminRequest, Target};
+use crate::accounts::{AccountKey, BanTarget, Name};
+use crate::admin::{AdminReply, AdminRequest, Target, VisitorRow};
 use crate::operator::Operator;
 use crate::visitors::{Notice, Presence};
 
@@ -27,7 +26,7 @@ impl Hosts {
         let (mut operators, mut visitors) = (Vec::new(), Vec::new());
         for (index, host) in run.hosts.iter().enumerate() {
             let (own, cluster) = (host.visitors.clone(), Some(host.shared.clone()));
-            let operator = Operator::new(own, Vec::new, Arc::<Notify>::default(), cluster);
+            let operator = Operator::new(own, Vec::new, watch::Sender::default(), cluster);
             tokio::spawn(operator.clone().answer_others());
             operators.push(operator);
             let visitor = host.visitors.arrive(IpAddr::from([192, 0, 2, index as u8]), None);
@@ -51,8 +50,8 @@ impl Hosts {
     async fn who(&self) -> (Vec<String>, Vec<String>) {
         let (reply, remarks) = self.answer(AdminRequest::Who).await;
         let AdminReply::Visitors(rows) = reply else { panic!("{reply:?}") };
-        let name = |text: Option<String>| text.unwrap_or_default();
-        (rows.into_iter().map(|row| name(row.name) + " " + &name(row.host)).collect(), remarks)
+        let who = |row: VisitorRow| format!("{} {}", row.name.unwrap(), row.host.unwrap());
+        (rows.into_iter().map(who).collect(), remarks)
     }
 }
 
@@ -62,7 +61,7 @@ fn run(test: impl AsyncFnOnce(Hosts)) {
 }
 
 fn remove(name: &str) -> AdminRequest {
-    let target = Target::Name(name.to_owned());
+    let target = Target::Visitors(BanTarget::Name(Name::kept(name)));
     AdminRequest::Remove { target, reason: String::new(), banned: true, moderator: None }
 }
 

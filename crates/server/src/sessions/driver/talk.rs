@@ -13,6 +13,7 @@
 use std::sync::{Arc, Weak};
 use std::time::Duration;
 
+use tokio::sync::watch;
 use tokio::time::sleep;
 
 use super::Shared;
@@ -83,14 +84,15 @@ impl Driver {
             return;
         }
         let line = self.line(&text, true);
-        if self.shared.visitors.tell(&Name::kept(to.as_str()), &line) > 0 {
+        let name = Name::kept(to.as_str());
+        if self.shared.visitors.tell(&name, &line) > 0 {
             return self.notify(SessionEvent::Told { to, text });
         }
         if self.shared.cluster.is_none() {
             return self.advise(nobody(to.as_str()));
         }
         let Heard { from, text: said, .. } = line;
-        let request = AdminRequest::Tell { from, to: to.to_string(), text: said };
+        let request = AdminRequest::Tell { from, to: name, text: said };
         let (operator, replies) = (self.shared.as_operator(), self.replies.clone());
         tokio::spawn(async move {
             let event = match of_all_hosts(operator.answer(&request).await) {
@@ -202,7 +204,12 @@ impl Driver {
 impl Shared {
     /// An operator for requests that list no rooms and do not end the host.
     fn as_operator(&self) -> Operator {
-        Operator::new(self.visitors.clone(), Vec::new, Arc::default(), self.cluster.clone())
+        Operator::new(
+            self.visitors.clone(),
+            Vec::new,
+            watch::Sender::default(),
+            self.cluster.clone(),
+        )
     }
 
     /// Carries out a moderator's act, and returns a sentence for the moderator: as an error, if the act had no effect.
@@ -213,7 +220,7 @@ impl Shared {
         match kind {
             Moderation::Kick => {
                 let request = AdminRequest::Remove {
-                    target: Target::Name(name.clone()),
+                    target: Target::Visitors(BanTarget::Name(player)),
                     reason: reason.clone(),
                     banned: false,
                     moderator: Some(by.clone()),
@@ -224,7 +231,7 @@ impl Shared {
                 Ok(format!("The session of {name} has ended."))
             }
             Moderation::Mute(time) => {
-                let found = found.and_then(|row| row.talker());
+                let found = found.map(|row| row.talker());
                 let sentence = format!("{name} is muted for {}.", time_text(time.as_secs()));
                 let ban = move |target, made_at: UnixTime| Ban {
                     scope: BanScope::Talk,
@@ -247,7 +254,7 @@ impl Shared {
                 .await
             }
             Moderation::Unmute => {
-                let found = found.and_then(|row| row.talker());
+                let found = found.map(|row| row.talker());
                 self.change_mutes(move |store| {
                     let account = account(store, &player)?;
                     let named = Some(BanTarget::Name(player.clone()));
@@ -293,9 +300,9 @@ impl Shared {
     async fn find(&self, name: &Name) -> Option<VisitorRow> {
         let operator = self.as_operator();
         let found = |reply| match of_all_hosts(reply) {
-            AdminReply::Visitors(rows) => rows.into_iter().find(|row| {
-                row.name.as_ref().is_some_and(|other| Name::kept(other).looks_like(name))
-            }),
+            AdminReply::Visitors(rows) => rows
+                .into_iter()
+                .find(|row| row.name.as_ref().is_some_and(|other| other.looks_like(name))),
             _ => None,
         };
         let own = found(operator.answer_alone(&AdminRequest::Who));
