@@ -14,11 +14,11 @@ use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::{ConstGauge, Gauge};
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::Registry;
-use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, copy, sink};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::runtime::Handle;
 
 use crate::admission::Refusal;
+use crate::service::http::{self, Answer};
 use crate::service::serve_each;
 
 /// The figures of a server.
@@ -221,9 +221,6 @@ fn resident_bytes() -> Option<u64> {
     Some(kilobytes << 10)
 }
 
-/// The most bytes of a request that are read. The responder needs no server library, because a request of Prometheus is
-/// one line.
-const MAX_BYTES: u64 = 4096;
 const TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Answers `GET /metrics` with the figures until the future is dropped.
@@ -233,45 +230,18 @@ pub async fn respond(listener: TcpListener, metrics: Arc<Metrics>) {
 }
 
 async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> {
-    let request = request(&mut stream).await?;
-    stream.write_all(response(&request, || metrics.text()).as_bytes()).await?;
-    stream.shutdown().await?;
-    // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
-    copy(&mut stream, &mut sink()).await?;
-    Ok(())
-}
-
-/// The head of a request, or its first [`MAX_BYTES`].
-async fn request(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
-    let mut stream = BufReader::new(stream.take(MAX_BYTES));
-    let mut request = Vec::new();
-    while !ends(&request) && stream.read_until(b'\n', &mut request).await? > 0 {}
-    Ok(request)
-}
-
-fn ends(request: &[u8]) -> bool {
-    request.ends_with(b"\r\n\r\n")
-}
-
-fn response(request: &[u8], text: impl Fn() -> String) -> String {
-    let line = request.split(|&byte| byte == b'\r').next().unwrap_or_default();
-    let mut words = line.split(|&byte| byte == b' ');
-    let (method, target, version) = (words.next(), words.next(), words.next());
-    let is_http = version.is_some_and(|version| version.starts_with(b"HTTP/1."));
-    let (status, body) = match (method, target) {
-        _ if !ends(request) || !is_http => {
-            ("400 Bad Request", "this is not an HTTP/1.1 request\n".into())
+    let (_, request) = http::read(&mut stream).await?;
+    let answer = match request.as_ref().map(|it| (it.method.as_str(), it.path())) {
+        None => Answer::bad_request(),
+        Some(("GET", "/metrics")) => {
+            Answer { kind: CONTENT_TYPE, ..Answer::text("200 OK", metrics.text()) }
         }
-        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text()),
-        (Some(b"GET"), _) => ("404 Not Found", "the metrics are at /metrics\n".into()),
-        _ => ("405 Method Not Allowed", "use the method GET\n".into()),
+        Some(("GET", _)) => {
+            Answer::text("404 Not Found", "the metrics are at /metrics\n".to_owned())
+        }
+        Some(_) => Answer::other_method(),
     };
-    let allow = if status.starts_with("405") { "Allow: GET\r\n" } else { "" };
-    format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {CONTENT_TYPE}\r\n\
-         Content-Length: {}\r\n{allow}Connection: close\r\n\r\n{body}",
-        body.len()
-    )
+    http::finish(stream, answer).await
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Listening for clients, and the accept loop of a small service for the operator, such as the admin socket or the
 //! metrics page.
 
+pub(crate) mod http;
+
 use std::future::{Future, poll_fn};
 use std::io;
 use std::net::SocketAddr;

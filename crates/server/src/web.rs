@@ -27,7 +27,6 @@ mod boards;
 mod live;
 mod picture;
 mod records;
-mod request;
 #[cfg(test)]
 mod tests;
 mod watch;
@@ -43,7 +42,7 @@ use http::HeaderValue;
 use http::header::SEC_WEBSOCKET_PROTOCOL;
 use serde_json::{Value, json};
 use tokio::fs::File;
-use tokio::io::{AsyncReadExt, AsyncWriteExt, copy, join, sink};
+use tokio::io::{AsyncReadExt, AsyncWriteExt, join};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::{AbortHandle, JoinSet};
 use tokio::time::{Instant, sleep, timeout};
@@ -53,7 +52,6 @@ pub(crate) use self::boards::read as read_boards;
 use self::boards::{AskBoards, Boards};
 use self::live::{Form, LiveRooms, public_rooms};
 use self::records::{MAX_QUARTERS, Records, USUAL_QUARTERS};
-use self::request::Request;
 use self::watch::{SEND_TIMEOUT, Source, watch};
 use crate::admission::{Admission, ConnectionId, Limits, Outcome, Refusal};
 use crate::config::LiveConfig;
@@ -64,14 +62,13 @@ use crate::logging;
 use crate::rooms::directory::Rooms;
 use crate::rooms::summary::RoomId;
 use crate::service;
+use crate::service::http::{ANSWER_TIMEOUT, Answer, Request, close, finish, head, read};
 use cellcaster::rng::SplitMix64;
 
 /// The most requests at a time. One more displaces the oldest of the busiest network.
 const MAX_REQUESTS: u32 = 64;
 /// The time for the head of a request.
 const HEAD_TIMEOUT: Duration = Duration::from_secs(5);
-/// The time for an answer.
-const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 /// The most bytes of a message from a browser, as for control frames.
 const MAX_MESSAGE: usize = 125;
 /// The pause after a failed `accept`.
@@ -101,15 +98,6 @@ struct Requests {
     admission: Admission,
     chance: SplitMix64,
     open: BTreeMap<ConnectionId, AbortHandle>,
-}
-
-/// An answer, except for its headers that are always the same.
-struct Answer {
-    status: &'static str,
-    kind: &'static str,
-    /// Further headers, each with its line ending.
-    headers: String,
-    body: String,
 }
 
 /// What a request wants that lasts.
@@ -184,8 +172,7 @@ impl Web {
 
     async fn answer(&self, mut socket: TcpStream, peer: IpAddr, place: Waiting) -> io::Result<()> {
         _ = socket.set_nodelay(true);
-        let read = timeout(HEAD_TIMEOUT, request::read(&mut socket)).await;
-        let (head, request) = match read {
+        let (head, request) = match timeout(HEAD_TIMEOUT, read(&mut socket)).await {
             Ok(Ok((head, Some(request)))) => (head, request),
             Ok(Ok((_, None))) => return finish(socket, Answer::bad_request()).await,
             Ok(Err(_)) | Err(_) => return Ok(()),
@@ -197,7 +184,7 @@ impl Web {
         let address = self.visitor(&request, peer);
         let _counted = match self.count(address) {
             Ok(counted) => counted,
-            Err(sentence) => return finish(socket, Answer::unavailable(sentence)).await,
+            Err(sentence) => return finish(socket, unavailable(sentence)).await,
         };
         // Watchers are limited on their own.
         drop(place);
@@ -205,12 +192,12 @@ impl Web {
             Wanted::Cast(path) => send_file(socket, &path).await,
             Wanted::Room(id, form) => match self.live.watch(id, form) {
                 Some(room) => self.show((socket, head), &request, room).await,
-                None => finish(socket, Answer::no_room()).await,
+                None => finish(socket, no_room()).await,
             },
             Wanted::Record(name, from, quarters) => match self.records.watch(&name, from, quarters)
             {
                 Ok(record) => self.show((socket, head), &request, record).await,
-                Err(sentence) => finish(socket, Answer::unavailable(sentence + "\n")).await,
+                Err(sentence) => finish(socket, unavailable(sentence + "\n")).await,
             },
         }
     }
@@ -241,15 +228,14 @@ impl Web {
     /// What a request wants that lasts, or the answer to another request.
     async fn route(&self, request: &Request) -> Result<Wanted, Answer> {
         if request.method != "GET" {
-            let answer = Answer::text("405 Method Not Allowed", "use the method GET\n".to_owned());
-            return Err(Answer { headers: "Allow: GET\r\n".to_owned(), ..answer });
+            return Err(Answer::other_method());
         }
         let catalog = self.rooms.catalog();
         match request.path() {
-            "/" => return Err(Answer::page()),
-            "/rooms" => return Err(Answer::json(&self.list())),
-            "/records" => return Err(Answer::json(&self.records.list().await)),
-            "/boards" => return Err(Answer::json(&self.boards.json(catalog).await)),
+            "/" => return Err(page()),
+            "/rooms" => return Err(json_of(&self.list())),
+            "/records" => return Err(json_of(&self.records.list().await)),
+            "/boards" => return Err(json_of(&self.boards.json(catalog).await)),
             "/boards.txt" => {
                 return Err(Answer::text("200 OK", self.boards.text(catalog).await));
             }
@@ -389,51 +375,28 @@ impl Drop for Watching {
     }
 }
 
-impl Answer {
-    fn text(status: &'static str, body: String) -> Self {
-        Self { status, kind: "text/plain; charset=utf-8", headers: String::new(), body }
-    }
-
-    fn bad_request() -> Self {
-        let most = request::MAX_HEAD >> 10;
-        let text = format!("this is not an HTTP/1.1 request of at most {most} KiB\n");
-        Self::text("400 Bad Request", text)
-    }
-
-    fn no_room() -> Self {
-        Self::text("404 Not Found", "there is no such public room\n".to_owned())
-    }
-
-    fn unavailable(sentence: String) -> Self {
-        Self::text("503 Service Unavailable", sentence)
-    }
-
-    fn json(value: &Value) -> Self {
-        Self { kind: "application/json", ..Self::text("200 OK", value.to_string()) }
-    }
-
-    fn page() -> Self {
-        // A page could not use a nonce that it does not know, and nothing from a visitor is in the page.
-        let nonce = format!("{:016x}", getrandom::u64().unwrap_or_default());
-        let headers = format!(
-            "Content-Security-Policy: default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; \
-             connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
-        );
-        let body = PAGE.replace(NONCE, &nonce);
-        Self { kind: "text/html; charset=utf-8", headers, ..Self::text("200 OK", body) }
-    }
+/// The answer with the page.
+fn page() -> Answer {
+    // A page could not use a nonce that it does not know, and nothing from a visitor is in the page.
+    let nonce = format!("{:016x}", getrandom::u64().unwrap_or_default());
+    let headers = format!(
+        "Content-Security-Policy: default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; \
+         connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
+    );
+    let body = PAGE.replace(NONCE, &nonce);
+    Answer { kind: "text/html; charset=utf-8", headers, ..Answer::text("200 OK", body) }
 }
 
-/// Sends the answer and closes the connection.
-async fn finish(mut socket: TcpStream, answer: Answer) -> io::Result<()> {
-    let Answer { status, kind, headers, body } = answer;
-    let text = head(status, kind, &headers, body.len() as u64) + &body;
-    let sent = async {
-        socket.write_all(text.as_bytes()).await?;
-        close(socket).await
-    };
-    _ = timeout(ANSWER_TIMEOUT, sent).await;
-    Ok(())
+fn json_of(value: &Value) -> Answer {
+    Answer { kind: "application/json", ..Answer::text("200 OK", value.to_string()) }
+}
+
+fn no_room() -> Answer {
+    Answer::text("404 Not Found", "there is no such public room\n".to_owned())
+}
+
+fn unavailable(sentence: String) -> Answer {
+    Answer::text("503 Service Unavailable", sentence)
 }
 
 /// Sends the content of a file as it is now, and closes the connection.
@@ -454,20 +417,4 @@ async fn send_file(mut socket: TcpStream, path: &Path) -> io::Result<()> {
         left -= count;
     }
     timeout(SEND_TIMEOUT, close(socket)).await?
-}
-
-/// The head of an answer. `headers` are further ones, each with its line ending.
-fn head(status: &str, kind: &str, headers: &str, length: u64) -> String {
-    format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{headers}\
-         Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
-         Connection: close\r\n\r\n"
-    )
-}
-
-/// Closes a connection whose answer is written.
-async fn close(mut socket: TcpStream) -> io::Result<()> {
-    socket.shutdown().await?;
-    // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
-    copy(&mut socket, &mut sink()).await.map(drop)
 }

@@ -1,8 +1,6 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use proptest::prelude::*;
-
 use super::*;
 use crate::admission::Refusal;
 
@@ -83,32 +81,4 @@ fn a_duration_counts_in_every_bucket_from_its_bound() {
         assert_eq!(sample(end), count, "{end}");
     }
     assert!((sample("sum") - 2.516_868_001).abs() < 1e-9);
-}
-
-fn status(request: &[u8]) -> String {
-    let response = response(request, || "figures\n".to_owned());
-    response.split(' ').nth(1).unwrap().to_owned()
-}
-
-#[test]
-fn only_the_metrics_page_is_served() {
-    for (request, expected) in [
-        ("GET /metrics HTTP/1.1\r\n\r\n", "200"),
-        ("GET /metrics HTTP/1.0\r\nHost: x\r\n\r\n", "200"),
-        ("GET / HTTP/1.1\r\n\r\n", "404"),
-        ("GET /metrics/../x HTTP/1.1\r\n\r\n", "404"),
-        ("POST /metrics HTTP/1.1\r\n\r\n", "405"),
-        ("GET /metrics\r\n\r\n", "400"),
-        ("GET /metrics HTTP/1.1\r\n", "400"),
-        ("", "400"),
-    ] {
-        assert_eq!(status(request.as_bytes()), expected, "{request:?}");
-    }
-}
-
-proptest! {
-    #[test]
-    fn every_request_gets_an_answer(request in any::<Vec<u8>>()) {
-        prop_assert!(["200", "400", "404", "405"].contains(&status(&request).as_str()));
-    }
 }

@@ -1,11 +1,17 @@
-//! The head of a request.
+//! HTTP/1: the head of a request, and its only answer on a connection.
 
 use std::io;
+use std::time::Duration;
 
-use tokio::io::{AsyncRead, AsyncReadExt};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWriteExt, copy, sink};
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+
+/// The time for an answer.
+pub(crate) const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The most bytes of a head.
-pub(crate) const MAX_HEAD: usize = 8 << 10;
+const MAX_HEAD: usize = 8 << 10;
 /// The most headers. Browsers send about 20, and proxies add a few.
 const MAX_HEADERS: usize = 64;
 /// The end of a head.
@@ -74,7 +80,7 @@ pub(crate) async fn read(
 fn parse(bytes: &[u8]) -> Option<Request> {
     let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
     let mut head = httparse::Request::new(&mut headers);
-    if !head.parse(bytes).ok()?.is_complete() || head.version != Some(1) {
+    if !head.parse(bytes).ok()?.is_complete() {
         return None;
     }
     let mut request = Request {
@@ -106,6 +112,60 @@ fn elements(value: &str) -> impl Iterator<Item = String> {
     value.split(',').map(|part| part.trim().to_owned())
 }
 
+/// An answer, except for its headers that are always the same.
+pub(crate) struct Answer {
+    pub(crate) status: &'static str,
+    pub(crate) kind: &'static str,
+    /// Further headers, each with its line ending.
+    pub(crate) headers: String,
+    pub(crate) body: String,
+}
+
+impl Answer {
+    pub(crate) fn text(status: &'static str, body: String) -> Self {
+        Self { status, kind: "text/plain; charset=utf-8", headers: String::new(), body }
+    }
+
+    pub(crate) fn bad_request() -> Self {
+        let most = MAX_HEAD >> 10;
+        let text = format!("this is not an HTTP/1.1 request of at most {most} KiB\n");
+        Self::text("400 Bad Request", text)
+    }
+
+    pub(crate) fn other_method() -> Self {
+        let answer = Self::text("405 Method Not Allowed", "use the method GET\n".to_owned());
+        Self { headers: "Allow: GET\r\n".to_owned(), ..answer }
+    }
+}
+
+/// Sends the answer and closes the connection.
+pub(crate) async fn finish(mut socket: TcpStream, answer: Answer) -> io::Result<()> {
+    let Answer { status, kind, headers, body } = answer;
+    let text = head(status, kind, &headers, body.len() as u64) + &body;
+    let sent = async {
+        socket.write_all(text.as_bytes()).await?;
+        close(socket).await
+    };
+    _ = timeout(ANSWER_TIMEOUT, sent).await;
+    Ok(())
+}
+
+/// The head of an answer. `headers` are further ones, each with its line ending.
+pub(crate) fn head(status: &str, kind: &str, headers: &str, length: u64) -> String {
+    format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{headers}\
+         Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+         Connection: close\r\n\r\n"
+    )
+}
+
+/// Closes a connection whose answer is written.
+pub(crate) async fn close(mut socket: TcpStream) -> io::Result<()> {
+    socket.shutdown().await?;
+    // If the connection were closed with unread bytes, it would be reset, and the client might lose the answer.
+    copy(&mut socket, &mut sink()).await.map(drop)
+}
+
 #[cfg(test)]
 mod tests {
     use futures_util::FutureExt;
@@ -133,7 +193,8 @@ mod tests {
         assert_eq!(result(&many).unwrap(), None);
         assert_eq!(result(b"PROXY TCP4 192.0.2.7 127.0.0.1 1 2\r\n\r\n").unwrap(), None);
         assert_eq!(result(b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n").unwrap(), None);
-        assert_eq!(result(b"GET / HTTP/1.0\r\n\r\n").unwrap(), None);
+        assert_eq!(result(b"GET /\r\n\r\n").unwrap(), None);
+        assert!(result(b"GET / HTTP/1.0\r\n\r\n").unwrap().is_some());
     }
 
     #[test]
