@@ -28,7 +28,7 @@ use super::StoreFailure;
 use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The mark in the file's header, "Cell".
-const APPLICATION: i32 = 0x4365_6c6c;
+const APPLICATION: i64 = 0x4365_6c6c;
 /// The view with the time of the database.
 const CLOCK: &str = "CREATE VIEW clock AS SELECT CAST(unixepoch('subsec') * 1000 AS INTEGER) AS ms";
 const FILE: &str = "host.db";
@@ -39,26 +39,14 @@ const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Opens the file in `folder` to read and write. A damaged file is an error, and stays unchanged.
 pub(crate) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
-    open_sound(folder).map_err(|fault| match fault {
-        OpenFault::Failure(failure) => failure,
-        OpenFault::Damaged => StoreFailure::new(format!(
-            "{} is damaged: restore a backup, or move the file and its logs away to begin without accounts and bans",
-            printable_path(&folder.join(FILE)),
-        )),
-    })
-}
-
-/// Opens the file in `folder`, or creates it.
-fn open_sound(folder: &Path) -> Result<Connection, OpenFault> {
     let file = folder.join(FILE);
     if has_lost_its_content(&file) {
-        return Err(OpenFault::Damaged);
+        return Err(failure(&file, DAMAGED));
     }
     let is_new = !file.exists();
-    private::create_folder(folder).and_then(|()| private::create_file(&file)).map_err(|error| {
-        let sentence = format!("{} can't be used: {error}", printable_path(&file));
-        OpenFault::Failure(StoreFailure::new(sentence))
-    })?;
+    private::create_folder(folder)
+        .and_then(|()| private::create_file(&file))
+        .map_err(|error| failure(&file, &format!("can't be used: {error}")))?;
     connect(&file).inspect_err(|_| {
         // An empty file would count as damaged at the next start.
         if is_new && fs::metadata(&file).is_ok_and(|data| data.len() == 0) {
@@ -89,9 +77,7 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
         return Ok(None);
     }
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let unreadable = |error: &dyn fmt::Display| {
-        StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)))
-    };
+    let unreadable = |error: &dyn fmt::Display| failure(&file, &format!("can't be read: {error}"));
     // This check does not open the file, because closing it again would release the locks of this process.
     private::check_is_file(&file).map_err(|error| unreadable(&error))?;
     let connection = Connection::open_with_flags(&file, flags).and_then(|connection| {
@@ -102,90 +88,71 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
     if version == 0 {
         return Ok(None);
     }
-    check_origin(&connection, &file).map_err(|fault| fault.or_damage_of(&file))?;
+    check_origin(&connection, &file)?;
     Ok(Some(connection))
 }
 
-/// The reason why a file is not opened.
-enum OpenFault {
-    Damaged,
-    Failure(StoreFailure),
+const DAMAGED: &str = "is damaged: restore a backup, or move the file and its logs away to begin without accounts and bans";
+
+fn failure(file: &Path, what: &str) -> StoreFailure {
+    StoreFailure::new(format!("{} {what}", printable_path(file)))
 }
 
-impl OpenFault {
-    fn or_damage_of(self, file: &Path) -> StoreFailure {
-        match self {
-            Self::Damaged => StoreFailure::new(format!("{} is damaged", printable_path(file))),
-            Self::Failure(failure) => failure,
-        }
-    }
-}
-
-impl From<rusqlite::Error> for OpenFault {
-    fn from(error: rusqlite::Error) -> Self {
-        match error.sqlite_error_code() {
-            Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => Self::Damaged,
-            _ => Self::Failure(error.into()),
-        }
-    }
+/// Runs statements of SQLite on `file`, which may be damaged.
+fn on_file<T>(file: &Path, act: impl FnOnce() -> rusqlite::Result<T>) -> Result<T, StoreFailure> {
+    act().map_err(|error| match error.sqlite_error_code() {
+        Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => failure(file, DAMAGED),
+        _ => error.into(),
+    })
 }
 
 /// Opens a file that must be sound and of this version.
-fn connect(file: &Path) -> Result<Connection, OpenFault> {
+fn connect(file: &Path) -> Result<Connection, StoreFailure> {
     // Without SQLITE_OPEN_URI, so that a path is never read as a URI.
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let mut connection = Connection::open_with_flags(file, flags)?;
-    connection.busy_timeout(TIMEOUT)?;
+    let mut connection = on_file(file, || Connection::open_with_flags(file, flags))?;
+    let text = |connection: &Connection, pragma: &str| {
+        on_file(file, || connection.query_row(pragma, [], |row| row.get::<_, String>(0)))
+    };
+    on_file(file, || connection.busy_timeout(TIMEOUT))?;
     check_origin(&connection, file)?;
-    check_content(&connection)?;
-    let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;
-    if !mode.eq_ignore_ascii_case("wal") {
-        let sentence = format!(
-            "{} can't have a write-ahead log on this file system: use a data folder on a local disk",
-            printable_path(file)
-        );
-        return Err(OpenFault::Failure(StoreFailure::new(sentence)));
+    if text(&connection, "PRAGMA integrity_check(1)")? != "ok" {
+        return Err(failure(file, DAMAGED));
     }
-    connection.execute_batch(
-        "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF;",
-    )?;
-    make_tables(&mut connection)?;
+    if !text(&connection, "PRAGMA journal_mode = WAL")?.eq_ignore_ascii_case("wal") {
+        let what =
+            "can't have a write-ahead log on this file system: use a data folder on a local disk";
+        return Err(failure(file, what));
+    }
+    on_file(file, || {
+        connection.execute_batch(
+            "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF;",
+        )?;
+        make_tables(&mut connection)
+    })?;
     // Content that cannot be copied now, as on a full disk, is just as safe in the log.
     _ = checkpoint(&connection);
     Ok(connection)
 }
 
 /// Refuses a file of another program or of another version.
-fn check_origin(connection: &Connection, file: &Path) -> Result<(), OpenFault> {
-    let application: i32 = connection.query_row("PRAGMA application_id", [], |row| row.get(0))?;
-    let objects: i64 =
-        connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
-    let version = version(connection)?;
+fn check_origin(connection: &Connection, file: &Path) -> Result<(), StoreFailure> {
+    let number =
+        |sql: &str| on_file(file, || connection.query_row(sql, [], |row| row.get::<_, i64>(0)));
+    let application = number("PRAGMA application_id")?;
+    let objects = number("SELECT count(*) FROM sqlite_schema")?;
+    let version = number("PRAGMA user_version")?;
     let is_new = application == 0 && version == 0 && objects == 0;
-    let sentence = if application != APPLICATION && !is_new {
-        format!(
-            "{} belongs to another program: move it away, or use another data folder",
-            printable_path(file)
-        )
+    let what = if application != APPLICATION && !is_new {
+        "belongs to another program: move it away, or use another data folder".to_owned()
     } else if version > VERSION {
-        format!(
-            "{} has version {version}, which a newer Cellcaster wrote: upgrade this one",
-            printable_path(file)
-        )
+        format!("has version {version}, which a newer Cellcaster wrote: upgrade this one")
     } else if ![0, VERSION].contains(&version) {
-        format!(
-            "{} has version {version}, which this Cellcaster can't read: move it away",
-            printable_path(file)
-        )
+        format!("has version {version}, which this Cellcaster can't read: move it away")
     } else {
         return Ok(());
     };
-    Err(OpenFault::Failure(StoreFailure::new(sentence)))
-}
-
-fn check_content(connection: &Connection) -> Result<(), OpenFault> {
-    let answer: String = connection.query_row("PRAGMA integrity_check(1)", [], |row| row.get(0))?;
-    if answer == "ok" { Ok(()) } else { Err(OpenFault::Damaged) }
+    Err(failure(file, &what))
 }
 
 fn with_end(file: &Path, end: &str) -> PathBuf {
