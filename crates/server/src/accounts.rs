@@ -55,10 +55,10 @@ pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
 pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
-pub(crate) use results::verify_at;
 pub use results::{
     LevelBoard, LevelScore, MAX_SCRIPT_BYTES, MAX_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
 };
+pub(crate) use results::{ScoredBoards, verify_at};
 pub use store::HostStore;
 pub use waiting::{LateOutcome, WaitingResult, WaitingResults};
 

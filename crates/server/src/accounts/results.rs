@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
 use cellcaster::fault::Faults;
 use cellcaster::game::{Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
 use thiserror::Error;
+use unicode_width::UnicodeWidthStr;
 
 use super::{AccountId, Day, Name, UnixTime};
 
@@ -38,6 +40,9 @@ pub struct LevelScore {
     /// When the fastest run was verified.
     pub verified_at: UnixTime,
 }
+
+/// Boards, each with its entries.
+pub(crate) type ScoredBoards = Vec<(LevelBoard, Vec<LevelScore>)>;
 
 /// A run that [`verify`] has replayed: a built-in level, a map of the host or a daily level that was won.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -160,6 +165,16 @@ impl LevelBoard {
         let level = place(&self.level).unwrap_or(usize::MAX);
         let difficulty = Difficulty::ALL.iter().position(|it| *it == self.difficulty);
         (level, Arc::clone(&self.level), difficulty)
+    }
+}
+
+impl LevelScore {
+    /// A line of a table: the place, the name, the time and the rank.
+    pub(crate) fn line(&self, place: usize) -> String {
+        let (name, time, rank) = (self.name.as_str(), of_steps(self.tally.steps), self.rank.name());
+        // A name can take more columns than it has characters.
+        let blanks = Name::MAX_COLUMNS.saturating_sub(name.width());
+        format!("{place:>4}  {name}{:blanks$}  {time:<8}  {rank}\n", "")
     }
 }
 

@@ -13,7 +13,7 @@ use super::applying;
 
 use super::postgres::PostgresDatabase;
 use super::rate::milliseconds;
-use super::results::with_run;
+use super::results::{ScoredBoards, with_run};
 use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountRefusal, AccountSettings, AddressPrefix, Ban, BanScope,
@@ -401,6 +401,15 @@ impl HostStore {
         let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
         boards.sort_by_key(LevelBoard::order);
         Ok(boards)
+    }
+
+    /// All boards, each with its first `most` entries.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub(crate) fn scored_boards(&mut self, most: usize) -> Result<ScoredBoards, StoreFailure> {
+        let boards = self.level_boards()?.into_iter();
+        boards.map(|board| Ok((board.clone(), self.level_scores(&board, most)?))).collect()
     }
 
     /// The first `most` entries of a board: the fastest run of each account. Of equally fast runs, the earlier one

@@ -66,7 +66,7 @@ impl House {
         let address = listener.local_addr().unwrap();
         let boards = Box::new(|| {
             let (sender, answer) = oneshot::channel();
-            sender.send(made_up_boards()).unwrap();
+            sender.send(Some(made_up_boards())).unwrap();
             Some(answer)
         });
         let web = Web::new(LiveConfig::new(config), rooms.clone(), load, boards);
