@@ -1,19 +1,13 @@
 //! The contents of a host's store after its process was killed.
 
+use std::env;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-use std::{env, fs};
 
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 
-/// An empty folder for the test `name`.
-pub(crate) fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("serve").join(name);
-    _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use crate::transport::folder;
 
 pub(crate) const WON: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
@@ -51,7 +45,7 @@ fn acknowledged_changes_survive_a_killed_process() {
         let (folder, first) = writer.rsplit_once(':').unwrap();
         return write(Path::new(folder), first.parse().unwrap());
     }
-    let folder = scratch("killed");
+    let folder = folder();
     let mut next = 0;
     for round in 0..KILLS {
         let mut process = Command::new(env::current_exe().unwrap())

@@ -19,6 +19,7 @@ mod player;
 #[cfg(feature = "system-tests")]
 #[path = "../support/postgres_server.rs"]
 mod postgres_server;
+mod running;
 mod scores;
 mod soak;
 #[cfg(all(target_os = "linux", feature = "system-tests"))]

@@ -7,8 +7,9 @@ use cellcaster::map;
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 use serde_json::Value;
 
-use crate::kept::{WON, scratch};
+use crate::kept::WON;
 use crate::support::server;
+use crate::transport::folder;
 
 const HARD: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.hard.script"));
@@ -43,7 +44,7 @@ fn written(folder: &Path, arguments: &[&str]) -> String {
 
 #[test]
 fn boards_can_be_listed_while_a_host_runs() {
-    let folder = scratch("boards");
+    let folder = folder();
     let _host = filled(&folder);
     let table = written(&folder, &[]);
     let titles: Vec<&str> = table.lines().filter(|line| line.contains(", ")).collect();
@@ -61,13 +62,13 @@ fn boards_can_be_listed_while_a_host_runs() {
         ["cellar, hard"]
     );
     assert_eq!(written(&folder, &["--level", "prison"]), "no results\n");
-    let elsewhere = scratch("elsewhere");
+    let elsewhere = crate::transport::folder();
     assert_eq!(written(&elsewhere, &["--data", folder.to_str().unwrap()]), table);
 }
 
 #[test]
 fn the_board_of_a_day_can_be_listed() {
-    let folder = scratch("daily");
+    let folder = folder();
     let mut store = filled(&folder);
     let corridor = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
                     [things]\n\"@\" = { start = 0 }\n\">\" = { exit = true }\n";
@@ -86,7 +87,7 @@ fn the_board_of_a_day_can_be_listed() {
 
 #[test]
 fn json_contains_every_figure() {
-    let folder = scratch("json");
+    let folder = folder();
     drop(filled(&folder));
     let boards: Value = serde_json::from_str(&written(&folder, &["--format", "json"])).unwrap();
     let run = verify(MUSEUM, |_| None).unwrap();
@@ -101,7 +102,7 @@ fn json_contains_every_figure() {
 
 #[test]
 fn mistakes_are_explained_in_a_sentence() {
-    let folder = scratch("absent");
+    let folder = folder();
     for (arguments, said) in [
         (&[][..], "contains no store of a host"),
         (&["--level", "No where"], "the name of a built-in level, or of one"),
@@ -115,9 +116,9 @@ fn mistakes_are_explained_in_a_sentence() {
 
 #[test]
 fn a_folder_can_be_named_as_the_store() {
-    let folder = scratch("named");
+    let folder = folder();
     let _host = filled(&folder);
-    let elsewhere = scratch("unnamed");
+    let elsewhere = crate::transport::folder();
     let table = written(&folder, &[]);
     assert_eq!(written(&elsewhere, &["--store", folder.to_str().unwrap()]), table);
     let mut command = server(&["scores"]);

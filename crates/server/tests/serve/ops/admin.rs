@@ -10,7 +10,7 @@ use std::process::Output;
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime};
 use serde_json::{Value, json};
 
-use super::running::Running;
+use crate::running::Running;
 use crate::support::server;
 use crate::transport::{TIMEOUT, folder};
 

@@ -7,12 +7,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use rustix::process::Signal;
 
-use super::killed::user_key;
 use super::maps::{HALL, choose, maps};
 use super::metrics::{free_port, scrape};
-use super::running::Running;
 use crate::player::Player;
 use crate::postgres_server::PostgresServer;
+use crate::running::{Running, user_key};
 use crate::transport::{folder, wait_until};
 
 /// A host with its own database, one map and metrics.

@@ -20,11 +20,11 @@ use rustix::process::Signal;
 
 use self::network::Network;
 use super::metrics::scrape_at;
-use super::running::Running;
 use crate::nats_server::NatsServer;
 use crate::play::{enter_room, see_each_other_walk};
 use crate::player::Player;
 use crate::postgres_server::PostgresServer;
+use crate::running::Running;
 use crate::support::server;
 use crate::transport::folder;
 

@@ -11,11 +11,10 @@ use std::thread;
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::killed::user_key;
 use super::maps::{maps, scores};
-use super::running::Running;
 use crate::kept::WON;
 use crate::player::Player;
+use crate::running::{Running, user_key};
 use crate::strace::{Failure, Traced, failures};
 use crate::transport::{folder, wait_until};
 

@@ -2,16 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use cellcaster_server::accounts::{HostStore, Name};
 use rustix::process::Signal;
 
-use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
+use crate::running::{Running, user_key};
 use crate::support::server;
 use crate::transport::folder;
 
@@ -20,15 +19,6 @@ fn recorded(config: &str) -> (Running, PathBuf) {
     let recordings = folder();
     let options = ["--record-room", recordings.to_str().unwrap()];
     (Running::start_with(config, "text", &options), recordings)
-}
-
-/// Creates a new user key.
-pub(crate) fn user_key(folder: &Path) -> PathBuf {
-    let path = folder.join("user");
-    let mut keygen = Command::new("ssh-keygen");
-    let made = keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&path);
-    assert!(made.status().unwrap().success());
-    path
 }
 
 fn say(player: &Player, text: &str) {

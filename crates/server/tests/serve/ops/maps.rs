@@ -6,10 +6,9 @@ use std::process::{Command, Output};
 
 use rustix::process::Signal;
 
-use super::killed::user_key;
-use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
+use crate::running::{Running, user_key};
 use crate::support::{game_program, server};
 use crate::transport::{folder, wait_until};
 
@@ -70,6 +69,17 @@ pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
     player.send(entry);
 }
 
+/// Takes a new name, and enters the [`HALL`] to play alone.
+pub(crate) fn enter_hall(player: &Player, name: &str) {
+    choose(player, name, "4");
+    player.wait_for("The moss hall");
+    // The last level in the list.
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("has joined.");
+}
+
 #[test]
 fn map_faults_read_as_in_check_and_prevent_the_start() {
     let ragged = HALL.replace("#@....>.#", "#@....>.##");
@@ -109,13 +119,7 @@ fn a_run_in_a_host_map_ranks_and_its_recording_replays() {
     let running = Running::start_with(config, "text", &options);
     let key = user_key(&running.folder);
     let player = running.player(Some(&key));
-    choose(&player, "Mara", "4");
-    player.wait_for("The moss hall");
-    // The last level in the list.
-    player.send("\x1b[F\r");
-    player.wait_for("Go in");
-    player.send("\r");
-    player.wait_for("has joined.");
+    enter_hall(&player, "Mara");
     wait_until("the room", || running.admin_says(&["rooms"]).contains("moss"));
     wait_until("the result", || {
         player.send("w");

@@ -6,7 +6,7 @@ use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream, ToSocketAddrs};
 use std::thread;
 use std::time::Duration;
 
-use super::running::Running;
+use crate::running::Running;
 use crate::transport::TIMEOUT;
 
 /// A port that was free a moment ago.

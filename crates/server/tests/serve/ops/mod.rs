@@ -15,7 +15,6 @@ mod maps;
 mod metrics;
 mod pictures;
 mod results;
-mod running;
 #[cfg(feature = "system-tests")]
 mod shared_store;
 mod signals;

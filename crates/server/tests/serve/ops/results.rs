@@ -11,21 +11,14 @@ use std::process::Command;
 
 use rustix::process::Signal;
 
-use super::killed::user_key;
-use super::maps::{HALL, choose, maps, scores};
-use super::running::Running;
+use super::maps::{HALL, enter_hall, maps, scores};
 use crate::player::Player;
+use crate::running::{Running, user_key};
 use crate::transport::wait_until;
 
 /// Plays the host's own map in single-player mode until `sentence` appears, which states the outcome of the result.
 fn win(player: &Player, name: &str, sentence: &str) {
-    choose(player, name, "4");
-    player.wait_for("The moss hall");
-    // The last level in the list.
-    player.send("\x1b[F\r");
-    player.wait_for("Go in");
-    player.send("\r");
-    player.wait_for("has joined.");
+    enter_hall(player, name);
     wait_until(sentence, || {
         player.send("w");
         player.text().contains(sentence)
@@ -99,12 +92,7 @@ fn a_result_waits_until_a_full_disk_has_room() {
     let mut running = Running::start_with(&config, "text", &data);
     let key = user_key(&running.folder);
     let player = running.player(Some(&key));
-    choose(&player, "Mara", "4");
-    player.wait_for("The moss hall");
-    player.send("\x1b[F\r");
-    player.wait_for("Go in");
-    player.send("\r");
-    player.wait_for("has joined.");
+    enter_hall(&player, "Mara");
     disk.fill();
     wait_until("the result", || {
         player.send("w");

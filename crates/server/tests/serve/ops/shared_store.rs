@@ -4,10 +4,9 @@ use std::process::{Command, Output};
 
 use rustix::process::Signal;
 
-use super::killed::user_key;
 use super::maps::choose;
-use super::running::Running;
 use crate::postgres_server::PostgresServer;
+use crate::running::{Running, user_key};
 use crate::support::server;
 use crate::transport::{folder, wait_until};
 

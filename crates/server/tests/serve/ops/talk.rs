@@ -4,10 +4,9 @@ use std::fs;
 
 use rustix::process::Signal;
 
-use super::killed::user_key;
-use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
+use crate::running::{Running, user_key};
 use crate::support::server;
 use crate::transport::folder;
 

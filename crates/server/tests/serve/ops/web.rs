@@ -4,9 +4,9 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 
 use super::metrics::{free_port, scrape};
-use super::running::Running;
 use crate::play::enter_room;
 use crate::play::private::open_private;
+use crate::running::Running;
 use crate::transport::{TIMEOUT, wait_until};
 
 /// A server with the service, and its ports for browsers and for metrics.

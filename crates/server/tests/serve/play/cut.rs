@@ -1,7 +1,7 @@
 //! A cut link between a client and the server: both ends stay open, but no bytes pass.
 
 use std::io::{Read, Write};
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -14,7 +14,7 @@ pub(crate) struct Relay {
 
 impl Relay {
     /// A relay for one connection.
-    pub(crate) fn to(server: SocketAddr) -> Self {
+    pub(crate) fn to(server: String) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let is_cut = Arc::<AtomicBool>::default();

@@ -3,7 +3,7 @@
 use cellcaster::map;
 use cellcaster_server::accounts::{AccountKey, Day, HostStore, Name, UnixTime, verify};
 
-use super::server::GameServer;
+use crate::running::Running;
 
 /// A corridor in place of the daily level: the store keeps results, not levels.
 const CORRIDOR: &str = "grid = '''\n#####\n#@.>#\n#####\n'''\n[tiles]\n\"#\" = { wall = \"brick\" }\n\
@@ -21,9 +21,9 @@ fn record_run_of_mara(store: &mut HostStore) {
 #[test]
 fn two_players_race_in_the_daily_level_of_today() {
     let today = format!("Daily {}", Day::of(UnixTime::now()));
-    let server = GameServer::open_with(record_run_of_mara);
+    let server = Running::start_filled(record_run_of_mara);
     let [jon, kim] = ["Jon", "Kim"].map(|name| {
-        let player = server.player(&[]);
+        let player = server.visitor();
         player.wait_for("Enter saves it");
         player.send(format!("\x15{name}\r"));
         player.wait_for("1. Mara");

@@ -4,7 +4,6 @@ mod cut;
 mod daily;
 pub(crate) mod private;
 mod race;
-mod server;
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -12,10 +11,10 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 
 use self::cut::Relay;
-use self::server::GameServer;
 use crate::emulator::Emulator;
 use crate::looks::looks;
 use crate::player::Player;
+use crate::running::{Running, user_key};
 
 /// Takes a name and enters the first room. Enter accepts the offer on each page.
 pub(crate) fn enter_room(player: &Player, name: &str) {
@@ -33,8 +32,8 @@ pub(crate) fn enter_room(player: &Player, name: &str) {
 
 #[test]
 fn two_players_meet_talk_and_part() {
-    let server = GameServer::open();
-    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    let server = Running::start("", "text");
+    let [mara, jon] = [(); 2].map(|()| server.visitor());
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
     mara.wait_for("Jon has joined.");
@@ -55,8 +54,8 @@ const TURN_BACK: &str = "\x1b[98;1:1u\x1b[98;1:3u";
 
 #[test]
 fn players_see_each_other_walk() {
-    let server = GameServer::open();
-    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    let server = Running::start("", "text");
+    let [mara, jon] = [(); 2].map(|()| server.visitor());
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
     see_each_other_walk(&mara, &jon);
@@ -88,10 +87,10 @@ pub(crate) fn see_each_other_walk(mara: &Player, jon: &Player) {
 
 #[test]
 fn a_cut_link_frees_its_player_within_fifteen_seconds() {
-    let server = GameServer::open();
+    let server = Running::start("", "text");
     let relay = Relay::to(server.address());
-    let mara = server.player(&[]);
-    let jon = server::player_at(relay.port, &[]);
+    let mara = server.visitor();
+    let jon = server.player_at(&relay.port.to_string(), None);
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
     mara.wait_for("Jon has joined.");
@@ -103,8 +102,8 @@ fn a_cut_link_frees_its_player_within_fifteen_seconds() {
 
 #[test]
 fn an_unresponsive_client_is_gone_within_fifteen_seconds() {
-    let server = GameServer::open();
-    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    let server = Running::start("", "text");
+    let [mara, jon] = [(); 2].map(|()| server.visitor());
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
     mara.wait_for("Jon has joined.");
@@ -117,17 +116,18 @@ fn an_unresponsive_client_is_gone_within_fifteen_seconds() {
 
 #[test]
 fn the_account_of_a_key_survives_a_restart() {
-    let mut server = GameServer::open();
-    let key = format!("IdentityFile={}", server.user_key());
-    let player = server.player(&["-o", &key]);
-    enter_room(&player, "Mara");
+    let mut server = Running::start("drain-seconds = 1\n", "text");
+    let key = user_key(&server.folder);
+    enter_room(&server.player(Some(&key)), "Mara");
+    server.signal(Signal::TERM);
+    server.wait_for_end();
     server.restart();
-    let player = server.player(&["-o", &key]);
+    let player = server.player(Some(&key));
     player.wait_for("Mara");
     player.wait_for("Enter saves it");
     player.send("\r");
     player.wait_for("Open a room");
-    let guest = server.player(&[]);
+    let guest = server.visitor();
     guest.wait_for("Enter saves it");
     guest.send("\x15MARA\r");
     guest.wait_for("This name, or one");
@@ -135,10 +135,10 @@ fn the_account_of_a_key_survives_a_restart() {
 
 #[test]
 fn a_server_announces_its_shutdown() {
-    let mut server = GameServer::open();
-    let mut player = server.player(&[]);
+    let server = Running::start("drain-seconds = 1\n", "text");
+    let mut player = server.visitor();
     enter_room(&player, "Mara");
-    server.stop();
+    server.signal(Signal::TERM);
     let ending = player.wait_for_end();
     assert_eq!(ending.status.code(), Some(0));
 }

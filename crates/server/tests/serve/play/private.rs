@@ -1,7 +1,7 @@
 //! Private rooms, which others enter with an invitation code.
 
-use super::server::GameServer;
 use crate::player::Player;
+use crate::running::Running;
 
 /// Takes a name, and presses each key once its text is shown.
 fn press(player: &Player, name: &str, keys: &[(&str, &str)]) {
@@ -40,8 +40,8 @@ pub(crate) fn enter_by_code(player: &Player, name: &str, code: &str) {
 
 #[test]
 fn a_friend_enters_a_private_room_by_its_code() {
-    let server = GameServer::open();
-    let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
+    let server = Running::start("", "text");
+    let [mara, jon] = [(); 2].map(|()| server.visitor());
     let code = open_private(&mara, "Mara");
     enter_by_code(&jon, "Jon", &code);
     mara.wait_for("Jon has joined.");

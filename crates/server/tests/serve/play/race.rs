@@ -2,7 +2,7 @@
 
 use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 
-use super::server::GameServer;
+use crate::running::Running;
 
 /// A run that goes straight on for its first seven seconds.
 const RUN: &str =
@@ -18,8 +18,8 @@ fn record_run_of_mara(store: &mut HostStore) {
 
 #[test]
 fn the_best_run_of_the_board_walks_along_in_a_race() {
-    let server = GameServer::open_with(record_run_of_mara);
-    let jon = server.player(&[]);
+    let server = Running::start_filled(record_run_of_mara);
+    let jon = server.visitor();
     jon.wait_for("Enter saves it");
     jon.send("\x15Jon\r");
     for (shown, key) in

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::network::Network;
 use super::{Hosts, goes_on, says};
-use crate::ops::killed::user_key;
 use crate::play::enter_room;
+use crate::running::user_key;
 use crate::transport::folder;
 
 #[test]

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 
 use super::{Hosts, says};
-use crate::ops::killed::user_key;
 use crate::play::enter_room;
+use crate::running::user_key;
 use crate::transport::{folder, wait_until};
 
 const TOO_OFTEN: &str = "This host accepts at most 1 connection with one key";

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 
 use super::Hosts;
-use crate::ops::killed::user_key;
 use crate::play::enter_room;
 use crate::player::Player;
+use crate::running::user_key;
 use crate::transport::folder;
 
 #[test]

@@ -8,8 +8,8 @@ use rustix::process::Signal;
 use serde_json::Value;
 
 use super::{Hosts, says};
-use crate::ops::killed::user_key;
 use crate::play::enter_room;
+use crate::running::user_key;
 use crate::support::server;
 use crate::transport::folder;
 

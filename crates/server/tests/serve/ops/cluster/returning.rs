@@ -8,9 +8,9 @@ use rustix::process::Signal;
 use super::{Hosts, goes_on};
 use crate::emulator::Emulator;
 use crate::looks::{Look, looks};
-use crate::ops::killed::user_key;
 use crate::play::enter_room;
 use crate::player::Player;
+use crate::running::user_key;
 use crate::transport::folder;
 
 const WELCOME: &str = "Welcome back: you are where you were.";

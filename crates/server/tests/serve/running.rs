@@ -2,7 +2,6 @@
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
-use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
@@ -36,6 +35,11 @@ impl Running {
         Self::start_in(None, config, format, options)
     }
 
+    /// A server with the data that `fill` puts into its store.
+    pub(crate) fn start_filled(fill: impl FnOnce(&mut HostStore)) -> Self {
+        Self::begin(fill, None, "drain-seconds = 4\n", "text", &[])
+    }
+
     /// Like [`Running::start_with`], in a network namespace.
     pub(crate) fn start_in(
         namespace: Option<&str>,
@@ -43,9 +47,19 @@ impl Running {
         format: &str,
         options: &[&str],
     ) -> Self {
+        Self::begin(|_| (), namespace, config, format, options)
+    }
+
+    fn begin(
+        fill: impl FnOnce(&mut HostStore),
+        namespace: Option<&str>,
+        config: &str,
+        format: &str,
+        options: &[&str],
+    ) -> Self {
         let folder = folder();
         // The host has run before.
-        drop(HostStore::open(&folder).unwrap());
+        fill(&mut HostStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
         let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
         let namespace = namespace.map(str::to_owned);
@@ -65,9 +79,8 @@ impl Running {
             spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
     }
 
-    /// A connection that has sent nothing yet.
-    pub(crate) fn connect(&self) -> TcpStream {
-        TcpStream::connect(format!("127.0.0.1:{}", self.port)).unwrap()
+    pub(crate) fn address(&self) -> String {
+        format!("127.0.0.1:{}", self.port)
     }
 
     pub(crate) fn log(&self) -> String {
@@ -85,12 +98,17 @@ impl Running {
 
     /// An OpenSSH client with a key, or without one as a guest.
     pub(crate) fn player(&self, key: Option<&Path>) -> Player {
+        self.player_at(&self.port, key)
+    }
+
+    /// The same through another port.
+    pub(crate) fn player_at(&self, port: &str, key: Option<&Path>) -> Player {
         let key = key.map_or_else(|| "none".to_owned(), |key| key.display().to_string());
         let identity = format!("IdentityFile={key}");
         let options = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                        -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
         let user = if key == "none" { "guest@127.0.0.1" } else { "ann@127.0.0.1" };
-        let last = [self.port.as_str(), "-o", &identity, user];
+        let last = [port, "-o", &identity, user];
         let words = ["ssh"].into_iter().chain(options.split_whitespace()).chain(last);
         let words: Vec<&str> = within(self.namespace.as_deref()).into_iter().chain(words).collect();
         Player::start((80, 24), Speaks::Kitty, words[0], &words[1..], &[])
@@ -176,6 +194,15 @@ fn spawn(
     let (_, rest) = line.split_once("ssh -p ").unwrap();
     let port = rest.split(' ').next().unwrap().to_owned();
     (process, port)
+}
+
+/// Creates a new user key.
+pub(crate) fn user_key(folder: &Path) -> PathBuf {
+    let path = folder.join("user");
+    let mut keygen = Command::new("ssh-keygen");
+    let made = keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&path);
+    assert!(made.status().unwrap().success());
+    path
 }
 
 impl Drop for Running {
