@@ -33,7 +33,7 @@ mod watch;
 
 use std::collections::BTreeMap;
 use std::io::{self, Cursor};
-use std::net::{IpAddr, SocketAddr};
+use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -53,7 +53,7 @@ use self::boards::{AskBoards, Boards};
 use self::live::{Form, LiveRooms, public_rooms};
 use self::records::{MAX_QUARTERS, Records, USUAL_QUARTERS};
 use self::watch::{SEND_TIMEOUT, Source, watch};
-use crate::admission::{Admission, ConnectionId, Limits, Outcome, Refusal};
+use crate::admission::{Admission, Admitted, ConnectionId, Limits, Outcome, Refusal};
 use crate::config::LiveConfig;
 use crate::line::Line;
 use crate::load::Load;
@@ -61,8 +61,9 @@ use crate::lock::locked;
 use crate::logging;
 use crate::rooms::directory::Rooms;
 use crate::rooms::summary::RoomId;
-use crate::service;
-use crate::service::http::{ANSWER_TIMEOUT, Answer, Request, close, finish, head, read};
+use crate::service::http::{
+    ANSWER_TIMEOUT, Answer, Request, SEND_BUFFER, close, finish, head, read,
+};
 use cellcaster::rng::SplitMix64;
 
 /// The most requests at a time. One more displaces the oldest of the busiest network.
@@ -73,10 +74,6 @@ const HEAD_TIMEOUT: Duration = Duration::from_secs(5);
 const MAX_MESSAGE: usize = 125;
 /// The pause after a failed `accept`.
 const ACCEPT_RETRY_INTERVAL: Duration = Duration::from_millis(100);
-/// The size of a socket's send buffer, in bytes. It holds about ten pictures.
-const SEND_BUFFER: u32 = 64 << 10;
-/// The maximum number of connections that wait to be accepted.
-const BACKLOG: u32 = 128;
 /// The page. Its script and its styles have the nonce of the answer.
 const PAGE: &str = include_str!("web/page.html");
 const NONCE: &str = "NONCE";
@@ -89,15 +86,9 @@ pub(crate) struct Web {
     records: Arc<Records>,
     boards: Boards,
     begun: Instant,
-    requests: Arc<Mutex<Requests>>,
+    /// The connections whose requests are not answered yet.
+    requests: Arc<Mutex<Admission>>,
     watchers: Arc<Mutex<Admission>>,
-}
-
-/// The connections whose requests are not answered yet.
-struct Requests {
-    admission: Admission,
-    chance: SplitMix64,
-    open: BTreeMap<ConnectionId, AbortHandle>,
 }
 
 /// What a request wants that lasts.
@@ -109,14 +100,6 @@ enum Wanted {
     Cast(PathBuf),
 }
 
-/// Listens for browsers.
-///
-/// # Errors
-/// Fails if the address cannot be bound.
-pub(crate) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
-    service::listen(address, SEND_BUFFER, BACKLOG)
-}
-
 impl Web {
     pub(crate) fn new(
         config: LiveConfig,
@@ -124,8 +107,6 @@ impl Web {
         load: Arc<Load>,
         boards: AskBoards,
     ) -> Self {
-        let admission = Admission::new(unlimited(MAX_REQUESTS));
-        let requests = Requests { admission, chance: SplitMix64::new(0), open: BTreeMap::new() };
         Self {
             config,
             records: Arc::new(Records::new(rooms.clone(), Arc::clone(&load.metrics))),
@@ -133,44 +114,41 @@ impl Web {
             boards: Boards::new(boards),
             rooms,
             begun: Instant::now(),
-            requests: Arc::new(Mutex::new(requests)),
+            requests: Arc::new(Mutex::new(Admission::new(unlimited(MAX_REQUESTS)))),
             watchers: Arc::new(Mutex::new(Admission::new(unlimited(u32::MAX)))),
         }
     }
 
     /// Serves browsers until the future is dropped.
     pub(crate) async fn serve(self, listener: TcpListener) {
-        let web = Arc::new(self);
+        let (web, mut chance) = (Arc::new(self), SplitMix64::new(0));
         // Dropping the set aborts its tasks.
         let mut tasks = JoinSet::new();
+        let mut open = BTreeMap::<ConnectionId, AbortHandle>::new();
         loop {
-            match listener.accept().await {
-                Ok((socket, peer)) => web.admit(&mut tasks, socket, peer.ip()),
+            let (socket, peer) = match listener.accept().await {
+                Ok((socket, peer)) => (socket, peer.ip()),
                 Err(error) => {
                     logging::fault("accept", error);
                     sleep(ACCEPT_RETRY_INTERVAL).await;
+                    continue;
                 }
-            }
+            };
             while tasks.try_join_next().is_some() {}
+            open.retain(|_, task| !task.is_finished());
+            let now = web.begun.elapsed();
+            let admitted = locked(&web.requests, |it| it.arrive(peer, now, &mut chance));
+            let Ok(Admitted { id, displaced }) = admitted else { continue };
+            let displaced = displaced.and_then(|id| open.remove(&id));
+            displaced.inspect(AbortHandle::abort);
+            let place = Counted { among: Arc::clone(&web.requests), id };
+            let web = Arc::clone(&web);
+            let answered = async move { _ = web.answer(socket, peer, place).await };
+            open.insert(id, tasks.spawn(answered));
         }
     }
 
-    /// Answers a connection, and closes the connection that it displaces.
-    fn admit(self: &Arc<Self>, tasks: &mut JoinSet<()>, socket: TcpStream, peer: IpAddr) {
-        let web = Arc::clone(self);
-        // The lock also delays the end of the task until the task is listed.
-        locked(&self.requests, |requests| {
-            let Requests { admission, chance, open } = requests;
-            let Ok(admitted) = admission.arrive(peer, self.begun.elapsed(), chance) else { return };
-            let displaced = admitted.displaced.and_then(|id| open.remove(&id));
-            displaced.inspect(AbortHandle::abort);
-            let place = Waiting { requests: Arc::clone(&self.requests), id: admitted.id };
-            let answered = async move { _ = web.answer(socket, peer, place).await };
-            open.insert(admitted.id, tasks.spawn(answered));
-        });
-    }
-
-    async fn answer(&self, mut socket: TcpStream, peer: IpAddr, place: Waiting) -> io::Result<()> {
+    async fn answer(&self, mut socket: TcpStream, peer: IpAddr, place: Counted) -> io::Result<()> {
         _ = socket.set_nodelay(true);
         let (head, request) = match timeout(HEAD_TIMEOUT, read(&mut socket)).await {
             Ok(Ok((head, Some(request)))) => (head, request),
@@ -310,7 +288,7 @@ impl Web {
     }
 
     /// Counts a watcher, or returns the sentence for one too many.
-    fn count(&self, address: IpAddr) -> Result<Watching, String> {
+    fn count(&self, address: IpAddr) -> Result<Counted, String> {
         let config = self.config.get();
         let limits = Limits {
             connections: config.web_watchers,
@@ -330,7 +308,7 @@ impl Web {
             })?;
             // The limit was checked on arrival.
             _ = watchers.log_in(admitted.id, None, now);
-            Ok(Watching { watchers: Arc::clone(&self.watchers), id: admitted.id })
+            Ok(Counted { among: Arc::clone(&self.watchers), id: admitted.id })
         })
     }
 }
@@ -347,31 +325,15 @@ fn unlimited(startups: u32) -> Limits {
     }
 }
 
-/// The place of a connection among the [`Requests`].
-struct Waiting {
-    requests: Arc<Mutex<Requests>>,
+/// The place of a request, or of a watcher.
+struct Counted {
+    among: Arc<Mutex<Admission>>,
     id: ConnectionId,
 }
 
-impl Drop for Waiting {
+impl Drop for Counted {
     fn drop(&mut self) {
-        locked(&self.requests, |requests| {
-            requests.open.remove(&self.id);
-            requests.admission.leave(self.id, Outcome::Served, Duration::ZERO);
-        });
-    }
-}
-
-/// The place of a watcher.
-struct Watching {
-    watchers: Arc<Mutex<Admission>>,
-    id: ConnectionId,
-}
-
-impl Drop for Watching {
-    fn drop(&mut self) {
-        let (id, served) = (self.id, Outcome::Served);
-        locked(&self.watchers, |watchers| watchers.leave(id, served, Duration::ZERO));
+        locked(&self.among, |it| it.leave(self.id, Outcome::Served, Duration::ZERO));
     }
 }
 

@@ -5,7 +5,6 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::{Notify, watch};
 use tokio::task::JoinSet;
@@ -21,6 +20,7 @@ use crate::metrics::respond;
 use crate::operator::socket::AdminSocket;
 use crate::rooms::maps::{HostMaps, MapsError};
 use crate::rooms::room::Catalog;
+use crate::service::http;
 use crate::sessions::driver::{GameHost, HostParts};
 use crate::ssh::Server;
 use crate::ssh::host_key::HostKey;
@@ -52,19 +52,11 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             .map_err(|error| Error::machine(format!("signals can't be caught: {error}")))?;
         let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
         let cannot = |error| cannot_listen(wanted, &error);
-        let metrics_listener = match config.metrics {
-            Some(address) => {
-                let listener = TcpListener::bind(address).await;
-                Some(listener.map_err(|error| cannot_listen(address, &error))?)
-            }
-            None => None,
+        let listen_to = |address| {
+            http::listen(address).map_err(|error: io::Error| cannot_listen(address, &error))
         };
-        let web_listener = match config.web {
-            Some(address) => {
-                Some(web::listen(address).map_err(|error| cannot_listen(address, &error))?)
-            }
-            None => None,
-        };
+        let metrics_listener = config.metrics.map(listen_to).transpose()?;
+        let web_listener = config.web.map(listen_to).transpose()?;
         #[cfg(unix)]
         let admin = bind_admin(&folder)?;
         let server = Server::bind(config, key).await.map_err(cannot)?;

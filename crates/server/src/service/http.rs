@@ -1,15 +1,20 @@
 //! HTTP/1: the head of a request, and its only answer on a connection.
 
 use std::io;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWriteExt, copy, sink};
-use tokio::net::TcpStream;
+use tokio::net::{TcpListener, TcpStream};
 use tokio::time::timeout;
 
 /// The time for an answer.
 pub(crate) const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
+/// The size of a socket's send buffer, in bytes. It holds about ten pictures.
+pub(crate) const SEND_BUFFER: u32 = 64 << 10;
+/// The maximum number of connections that wait to be accepted.
+const BACKLOG: u32 = 128;
 /// The most bytes of a head.
 const MAX_HEAD: usize = 8 << 10;
 /// The most headers. Browsers send about 20, and proxies add a few.
@@ -50,6 +55,14 @@ impl Request {
         let (Some((_, origin)), Some(host)) = (origin, &self.host) else { return false };
         origin.eq_ignore_ascii_case(host)
     }
+}
+
+/// Listens for clients.
+///
+/// # Errors
+/// Fails if the address cannot be bound.
+pub(crate) fn listen(address: SocketAddr) -> io::Result<TcpListener> {
+    super::listen(address, SEND_BUFFER, BACKLOG)
 }
 
 /// Reads a head. Returns the bytes that were read, which may be more, and the request if it is valid.

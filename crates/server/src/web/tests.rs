@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Read;
+use std::net::SocketAddr;
 
 use flate2::read::DeflateDecoder;
 use futures_util::{SinkExt, StreamExt};
@@ -23,6 +24,7 @@ use crate::rooms::directory::{Place, Recordings, RoomLimits, Seeds};
 use crate::rooms::replayed::{RoomRecord, replayed};
 use crate::rooms::room::{CHAT_COLUMNS, Catalog, Command, Mode, NAME_COLUMNS};
 use crate::rooms::summary::RoomRequest;
+use crate::service::http::listen;
 use cellcaster::app::parts::{MarkKind, Record};
 use cellcaster::game::{Intent, Intents, Rank, Script, Tally};
 use cellcaster::world::Difficulty;
