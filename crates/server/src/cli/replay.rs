@@ -1,13 +1,13 @@
 //! `cellcaster-server replay`: shows a recorded room in the terminal, or prints its rounds and draws what a member saw.
 
 use std::fmt::{Display, Write as _};
-use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, ErrorKind, Write as _};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use cellcaster::app::parts::of_steps;
+use cellcaster::app::store::private;
 use cellcaster::cli::animation::{Frames, TooManyFrames};
 use cellcaster::cli::machine::own_settings;
 use cellcaster::cli::{Error, ROOM_RECORDING};
@@ -70,14 +70,13 @@ pub fn games(file: &Path, maps: Option<&Path>, look: &mut dyn FnMut(&Game)) -> R
 
 /// The text of a recording, and the levels that its rounds can use.
 fn read(file: &Path, maps: Option<&Path>) -> Result<(String, Arc<Catalog>), Error> {
-    let length = fs::metadata(file).map_err(|error| cannot(file, &error))?;
-    if !length.is_file() || length.len() > MAX_RECORDED_BYTES {
-        return Err(cannot(
-            file,
-            &format!("it is not a file of at most {MAX_RECORDED_BYTES} bytes"),
-        ));
-    }
-    let text = fs::read_to_string(file).map_err(|error| cannot(file, &error))?;
+    let text = private::read_text(file, MAX_RECORDED_BYTES);
+    let text = text.map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            cannot(file, &format!("it has more than {MAX_RECORDED_BYTES} bytes"))
+        }
+        _ => cannot(file, &error),
+    })?;
     if !text.starts_with(ROOM_RECORDING) {
         return Err(cannot(file, &"it is not a recording of a room"));
     }
@@ -85,7 +84,7 @@ fn read(file: &Path, maps: Option<&Path>) -> Result<(String, Arc<Catalog>), Erro
         return Err(cannot(file, &other_version(file)));
     }
     let maps = maps.map(HostMaps::read).transpose();
-    let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
+    let maps = maps.map_err(|faults| Error::report_of(&faults))?.unwrap_or_default();
     Ok((text, Arc::new(Catalog::with(&maps))))
 }
 

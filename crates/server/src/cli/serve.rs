@@ -18,7 +18,7 @@ use crate::logging::{self, Logging};
 use crate::metrics::respond;
 #[cfg(unix)]
 use crate::operator::socket::AdminSocket;
-use crate::rooms::maps::{HostMaps, MapsError};
+use crate::rooms::maps::HostMaps;
 use crate::rooms::room::Catalog;
 use crate::service::http;
 use crate::sessions::driver::{GameHost, HostParts};
@@ -32,17 +32,18 @@ use cellcaster::cli::config::MAX_BYTES;
 use cellcaster::cli::machine::{configuration_file, data_folder};
 
 /// Serves until a signal ends it.
-pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
-    let (configuration, config) = Configuration::begin(&options)?;
-    let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
+pub(crate) fn run(options: Serve) -> Result<(), Error> {
+    let (configuration, config) = Configuration::begin(options)?;
+    let options = &configuration.options;
+    let folder = options.data.clone().or_else(data_folder).ok_or_else(|| {
         Error::mistake(
             "this system has no default data folder: name one, as in \"cellcaster-server --data FOLDER\"",
         )
     })?;
     let key = HostKey::open(&folder).map_err(Error::mistake)?;
-    let database = StoreLocation::named(options.store.store.take());
+    let database = StoreLocation::named(options.store.store.clone());
     let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
-    let cluster = cluster(&options, &database)?;
+    let (cluster, format) = (cluster(options, &database)?, options.log);
     let store = database.open().map_err(|failure| Error::mistake(failure.to_string()))?;
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
     let known = store.database().map(|database| warned(KnownPlayers::open(&folder, database)));
@@ -61,7 +62,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         let admin = bind_admin(&folder)?;
         let server = Server::bind(config, key).await.map_err(cannot)?;
         let address = server.address().map_err(cannot)?;
-        let logging = Logging::begin(options.log, &filter);
+        let logging = Logging::begin(format, &filter);
         logging::listening(address, &fingerprint);
 
         let host = HostParts::new(server.config(), server.metrics(), Visitors::default(), store);
@@ -198,41 +199,30 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
 }
 
 /// The sources of the configuration. The file and the maps that it names are read at the start, and the file again at
-/// each hang-up.
+/// each hang-up. The command line takes precedence over the file.
 struct Configuration {
-    /// `None` if the system has no folder for it.
-    file: Option<PathBuf>,
-    /// `true` if the command line names the file, which must then exist.
-    is_named: bool,
-    /// From the command line, like the next three fields. They take precedence over the file.
-    listen: Option<SocketAddr>,
-    maps_folder: Option<PathBuf>,
-    web: Option<SocketAddr>,
-    recordings: Option<PathBuf>,
+    options: Serve,
     /// The maps, which are read once.
     maps: HostMaps,
 }
 
 impl Configuration {
     /// Reads the file that `options` name, or otherwise the default file, and the maps.
-    fn begin(options: &Serve) -> Result<(Self, Config), Error> {
-        let mut configuration = Self {
-            file: options.config.clone().or_else(|| configuration_file("serve.toml")),
-            is_named: options.config.is_some(),
-            listen: options.listen,
-            maps_folder: options.maps.clone(),
-            web: options.web,
-            recordings: options.record_room.clone(),
-            maps: HostMaps::default(),
-        };
+    fn begin(options: Serve) -> Result<(Self, Config), Error> {
+        let mut configuration = Self { options, maps: HostMaps::default() };
         let text = configuration.text()?;
         let config = configuration.parse(&text)?;
         if let Some(folder) = &config.maps {
             let maps = HostMaps::read(folder);
-            configuration.maps = maps.map_err(refused)?;
+            configuration.maps = maps.map_err(|faults| Error::report_of(&faults))?;
         }
         configuration.check_levels(&text)?;
         Ok((configuration, config))
+    }
+
+    /// `None` if the system has no folder for it.
+    fn file(&self) -> Option<PathBuf> {
+        self.options.config.clone().or_else(|| configuration_file("serve.toml"))
     }
 
     /// Reads the file again at each hang-up. If the file has a fault, the configuration stays unchanged.
@@ -243,7 +233,7 @@ impl Configuration {
                 Ok(config) => {
                     logging.set_filter(&config.log);
                     let fixed = live.replace(config);
-                    logging::reloaded(self.file.as_deref(), &fixed);
+                    logging::reloaded(self.file().as_deref(), &fixed);
                 }
                 Err(error) => error.to_string().lines().for_each(logging::configuration_fault),
             }
@@ -260,10 +250,11 @@ impl Configuration {
 
     fn parse(&self, text: &str) -> Result<Config, Error> {
         let mut config = Config::parse(text, &self.file_name())?;
-        config.listen = self.listen.unwrap_or(config.listen);
-        config.maps = self.maps_folder.clone().or(config.maps);
-        config.web = self.web.or(config.web);
-        config.recordings.clone_from(&self.recordings);
+        let Serve { listen, maps, web, record_room, .. } = &self.options;
+        config.listen = listen.unwrap_or(config.listen);
+        config.maps = maps.clone().or(config.maps);
+        config.web = web.or(config.web);
+        config.recordings.clone_from(record_room);
         Ok(config)
     }
 
@@ -273,11 +264,10 @@ impl Configuration {
 
     /// The content of the file; empty if the default file does not exist.
     fn text(&self) -> Result<String, Error> {
-        let Some(file) = &self.file else { return Ok(String::new()) };
-        match private::read_text(file, MAX_BYTES) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
-                Ok(String::new())
-            }
+        let Some(file) = self.file() else { return Ok(String::new()) };
+        let is_named = self.options.config.is_some();
+        match private::read_text(&file, MAX_BYTES) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => Ok(String::new()),
             text => text.map_err(|error| {
                 Error::mistake(format!("{} can't be read: {error}", self.file_name()))
             }),
@@ -285,14 +275,7 @@ impl Configuration {
     }
 
     fn file_name(&self) -> String {
-        self.file.as_ref().map_or_else(String::new, |file| file.display().to_string())
-    }
-}
-
-fn refused(error: MapsError) -> Error {
-    match error {
-        MapsError::Sentence(sentence) => Error::mistake(sentence),
-        MapsError::Report(text) => Error::report_of(&text),
+        self.file().map_or_else(String::new, |file| file.display().to_string())
     }
 }
 
