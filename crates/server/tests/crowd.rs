@@ -2,7 +2,7 @@
 //! client that reads meanwhile.
 //!
 //! The clients run in another process, so that their memory does not count.
-//! `cargo test --features serve --test crowd -- --nocapture` prints the figures.
+//! `cargo test -p cellcaster-server --test crowd -- --nocapture` prints the figures.
 
 use std::net::SocketAddr;
 use std::process::{Child, Command};

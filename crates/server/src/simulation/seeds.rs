@@ -14,7 +14,7 @@
 //! - other visitors have received only the printable characters of a visitor's input;
 //! - no task is left over.
 //!
-//! A failed run prints its seed. `SEED=n cargo test --features serve --lib simulation` repeats it: exactly if
+//! A failed run prints its seed. `SEED=n cargo test -p cellcaster-server --lib simulation` repeats it: exactly if
 //! the worker is not slow, and otherwise to within a few milliseconds.
 
 mod faults;
@@ -199,7 +199,7 @@ fn play_all(seeds: std::ops::Range<u64>) {
     let seeds = named.map_or(seeds, |seed| seed..seed + 1);
     for seed in seeds {
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| play(seed))) {
-            eprintln!("SEED={seed} cargo test --features serve --lib simulation");
+            eprintln!("SEED={seed} cargo test -p cellcaster-server --lib simulation");
             resume_unwind(panic);
         }
     }

@@ -78,7 +78,8 @@ fn operators_see_and_reach_visitors_on_all_hosts() {
         assert_eq!(hosts.answer(remove("P2")).await, (AdminReply::Count(1), vec![]));
         assert!(matches!(hosts.visitors[2].notice().await, Notice::Removed(_)));
         // A faulty request is faulty on every host, so the first host does not ask the others.
-        let fault = hosts.operators[0].answer(&remove("\u{1b}")).await;
+        let say = AdminRequest::Say { text: "\u{1b}".to_owned() };
+        let fault = hosts.operators[0].answer(&say).await;
         assert!(matches!(fault, AdminReply::Fault(_)), "{fault:?}");
         // A drain ends only one host.
         assert_eq!(hosts.operators[0].answer(&AdminRequest::Drain).await, AdminReply::Count(1));
