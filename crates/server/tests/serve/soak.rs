@@ -18,19 +18,17 @@ use cellcaster_server::sessions::driver::{GameHost, HostParts};
 use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
 use cellcaster_server::visitors::Visitors;
-use russh::Error;
-use russh::client::{self, Handler};
-use russh::keys::PublicKeyOrCertificate;
+use russh::client;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::oneshot;
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
-use self::wanderer::Leaving;
+use self::wanderer::{Anyone, Leaving};
 use crate::transport::{TIMEOUT, folder};
 
 #[path = "../support/wanderer.rs"]
-mod wanderer;
+pub(crate) mod wanderer;
 
 /// A server with access to its internal counts.
 struct Counted {
@@ -40,9 +38,6 @@ struct Counted {
     visitors: Visitors,
     rooms: Box<dyn Fn() -> Vec<RoomRow>>,
 }
-
-/// Accepts any server key.
-struct Anyone;
 
 /// The objects that a server holds.
 #[derive(Debug, PartialEq, Eq)]
@@ -169,14 +164,6 @@ async fn provoke(address: SocketAddr) {
     channel.request_shell(false).await.unwrap();
     let answers = b"\x1bP>|XTerm(390)\x1b\\".repeat(100);
     while channel.data(&answers[..]).await.is_ok() {}
-}
-
-impl Handler for Anyone {
-    type Error = Error;
-
-    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
-        Ok(true)
-    }
 }
 
 /// Lets clients come and go; returns how many left in each way.

@@ -27,7 +27,7 @@ pub(crate) enum Leaving {
 }
 
 /// Accepts any server key.
-struct Anyone;
+pub(crate) struct Anyone;
 
 struct Wanderer {
     /// Kept until the end, because dropping it ends the connection.

@@ -223,21 +223,10 @@ fn hosts_racing_for_a_lease_have_one_winner() {
     let mut last = 0;
     for round in 0..20 {
         let time = if round % 2 == 0 { SHORT / 10 } else { LONG };
-        let barrier = std::sync::Barrier::new(4);
-        let taken: Vec<Lease> = std::thread::scope(|scope| {
-            let threads: Vec<_> = ["a", "b", "c", "d"]
-                .into_iter()
-                .map(|host| {
-                    let (barrier, address) = (&barrier, &address);
-                    scope.spawn(move || {
-                        let mut store = HostStore::connect(address).unwrap();
-                        barrier.wait();
-                        store.acquire("cellar", host, time, 0).unwrap()
-                    })
-                })
-                .collect();
-            threads.into_iter().filter_map(|thread| thread.join().unwrap()).collect()
+        let taken = postgres::at_once(&address, 4, |host, store| {
+            store.acquire("cellar", &host.to_string(), time, 0).unwrap()
         });
+        let taken: Vec<Lease> = taken.into_iter().flatten().collect();
         // A short lease may end before the last host asks.
         assert!(taken.len() == 1 || (round % 2 == 0 && !taken.is_empty()), "{taken:?}");
         let mut epochs: Vec<u64> = taken.iter().map(|lease| lease.epoch).collect();

@@ -19,7 +19,7 @@ fn place(address: &str) -> &str {
 }
 
 /// Runs `act` on several hosts at once, each with a store of its own, and returns their answers.
-fn at_once<T: Send>(
+pub(crate) fn at_once<T: Send>(
     address: &str,
     hosts: u8,
     act: impl Fn(u8, &mut HostStore) -> T + Sync,

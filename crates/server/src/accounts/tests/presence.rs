@@ -128,23 +128,11 @@ fn simultaneous_visits_do_not_exceed_the_limit() {
     let address = postgres_server::PostgresServer::shared().address();
     let hosts = ["a", "b", "c", "d", "e", "f"];
     announce(&mut HostStore::connect(&address).unwrap(), &hosts);
-    let barrier = std::sync::Barrier::new(hosts.len());
-    let begun: Vec<Result<VisitId, Duration>> = std::thread::scope(|scope| {
-        let threads: Vec<_> = hosts
-            .into_iter()
-            .map(|host| {
-                let (barrier, address) = (&barrier, &address);
-                scope.spawn(move || {
-                    let mut store = HostStore::connect(address).unwrap();
-                    barrier.wait();
-                    let mut begin = || store.begin_visit(host, &ada(), 7, LONG).unwrap();
-                    [begin(), begin(), begin()]
-                })
-            })
-            .collect();
-        threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+    let begun = postgres::at_once(&address, 6, |host, store| {
+        let host = hosts[usize::from(host) - 1];
+        let mut begin = || store.begin_visit(host, &ada(), 7, LONG).unwrap();
+        [begin(), begin(), begin()]
     });
-    let begun = begun.iter().flatten().count();
-    assert_eq!(begun, 7);
+    assert_eq!(begun.as_flattened().iter().flatten().count(), 7);
     assert_eq!(HostStore::connect(&address).unwrap().visits(LONG).unwrap().len(), 7);
 }

@@ -7,8 +7,6 @@ use rustix::process::Signal;
 use crate::play::enter_room;
 use crate::player::Player;
 use crate::running::{Running, user_key};
-use crate::support::server;
-use crate::transport::folder;
 
 fn say(player: &Player, line: &str) {
     player.send("/");
@@ -158,23 +156,5 @@ fn moderators_named_in_the_configuration_mute_and_kick() {
         "kicked moderator=\"Mara\"",
     ] {
         running.wait_for_log(event);
-    }
-}
-
-#[test]
-fn mistakes_in_mutes_are_explained_in_a_sentence() {
-    let folder = folder();
-    for (arguments, said) in [
-        (&["mutes"][..], "contains no store of a host"),
-        (&["mute", "ada"], "contains no store of a host"),
-        (&["mute", "ada", "--for", "7"], "--for takes a number with m, h, d or w"),
-        (&["mute"], "--session <ID>>; "),
-        (&["unmute", "--session", "3f9a-7"], "unknown option --session"),
-    ] {
-        let output =
-            server(&["admin"]).args(arguments).arg("--data").arg(&folder).output().unwrap();
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}");
-        assert!(error.contains(said) && error.lines().count() == 1, "{arguments:?}: {error}");
     }
 }

@@ -2,22 +2,12 @@
 
 use std::sync::Arc;
 
-use russh::client::{self, AuthResult, Handle, Handler};
-use russh::keys::PublicKeyOrCertificate;
-use russh::{ChannelMsg, Error};
+use russh::ChannelMsg;
+use russh::client::{self, AuthResult, Handle};
 use tokio::runtime::Runtime;
 
 use super::house::House;
-
-pub(crate) struct Anyone;
-
-impl Handler for Anyone {
-    type Error = Error;
-
-    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
-        Ok(true)
-    }
-}
+use crate::soak::wanderer::Anyone;
 
 async fn connect(house: &House) -> Handle<Anyone> {
     client::connect(Arc::default(), house.address, Anyone).await.unwrap()

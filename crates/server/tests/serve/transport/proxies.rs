@@ -14,8 +14,8 @@ use tokio::io::AsyncWriteExt;
 use tokio::net::TcpSocket;
 use tokio::runtime::Runtime;
 
-use super::awkward::Anyone;
 use super::house::{House, TIMEOUT};
+use crate::soak::wanderer::Anyone;
 
 const PROXY: [u8; 4] = [127, 0, 0, 9];
 const LOCAL: &[u8] = b"\r\n\r\n\0\r\nQUIT\n\x20\0\0\0";
