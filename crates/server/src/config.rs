@@ -53,7 +53,7 @@ pub struct Config {
     #[serde(deserialize_with = "host_name")]
     pub name: String,
     /// The message of the day: one line, shown in the lobby; may be empty.
-    #[serde(deserialize_with = "message")]
+    #[serde(deserialize_with = "line::<MAX_MESSAGE_LENGTH, _>")]
     pub message: String,
     /// The events that are logged.
     #[serde(deserialize_with = "log")]
@@ -477,10 +477,6 @@ fn host_name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     let name = line::<MAX_NAME_LENGTH, D>(from)?;
     let is_empty = name.trim().is_empty();
     if is_empty { Err(D::Error::custom("the name of the host is empty")) } else { Ok(name) }
-}
-
-fn message<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
-    line::<MAX_MESSAGE_LENGTH, D>(from)
 }
 
 /// One line of at most `LONGEST` characters.

@@ -77,6 +77,18 @@ pub mod ssh;
 pub mod visitors;
 mod web;
 
+mod queue {
+    use std::collections::VecDeque;
+
+    /// Adds an item to a queue of at most `most` items. The oldest item makes room for it.
+    pub(crate) fn push_within<T>(queue: &mut VecDeque<T>, item: T, most: usize) {
+        queue.push_back(item);
+        if queue.len() > most {
+            queue.pop_front();
+        }
+    }
+}
+
 mod lock {
     use std::sync::{Mutex, PoisonError};
 

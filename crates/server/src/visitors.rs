@@ -22,6 +22,7 @@ use crate::accounts::{
     AccountKey, Ban, BanTarget, Identity, Name, UnixTime, applying, serialized_as_text,
 };
 use crate::lock::locked;
+use crate::queue::push_within;
 
 /// The visitors of a server. Clones share the same list.
 #[derive(Clone, Debug, Default)]
@@ -369,19 +370,21 @@ impl Drop for Presence {
 }
 
 impl NoticeQueue {
-    fn say(&self, line: &str) {
-        locked(&self.notices, |notices| push(&mut notices.lines, line.to_owned()));
+    fn change(&self, act: impl FnOnce(&mut Notices)) {
+        locked(&self.notices, act);
         self.changed.notify_one();
+    }
+
+    fn say(&self, line: &str) {
+        self.change(|notices| push_within(&mut notices.lines, line.to_owned(), MAX_LINES));
     }
 
     fn hear(&self, line: Heard) {
-        locked(&self.notices, |notices| push(&mut notices.heard, line));
-        self.changed.notify_one();
+        self.change(|notices| push_within(&mut notices.heard, line, MAX_LINES));
     }
 
     fn remove(&self, sentence: &str) {
-        locked(&self.notices, |notices| notices.removed = Some(sentence.to_owned()));
-        self.changed.notify_one();
+        self.change(|notices| notices.removed = Some(sentence.to_owned()));
     }
 
     /// Takes the next notice. A removal comes before any lines, and lines of the operator before others.
@@ -391,13 +394,6 @@ impl NoticeQueue {
             let said = || notices.lines.pop_front().map(Notice::Said);
             removed.or_else(said).or_else(|| notices.heard.pop_front().map(Notice::Heard))
         })
-    }
-}
-
-fn push<T>(queue: &mut VecDeque<T>, line: T) {
-    queue.push_back(line);
-    if queue.len() > MAX_LINES {
-        queue.pop_front();
     }
 }
 

@@ -15,7 +15,6 @@
 //! is out of date.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -356,15 +355,9 @@ fn key_name(key: &Key) -> String {
         Key::Room(room) => format!("{ROOMS}{room}"),
         Key::Checkpoint(room) => format!("checkpoint.{room}"),
         Key::Standing(hash) => format!("standing.{hash}"),
-        Key::Place(key) => format!("place.{}", hex(key.bytes())),
+        Key::Place(key) => {
+            let digits = key.bytes().map(|byte| format!("{byte:02x}"));
+            format!("place.{}", digits.concat())
+        }
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        // Writing to a string cannot fail.
-        _ = write!(text, "{byte:02x}");
-    }
-    text
 }

@@ -13,6 +13,7 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
 use super::message::{Check, LogMessage, reader, to_bytes};
+use crate::queue::push_within;
 use crate::rooms::room::{Catalog, Entry, Header, Room};
 use crate::rooms::sequencer::{Changes, Recording, RoundLog};
 use cellcaster::game::STEPS_PER_SECOND;
@@ -113,10 +114,8 @@ impl RoomState {
             all.add(changes);
             self.tick += 1;
             if self.tick.is_multiple_of(CHECKED) {
-                self.sums.push_back(Check { tick: self.tick, sum: self.room.checksum() });
-                if self.sums.len() > MAX_SUMS {
-                    self.sums.pop_front();
-                }
+                let check = Check { tick: self.tick, sum: self.room.checksum() };
+                push_within(&mut self.sums, check, MAX_SUMS);
             }
         }
         all

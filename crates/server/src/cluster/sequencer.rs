@@ -23,6 +23,7 @@ use super::message::{LogMessage, PeerMessage, RequestedMember, Token};
 use super::room_state::RoomState;
 use crate::accounts::Lease;
 use crate::line::Line;
+use crate::queue::push_within;
 use crate::rooms::room::{Command, Entry, MemberId, Room};
 use crate::rooms::sequencer::Inbox;
 use crate::rooms::summary::RoomRefusal;
@@ -203,10 +204,8 @@ impl ClusterSequencer {
             self.inbox.keep(member);
         }
         self.claimed.insert(member, now);
-        self.joining.push_back(Joining { token, member, color: None, is_in: false });
-        if self.joining.len() > MAX_REQUESTS {
-            self.joining.pop_front();
-        }
+        let request = Joining { token, member, color: None, is_in: false };
+        push_within(&mut self.joining, request, MAX_REQUESTS);
         None
     }
 
@@ -229,11 +228,8 @@ impl ClusterSequencer {
             }
             return None;
         }
-        let decision = Decision::Open;
-        self.returning.push_back(Returning { token, member, since: now, decision });
-        if self.returning.len() > MAX_REQUESTS {
-            self.returning.pop_front();
-        }
+        let request = Returning { token, member, since: now, decision: Decision::Open };
+        push_within(&mut self.returning, request, MAX_REQUESTS);
         if self.away.contains(&member) {
             self.take_back(token, member, now);
         }

@@ -14,7 +14,7 @@
 //!   taken;
 //! - nobody takes the place of a player who plays.
 //!
-//! A failed run prints its seed. `SEED=n cargo test --features cluster-tests --lib cluster::simulation` repeats
+//! A failed run prints its seed. `SEED=n cargo test -p cellcaster-server --lib cluster::simulation` repeats
 //! it. `CLUSTER_SEEDS=1000` plays a thousand seeds instead of [`SEEDS`].
 
 mod bus;
@@ -217,9 +217,7 @@ fn hosts_agree_despite_any_fault() {
         match catch_unwind(AssertUnwindSafe(|| play(seed))) {
             Ok(more) => figures = array::from_fn(|index| figures[index] + more[index]),
             Err(panic) => {
-                eprintln!(
-                    "SEED={seed} cargo test --features cluster-tests --lib cluster::simulation"
-                );
+                eprintln!("SEED={seed} cargo test -p cellcaster-server --lib cluster::simulation");
                 resume_unwind(panic);
             }
         }

@@ -14,6 +14,7 @@ use glam::DVec2;
 
 use crate::accounts::{AccountId, HostStore, LevelBoard, StoreFailure};
 use crate::line::Line;
+use crate::queue::push_within;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
 use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
@@ -187,10 +188,7 @@ impl KeptRuns {
         let Some((script, world)) = script.zip(world) else { return Ok(None) };
         let run = Run::played(world.as_ref().clone(), script.header().rules(), &script);
         let run = Arc::new(run);
-        self.runs.push_back((key, Arc::clone(&run)));
-        if self.runs.len() > MAX_KEPT {
-            self.runs.pop_front();
-        }
+        push_within(&mut self.runs, (key, Arc::clone(&run)), MAX_KEPT);
         Ok(Some(run))
     }
 }

@@ -48,6 +48,7 @@ pub(crate) use self::round::{Finish, Phase, Role, Standing, ordinal};
 use self::ways::ExitWays;
 use crate::accounts::Day;
 use crate::line::Line;
+use crate::queue::push_within;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 use cellcaster::world::{FieldOfView, Figure};
@@ -547,10 +548,8 @@ impl Room {
 
     fn remember(&mut self, by: Option<(Line, PlayerColor)>, text: String) {
         self.said_count += 1;
-        self.said.push_back(ChatLine { number: self.said_count, by, text });
-        if self.said.len() > SAID {
-            self.said.pop_front();
-        }
+        let line = ChatLine { number: self.said_count, by, text };
+        push_within(&mut self.said, line, SAID);
     }
 }
 

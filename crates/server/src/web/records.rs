@@ -39,6 +39,7 @@ use super::watch::Source;
 use crate::accounts::Day;
 use crate::lock::locked;
 use crate::metrics::Metrics;
+use crate::queue::push_within;
 use crate::rooms::directory::{CAST, PublicRecording, Rooms};
 use crate::rooms::replayed::RoomRecord;
 use crate::rooms::room::{Catalog, Header, Room, is_of_other_version};
@@ -361,18 +362,11 @@ impl WatchedRecord {
         });
         let piece = Piece { message: message.take()?, words: said? };
         locked(&self.drawn, |drawn| {
-            push(&mut drawn.pieces, (second, piece.clone()), MAX_PIECES);
-            push(&mut drawn.rooms, (cursor, room), MAX_ROOMS);
+            push_within(&mut drawn.pieces, (second, piece.clone()), MAX_PIECES);
+            push_within(&mut drawn.rooms, (cursor, room), MAX_ROOMS);
         });
         Some(piece)
     }
-}
-
-fn push<T>(queue: &mut VecDeque<T>, item: T, most: usize) {
-    if queue.len() >= most {
-        queue.pop_front();
-    }
-    queue.push_back(item);
 }
 
 /// The messages about a record for one browser.

@@ -11,6 +11,7 @@ use super::Mode;
 use super::ways::ExitWays;
 use crate::accounts::Day;
 use crate::lock::locked;
+use crate::queue::push_within;
 use crate::rooms::maps::HostMaps;
 use cellcaster::app::store::name_in_map_key;
 use cellcaster::map::builtin;
@@ -136,10 +137,7 @@ impl Catalog {
                 return Some(Arc::clone(level));
             }
             let level = Arc::new(Level::new(&day.level(), Arc::new(day.world().ok()?)));
-            dailies.push_back((day, Arc::clone(&level)));
-            if dailies.len() > MAX_DAILIES {
-                dailies.pop_front();
-            }
+            push_within(dailies, (day, Arc::clone(&level)), MAX_DAILIES);
             Some(level)
         })
     }
