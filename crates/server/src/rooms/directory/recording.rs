@@ -212,7 +212,7 @@ impl Recording for RecordedRoom {
             let is_private = self.is_private || header.mode == Mode::Alone;
             let kind = if is_private { PRIVATE } else { PUBLIC };
             let name = format!("{kind}{}", self.room);
-            self.file = RecordedFile::create(&self.folder, |folder| new_file(folder, &name))
+            self.file = RecordedFile::create(&self.folder, |folder| folder.free_path(&name))
                 .inspect_err(|error| {
                     tracing::error!(%error, room = %self.room, "a room cannot be recorded");
                 })
@@ -264,8 +264,7 @@ impl RecordedRoom {
     fn draw(&mut self, room: &RoomView) -> io::Result<()> {
         if let (RecordedCast::Awaited, Some(log)) = (&self.cast, &self.file) {
             let path = log.path.with_extension(CAST);
-            let mut file =
-                RecordedFile::create(&self.folder, |_| create(&path).map(|it| (path.clone(), it)))?;
+            let mut file = RecordedFile::create(&self.folder, |_| path)?;
             file.write(&Cast::header())?;
             self.cast = RecordedCast::Drawn(Box::new(Cast::new()), file);
         }
@@ -275,40 +274,35 @@ impl RecordedRoom {
 }
 
 impl RecordedFile {
-    /// Creates a new file in the folder with `create`, which receives the folder.
+    /// Creates a new file in the folder. It contains the players' chat, so only its owner can read it.
     fn create(
         folder: &Arc<RecordingFolder>,
-        create: impl FnOnce(&Path) -> io::Result<(PathBuf, File)>,
+        path: impl FnOnce(&RecordingFolder) -> PathBuf,
     ) -> io::Result<Self> {
         private::create_folder(&folder.path)?;
         if !folder.take(1) {
             return Err(io::ErrorKind::QuotaExceeded.into());
         }
-        let created = create(&folder.path);
-        let (path, file) =
-            created.inspect_err(|_| locked(&folder.held, |held| held.blocks -= 1))?;
+        // Making room may have freed a name.
+        let path = path(folder);
+        let mut options = OpenOptions::new();
+        private::restrict_file(&mut options);
+        let file = options.write(true).create_new(true).open(&path);
+        let file = file.inspect_err(|_| locked(&folder.held, |held| held.blocks -= 1))?;
         locked(&folder.held, |held| held.written.insert(path.clone()));
         Ok(Self { folder: Arc::clone(folder), path, output: BufWriter::new(file), bytes: 0 })
     }
 
     /// Writes all of `text` or, with the error `QuotaExceeded`, nothing.
     fn write(&mut self, text: &str) -> io::Result<()> {
-        if self.has_room_for(text.len() as u64) {
-            return self.output.write_all(text.as_bytes());
+        let bytes = self.bytes + text.len() as u64;
+        let more = blocks(bytes) - blocks(self.bytes);
+        if bytes > MAX_RECORDED_BYTES || !self.folder.take(more) {
+            let reason = "it ends here, because the recordings have reached their limit of bytes";
+            return Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason));
         }
-        let reason = "it ends here, because the recordings have reached their limit of bytes";
-        Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason))
-    }
-
-    /// Reserves space in the folder for `more` bytes; returns false if there is not enough.
-    fn has_room_for(&mut self, more: u64) -> bool {
-        let bytes = self.bytes + more;
-        let has_room =
-            bytes <= MAX_RECORDED_BYTES && self.folder.take(blocks(bytes) - blocks(self.bytes));
-        if has_room {
-            self.bytes = bytes;
-        }
-        has_room
+        self.bytes = bytes;
+        self.output.write_all(text.as_bytes())
     }
 }
 
@@ -335,6 +329,20 @@ impl RecordingFolder {
         let folder = Self { path, bounds, held: Mutex::new(held) };
         folder.take(0);
         folder
+    }
+
+    /// The path of a new log whose name begins with `name`.
+    fn free_path(&self, name: &str) -> PathBuf {
+        // A cast may be older than its log by one write, and therefore stay longer.
+        let is_taken = |path: &Path| path.exists() || path.with_extension(CAST).exists();
+        let mut path = self.path.join(format!("{name}.{LOG}"));
+        for number in 1_u64.. {
+            if !is_taken(&path) {
+                break;
+            }
+            path = self.path.join(format!("{name}-{number}.{LOG}"));
+        }
+        path
     }
 
     /// Removes recordings that are too old or exceed the limit, then reserves `more` blocks. Returns whether
@@ -400,29 +408,6 @@ fn remove(path: &Path) {
         }
         _ => {}
     }
-}
-
-/// Creates a file. It contains the players' chat, so only its owner can read it.
-fn create(path: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    private::restrict_file(&mut options);
-    options.write(true).create_new(true).open(path)
-}
-
-fn new_file(folder: &Path, name: &str) -> io::Result<(PathBuf, File)> {
-    for number in 0.. {
-        let suffix = if number == 0 { String::new() } else { format!("-{number}") };
-        let path = folder.join(format!("{name}{suffix}.{LOG}"));
-        // A cast may be older than its log by one write, and therefore stay longer.
-        if path.with_extension(CAST).exists() {
-            continue;
-        }
-        match create(&path) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            opened => return opened.map(|file| (path, file)),
-        }
-    }
-    Err(io::ErrorKind::AlreadyExists.into())
 }
 
 #[cfg(test)]
