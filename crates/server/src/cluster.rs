@@ -39,12 +39,11 @@ use std::io;
 use std::sync::{Arc, Mutex};
 
 use tokio::sync::watch;
-use tokio::time::Instant;
 
 use self::bus::Bus;
 pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::host::{HostContext, shown_name};
-use self::leases::{BATCH_DELAY, Leases, MAX_CALLS};
+use self::leases::{Leases, MAX_CALLS};
 use self::nats::NatsBus;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
@@ -82,8 +81,7 @@ impl Cluster {
         // Start the threads before anything can fail, because dropping a database blocks, too.
         let leases = StoreWorker::start("leases", MAX_CALLS, leases).map_err(no_thread);
         let presence = StoreWorker::start("visits", MAX_CALLS, presence).map_err(no_thread);
-        let (host, batch_delay) = (notice.name.clone(), BATCH_DELAY);
-        let leases = Leases { store: leases?, host, batch_delay, renewals: Arc::default() };
+        let leases = Leases::new(leases?, notice.name.clone());
         let visits = Visits::new(presence?, notice.clone());
         let bus = Box::new(NatsBus::connect(address).await?);
         // If the system had no random numbers, there would be no keys, either.
@@ -103,7 +101,6 @@ impl Cluster {
         // A host has at most one name.
         _ = load.metrics.host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
-            begun: Instant::now(),
             bus,
             leases,
             visits,
@@ -114,7 +111,6 @@ impl Cluster {
             visitors,
             chance: Mutex::new(SplitMix64::new(seed)),
             ending: watch::Sender::new(false),
-            written: Mutex::default(),
         };
         SharedRooms::new(Arc::new(context), rooms.clone(), standing)
     }

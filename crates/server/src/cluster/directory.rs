@@ -19,10 +19,11 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use tokio::sync::{mpsc, oneshot};
-use tokio::time::{Instant, interval, sleep, timeout};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep, timeout};
 
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
+use super::leases::RENEWAL_INTERVAL;
 use super::message::{Record, RequestedMember, to_bytes, version};
 use super::replica::{MemberRequest, Replica};
 use super::visits::{ANNOUNCEMENT_INTERVAL, Visits};
@@ -98,6 +99,7 @@ impl SharedRooms {
         tokio::spawn(shared.clone().follow());
         tokio::spawn(shared.clone().maintain());
         tokio::spawn(shared.clone().announce());
+        tokio::spawn(shared.clone().renew_leases());
         tokio::spawn(shared.clone().compare_maps());
         shared
     }
@@ -153,6 +155,16 @@ impl SharedRooms {
         while !*self.0.context.ending.borrow() {
             periods.tick().await;
             self.visits().announce(self.0.context.visitors.count());
+        }
+    }
+
+    /// Renews the leases of this host again and again.
+    async fn renew_leases(self) {
+        let mut periods = interval(RENEWAL_INTERVAL);
+        periods.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            periods.tick().await;
+            self.0.context.leases.renew().await;
         }
     }
 

@@ -1,10 +1,8 @@
 //! The state that all rooms of a host share.
 
-use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
 use tokio::sync::watch;
-use tokio::time::Instant;
 
 use super::bus::{Bus, Key};
 use super::leases::Leases;
@@ -22,8 +20,6 @@ use cellcaster::rng::SplitMix64;
 
 /// The state that all rooms of a host share.
 pub(crate) struct HostContext {
-    /// When the host was started.
-    pub(crate) begun: Instant,
     pub(crate) bus: Box<dyn Bus>,
     pub(crate) leases: Leases,
     pub(crate) visits: Visits,
@@ -35,22 +31,12 @@ pub(crate) struct HostContext {
     pub(crate) chance: Mutex<SplitMix64>,
     /// `true` once the host ends.
     pub(crate) ending: watch::Sender<bool>,
-    /// The rooms whose logs this host writes.
-    pub(crate) written: Mutex<BTreeSet<RoomId>>,
 }
 
 impl HostContext {
     /// A random number.
     pub(crate) fn chance(&self) -> u64 {
         locked(&self.chance, SplitMix64::bits)
-    }
-
-    /// Records whether this host writes the log of a room.
-    pub(crate) fn note_writing(&self, room: RoomId, is_writing: bool) {
-        locked(
-            &self.written,
-            |rooms| if is_writing { rooms.insert(room) } else { rooms.remove(&room) },
-        );
     }
 
     /// Loads a room's record, and its state from the newest checkpoint. If this host records rooms, it records this one

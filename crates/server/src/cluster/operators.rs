@@ -21,7 +21,6 @@ use super::directory::SharedRooms;
 use super::host::shown_name;
 use crate::accounts::HostRow;
 use crate::admin::{AdminReply, AdminRequest, HostInfo};
-use crate::lock::locked;
 use cellcaster::app::store::name_in_map_key;
 
 /// The time limit for the answers of other hosts.
@@ -67,9 +66,7 @@ impl SharedRooms {
         let context = self.context();
         HostInfo {
             visitors: context.visitors.count(),
-            rooms: Some(locked(&context.written, |rooms| {
-                rooms.iter().map(|room| room.0).collect()
-            })),
+            rooms: Some(context.leases.rooms().into_iter().map(|room| room.0).collect()),
             maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
             ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
         }

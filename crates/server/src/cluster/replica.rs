@@ -31,7 +31,7 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
-use super::leases::{LEASE_DURATION, LeaseAnswer};
+use super::leases::LeaseAnswer;
 use super::message::{LogMessage, PeerMessage, Record, RequestedMember, Token, to_bytes};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
@@ -54,7 +54,7 @@ const SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 const STANDSTILL_TIMEOUT: Duration = Duration::from_millis(1_500);
 /// The least time for which a replica exists without members and watchers.
 const MIN_STAY: Duration = Duration::from_secs(3);
-/// The time between two claims, and between two renewals of the lease.
+/// The time between two claims.
 const RENEWAL_INTERVAL: Duration = Duration::from_secs(1);
 /// The time after which a request is sent again.
 const REQUEST_RETRY_INTERVAL: Duration = Duration::from_millis(500);
@@ -82,7 +82,8 @@ pub(crate) struct Replica {
     pending: Vec<PendingRequest>,
     /// The tokens of this host's members who have returned.
     tokens: BTreeMap<MemberId, Token>,
-    leasing: Leasing,
+    /// The call for the lease that is not answered yet.
+    acquiring: Option<LeaseAnswer<Option<Lease>>>,
     times: Times,
     /// `true` while it is unknown whether the log has the message that was appended last.
     is_append_unknown: bool,
@@ -126,8 +127,6 @@ struct Times {
     restored: Option<Instant>,
     claimed: Option<Instant>,
     leased: Option<Instant>,
-    /// When the lease ends if it is not renewed, by this host's clock.
-    lease_ends: Option<Instant>,
     kept: Option<Instant>,
     published: Option<Instant>,
     /// When somebody last needed the replica.
@@ -145,20 +144,12 @@ impl Times {
             restored: None,
             claimed: None,
             leased: None,
-            lease_ends: None,
             kept: None,
             published: None,
             needed: now,
             stepped: now,
         }
     }
-}
-
-/// The calls to the leases that are not answered yet.
-#[derive(Default)]
-struct Leasing {
-    acquiring: Option<LeaseAnswer<Option<Lease>>>,
-    renewing: Option<LeaseAnswer<bool>>,
 }
 
 /// The sender of a request's answer.
@@ -189,7 +180,7 @@ struct Alone {
 
 impl Drop for Replica {
     fn drop(&mut self) {
-        self.context.note_writing(self.id, false);
+        self.context.leases.drop_hold(self.id);
     }
 }
 
@@ -215,7 +206,7 @@ impl Replica {
             requests,
             pending: Vec::new(),
             tokens: BTreeMap::new(),
-            leasing: Leasing::default(),
+            acquiring: None,
             times,
             is_append_unknown: false,
             alone: None,
@@ -261,7 +252,6 @@ impl Replica {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
-        self.context.note_writing(self.id, self.sequencer.is_some());
     }
 
     /// Sends the commands of this host's members to the sequencer.
@@ -675,59 +665,33 @@ impl Replica {
 
 /// The duties of the sequencer: the lease, the messages and the checkpoints.
 impl Replica {
-    /// Renews the lease, or asks for it if no host seems to have it.
+    /// Steps down if the lease is lost, and asks for it if no host seems to have it.
     async fn keep_lease(&mut self, now: Instant) {
-        if let Some(reply) = &mut self.leasing.renewing {
-            match reply.try_recv() {
-                Err(TryRecvError::Empty) => {}
-                Ok(Ok(false)) => self.diverge(),
-                Ok(Ok(true)) => {
-                    self.note_lease();
-                    self.leasing.renewing = None;
-                }
-                // Without the database no other host gets the lease, and the log refuses a host that has lost it.
-                _ => self.leasing.renewing = None,
-            }
+        // Without the database no other host gets the lease, and the log refuses a host that has lost it.
+        if self.sequencer.is_some() && self.lease_end().is_none() {
+            self.diverge();
         }
-        if let Some(reply) = &mut self.leasing.acquiring {
+        if let Some(reply) = &mut self.acquiring {
             match reply.try_recv() {
                 Err(TryRecvError::Empty) => return,
-                Ok(Ok(Some(lease))) => {
-                    self.note_lease();
-                    self.take_over(lease).await;
-                }
+                Ok(Ok(Some(lease))) => self.take_over(lease).await,
                 _ => {}
             }
-            self.leasing.acquiring = None;
+            self.acquiring = None;
         }
-        let leases = &self.context.leases;
-        match &self.sequencer {
-            Some(sequencer) if self.leasing.renewing.is_none() => {
-                if self.is_next_second(now) {
-                    self.leasing.renewing = Some(leases.renew(&sequencer.lease));
-                    self.times.leased = Some(now);
-                }
-            }
-            Some(_) => {}
-            None => {
-                let is_first = self.times.leased.is_none();
-                let is_time = is_first
-                    || self.is_silent(now) && is_due(self.times.leased, now, LEASE_RETRY_INTERVAL);
-                // A host that cannot write the log would keep the room from hosts that can.
-                if is_time && self.reaches_bus {
-                    self.leasing.acquiring =
-                        Some(leases.acquire(&self.id.place(), self.state.epoch));
-                    self.times.leased = Some(now);
-                }
-            }
+        let is_time = self.times.leased.is_none()
+            || self.is_silent(now) && is_due(self.times.leased, now, LEASE_RETRY_INTERVAL);
+        // A host that cannot write the log would keep the room from hosts that can.
+        if self.sequencer.is_none() && is_time && self.reaches_bus {
+            let leases = &self.context.leases;
+            self.acquiring = Some(leases.acquire(&self.id.place(), self.state.epoch));
+            self.times.leased = Some(now);
         }
     }
 
-    /// Returns true if a second of the host has begun since the lease was asked for. So all rooms of a host renew their
-    /// leases at the same time.
-    fn is_next_second(&self, now: Instant) -> bool {
-        let second = |time: Instant| time.duration_since(self.context.begun).as_secs();
-        self.times.leased.is_none_or(|leased| second(leased) < second(now))
+    /// The end of the sequencer's lease; `None` if this host does not hold it.
+    fn lease_end(&self) -> Option<Instant> {
+        self.context.leases.end_of(self.id, &self.sequencer.as_ref()?.lease)
     }
 
     /// Becomes the sequencer. Its first message begins a new epoch at the end of the log.
@@ -739,23 +703,18 @@ impl Replica {
         }
         let now = Instant::now();
         tracing::info!(room = %self.id, epoch = lease.epoch, "this host has taken over a room");
+        self.context.leases.hold(self.id, lease.clone(), self.times.leased.unwrap_or(now));
         self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
         self.times.stepped = now;
         self.is_append_unknown = !is_read;
         self.is_changed = true;
     }
 
-    /// Notes that the lease lasts from the time of the request.
-    fn note_lease(&mut self) {
-        self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_DURATION);
-    }
-
     fn step_down(&mut self) {
         if let Some(sequencer) = self.sequencer.take() {
             tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has given up a room");
         }
-        self.leasing.renewing = None;
-        self.times.lease_ends = None;
+        self.context.leases.drop_hold(self.id);
     }
 
     /// Appends the next message to the log, if one is due.

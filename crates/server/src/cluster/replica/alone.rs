@@ -150,7 +150,7 @@ impl Replica {
     }
 
     fn has_lease(&self, now: Instant) -> bool {
-        self.times.lease_ends.is_some_and(|end| now < end)
+        self.lease_end().is_some_and(|end| now < end)
     }
 
     fn has_only_own_members(&self) -> bool {

@@ -101,8 +101,7 @@ impl World {
 
     /// The leases of a host, by the clock of the database.
     pub(crate) fn leases(&self, host: usize) -> Leases {
-        let (store, host) = (self.worker(host), notice(host).name);
-        Leases { store, host, batch_delay: Duration::ZERO, renewals: Arc::default() }
+        Leases::new(self.worker(host), notice(host).name)
     }
 
     /// The visits of a host, by the same clock.
