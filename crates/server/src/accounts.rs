@@ -53,7 +53,7 @@ pub use failure::{AccountRefusal, StoreFailure};
 pub use known::KnownPlayers;
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
-pub use presence::{HostNotice, HostRow, Visit, VisitId};
+pub use presence::{HostNotice, HostRow, VisitId};
 pub use rate::{AccountRate, Origin};
 pub use results::{
     LevelBoard, LevelScore, MAX_SCRIPT_BYTES, MAX_SCRIPT_STEPS, Unverified, VerifiedRun, verify,

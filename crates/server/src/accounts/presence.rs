@@ -12,9 +12,11 @@
 //! Rejected: a counter for each visitor. The counts of a killed host would stay forever. Also rejected: a time for
 //! each visit that the host renews. A host with a thousand visitors would write a thousand rows each time.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use rusqlite::params;
+use serde_json::{Map, Value};
 
 use super::lease::milliseconds;
 use super::statements::Row;
@@ -23,17 +25,6 @@ use super::{HostStore, StoreFailure};
 /// The number of a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VisitId(pub(crate) i64);
-
-/// A visit that counts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Visit {
-    /// Its number.
-    pub id: VisitId,
-    /// The host.
-    pub host: String,
-    /// The key or the range of addresses that it counts against.
-    pub visitor: String,
-}
 
 /// A host's information about itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,70 +50,68 @@ pub struct HostRow {
 
 /// The visits and hosts of a cluster. In each method, a host is present if it has announced itself in the last `time`.
 impl HostStore {
-    /// Begins a visit if fewer than `most` visits of the visitor count. Otherwise returns a time in which the hosts of
-    /// at least `most` counting visits have announced themselves.
+    /// Begins a visit by each of `limits`: a visitor, and the most visits of theirs that may count. If a limit is
+    /// reached, begins none. Then returns the index of that limit, and a time in which the hosts of at least as many
+    /// counting visits have announced themselves.
     ///
     /// # Errors
     /// If the store can't be asked. All methods share this error. If the failure says that a change may be kept or not,
-    /// the visit may count.
-    pub fn begin_visit(
+    /// the visits may count.
+    pub fn begin_visits(
         &mut self,
         host: &str,
-        visitor: &str,
-        most: u32,
+        limits: &[(String, u32)],
         time: Duration,
-    ) -> Result<Result<VisitId, Duration>, StoreFailure> {
-        let Some(others) = most.checked_sub(1) else {
-            return Ok(Err(Duration::ZERO));
-        };
+    ) -> Result<Result<Vec<VisitId>, (usize, Duration)>, StoreFailure> {
         let in_the_way = "SELECT (SELECT ms FROM clock) - seen_at \
                           FROM visits JOIN hosts ON hosts.name = visits.host \
                           WHERE visitor = ?1 AND seen_at > (SELECT ms FROM clock) - ?2 \
                           ORDER BY seen_at DESC LIMIT 1 OFFSET ?3";
         let insert = "INSERT INTO visits (host, visitor) VALUES (?1, ?2) RETURNING id";
         self.database.change_rows(|it| {
-            // Transactions that count the same visits wait for each other. While the table is short, a serializable
-            // transaction would also conflict with transactions that count other visits.
-            it.lock(&format!("visits of {visitor}"))?;
-            let row = it.row(in_the_way, params![visitor, milliseconds(time), others])?;
-            if let Some(row) = row {
-                return Ok(Err(Duration::from_millis(row.count(0)?)));
+            for (index, (visitor, most)) in limits.iter().enumerate() {
+                let Some(others) = most.checked_sub(1) else {
+                    return Ok(Err((index, Duration::ZERO)));
+                };
+                // Transactions that count the same visits wait for each other. While the table is short, a
+                // serializable transaction would also conflict with transactions that count other visits.
+                it.lock(&format!("visits of {visitor}"))?;
+                let row = it.row(in_the_way, params![visitor, milliseconds(time), others])?;
+                if let Some(row) = row {
+                    return Ok(Err((index, Duration::from_millis(row.count(0)?))));
+                }
             }
-            let row = it.row(insert, params![host, visitor])?;
-            let row =
-                row.ok_or_else(|| StoreFailure::new("the host's store did not record the visit"))?;
-            Ok(Ok(VisitId(row.get(0)?)))
+            let begun = limits.iter().map(|(visitor, _)| {
+                let row = it.row(insert, params![host, visitor])?;
+                let row = row.ok_or_else(|| {
+                    StoreFailure::new("the host's store did not record the visit")
+                })?;
+                Ok(VisitId(row.get(0)?))
+            });
+            begun.collect::<Result<_, _>>().map(Ok)
         })
     }
 
-    /// Ends a visit.
+    /// Ends the visits of a host, except for those in `kept`.
     ///
     /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
-    pub fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure> {
-        let sql = "DELETE FROM visits WHERE id = ?1";
-        self.database.once(|it| it.execute(sql, params![visit.0]).map(|_| ()))
-    }
-
-    /// The visits that count, in the order in which they began.
-    ///
-    /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
-    pub fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure> {
-        let sql = "SELECT id, host, visitor FROM visits JOIN hosts ON hosts.name = visits.host \
-                   WHERE seen_at > (SELECT ms FROM clock) - ?1 ORDER BY id";
-        let rows = self.database.once(|it| it.rows(sql, params![milliseconds(time)]))?;
-        let visit = |row: &Row| {
-            let (id, host, visitor) = (VisitId(row.get(0)?), row.get(1)?, row.get(2)?);
-            Ok(Visit { id, host, visitor })
-        };
-        rows.iter().map(visit).collect()
+    /// See [`begin_visits`](Self::begin_visits).
+    pub fn end_other_visits(
+        &mut self,
+        host: &str,
+        kept: &BTreeSet<VisitId>,
+    ) -> Result<(), StoreFailure> {
+        let sql = "DELETE FROM visits WHERE host = ?1 AND id NOT IN \
+                   (SELECT CAST(kept.key AS BIGINT) FROM json_each(?2) AS kept)";
+        let kept: Map<_, _> = kept.iter().map(|id| (id.0.to_string(), Value::Null)).collect();
+        let kept = Value::from(kept).to_string();
+        self.database.once(|it| it.execute(sql, params![host, kept]).map(|_| ()))
     }
 
     /// Stores a host's notice in place of its previous one.
     ///
     /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
+    /// See [`begin_visits`](Self::begin_visits).
     pub fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure> {
         const DAY: Duration = Duration::from_hours(24);
         // Remove hosts that have not come back.
@@ -144,7 +133,7 @@ impl HostStore {
     /// Forgets a host that ends, and all of its visits.
     ///
     /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
+    /// See [`begin_visits`](Self::begin_visits).
     pub fn leave(&mut self, host: &str) -> Result<(), StoreFailure> {
         self.database.once(|it| {
             it.execute("DELETE FROM hosts WHERE name = ?1", params![host])?;
@@ -155,7 +144,7 @@ impl HostStore {
     /// The present hosts, by name.
     ///
     /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
+    /// See [`begin_visits`](Self::begin_visits).
     pub fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure> {
         let sql = "SELECT name, version, address, load, (SELECT ms FROM clock) - seen_at \
                    FROM hosts WHERE seen_at > (SELECT ms FROM clock) - ?1 ORDER BY name";

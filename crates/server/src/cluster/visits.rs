@@ -43,8 +43,15 @@ struct VisitsState {
     store: StoreWorker,
     /// Locked only by calls to the store.
     registry: Mutex<Registry>,
-    /// The visits that must still be ended in the database.
-    ended: Mutex<Vec<VisitId>>,
+    counting: Mutex<Counting>,
+}
+
+/// The visits of this host that count and have not ended.
+#[derive(Debug, Default)]
+struct Counting {
+    ids: BTreeSet<VisitId>,
+    /// `true` if the database may have more visits of this host.
+    is_unsure: bool,
 }
 
 /// A visit that counts on all hosts until it is dropped.
@@ -82,14 +89,10 @@ struct TooMany {
     ago: Duration,
 }
 
-/// The visits of this host, as the database should have them.
+/// The announcements of this host.
 #[derive(Debug)]
 struct Registry {
     notice: HostNotice,
-    /// The visits that count and have not ended.
-    counting: BTreeSet<VisitId>,
-    /// `true` if the database may have visits of this host that no session holds.
-    is_unsure: bool,
     /// `true` if the last call to the database failed.
     is_away: bool,
     has_left: bool,
@@ -98,14 +101,8 @@ struct Registry {
 impl Visits {
     /// Starts without visits, for the host of `notice`.
     pub(crate) fn new(store: StoreWorker, notice: HostNotice) -> Self {
-        let counting = BTreeSet::new();
-        let registry =
-            Registry { notice, counting, is_unsure: false, is_away: false, has_left: false };
-        Self(Arc::new(VisitsState {
-            store,
-            registry: Mutex::new(registry),
-            ended: Mutex::default(),
-        }))
+        let registry = Mutex::new(Registry { notice, is_away: false, has_left: false });
+        Self(Arc::new(VisitsState { store, registry, counting: Mutex::default() }))
     }
 
     /// Begins a visit.
@@ -116,7 +113,7 @@ impl Visits {
             let visits = self.clone();
             // The call creates the guard, so that the visit of a visitor who leaves before the answer no longer counts.
             let begun = self.call(move |registry, store| {
-                let begun = registry.begin(store, &new_visit)?;
+                let begun = visits.0.begin(&registry.notice.name, store, &new_visit)?;
                 Ok::<_, StoreFailure>(begun.map(|ids| CountedVisit { ids, visits }))
             });
             let begun =
@@ -147,13 +144,12 @@ impl Visits {
     pub(crate) async fn leave(&self) {
         let left = self.call(|registry, store| {
             registry.has_left = true;
-            registry.counting.clear();
             registry.note(store.leave(&registry.notice.name));
         });
         _ = left.await;
     }
 
-    /// Ends the visits whose sessions have ended, and then runs `act`.
+    /// Ends the visits in the database that no session holds, and then runs `act`.
     fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut Registry, &mut HostStore) -> T + Send + 'static,
@@ -161,7 +157,9 @@ impl Visits {
         let inner = Arc::clone(&self.0);
         self.0.store.call(move |store| {
             locked(&inner.registry, |registry| {
-                registry.end_all(store, locked(&inner.ended, std::mem::take));
+                if !registry.is_away && !registry.has_left {
+                    inner.end_others(&registry.notice.name, store);
+                }
                 act(registry, store)
             })
         })
@@ -179,48 +177,43 @@ impl NewVisit {
 
 impl Drop for CountedVisit {
     fn drop(&mut self) {
-        locked(&self.visits.0.ended, |ended| ended.append(&mut self.ids));
+        locked(&self.visits.0.counting, |counting| {
+            self.ids.iter().for_each(|id| _ = counting.ids.remove(id));
+            counting.is_unsure = true;
+        });
         drop(self.visits.call(|_, _| ()));
     }
 }
 
-impl Registry {
+impl VisitsState {
     /// Begins a visit by the key and by the address, or by neither.
     fn begin(
-        &mut self,
+        &self,
+        host: &str,
         presence: &mut HostStore,
         new_visit: &NewVisit,
     ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
-        let mut ids = Vec::new();
-        for (visitor, most, reason) in new_visit.limits() {
-            match presence.begin_visit(&self.notice.name, &visitor, most, HOST_TIMEOUT) {
-                Ok(Ok(id)) => {
-                    self.counting.insert(id);
-                    ids.push(id);
-                }
-                Ok(Err(ago)) => {
-                    self.end_all(presence, ids);
-                    return Ok(Err(TooMany { reason, ago }));
-                }
-                Err(failure) => {
-                    self.is_unsure = true;
-                    self.end_all(presence, ids);
-                    return Err(failure);
-                }
-            }
-        }
-        Ok(Ok(ids))
+        let (limits, reasons): (Vec<_>, Vec<_>) =
+            new_visit.limits().map(|(visitor, most, reason)| ((visitor, most), reason)).unzip();
+        let begun = presence.begin_visits(host, &limits, HOST_TIMEOUT);
+        locked(&self.counting, |counting| match &begun {
+            Ok(begun) => counting.ids.extend(begun.iter().flatten()),
+            Err(_) => counting.is_unsure = true,
+        });
+        Ok(begun?.map_err(|(index, ago)| TooMany { reason: reasons[index], ago }))
     }
 
-    fn end_all(&mut self, presence: &mut HostStore, ids: Vec<VisitId>) {
-        for id in ids {
-            // When this host left, the visit ended with all others.
-            if self.counting.remove(&id) && (self.is_away || presence.end_visit(id).is_err()) {
-                self.is_unsure = true;
-            }
+    fn end_others(&self, host: &str, presence: &mut HostStore) {
+        let ids = locked(&self.counting, |counting| {
+            std::mem::take(&mut counting.is_unsure).then(|| counting.ids.clone())
+        });
+        if ids.is_some_and(|ids| presence.end_other_visits(host, &ids).is_err()) {
+            locked(&self.counting, |counting| counting.is_unsure = true);
         }
     }
+}
 
+impl Registry {
     fn announce(&mut self, presence: &mut HostStore, load: u32) {
         if self.has_left {
             return;
@@ -228,19 +221,6 @@ impl Registry {
         self.notice.load = load;
         let announced = presence.announce(&self.notice);
         self.note(announced);
-        if self.is_unsure && !self.is_away {
-            self.is_unsure = self.end_unknown(presence).is_err();
-        }
-    }
-
-    /// Ends the visits of this host that no session holds, after a call has failed.
-    fn end_unknown(&mut self, presence: &mut HostStore) -> Result<(), StoreFailure> {
-        for visit in presence.visits(HOST_TIMEOUT)? {
-            if visit.host == self.notice.name && !self.counting.contains(&visit.id) {
-                presence.end_visit(visit.id)?;
-            }
-        }
-        Ok(())
     }
 
     /// Notes whether the database answers, and logs when it stops answering.

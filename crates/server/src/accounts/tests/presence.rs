@@ -30,18 +30,25 @@ fn announce(presence: &mut HostStore, hosts: &[&str]) {
 
 /// Begins a visit that must be let in.
 fn begin(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> VisitId {
-    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
-        Ok(visit) => visit,
-        Err(ago) => panic!("too many on hosts that were there {ago:?} ago"),
+    match presence.begin_visits(host, &[(visitor.to_owned(), most)], LONG).unwrap() {
+        Ok(visits) => visits[0],
+        Err((_, ago)) => panic!("too many on hosts that were there {ago:?} ago"),
     }
 }
 
 /// Asserts a visit's refusal, and returns the age of the information behind it.
 fn refused(presence: &mut HostStore, host: &str, visitor: &str, most: u32) -> Duration {
-    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
-        Err(ago) => ago,
-        Ok(visit) => panic!("{visit:?} has begun"),
+    match presence.begin_visits(host, &[(visitor.to_owned(), most)], LONG).unwrap() {
+        Err((_, ago)) => ago,
+        Ok(visits) => panic!("{visits:?} have begun"),
     }
+}
+
+/// The hosts and the visitors of all visits.
+fn visits(presence: &mut HostStore) -> Vec<(String, String)> {
+    let sql = "SELECT host, visitor FROM visits ORDER BY id";
+    let rows = presence.database.once(|it| it.rows(sql, &[])).unwrap();
+    rows.iter().map(|row| (row.get(0).unwrap(), row.get(1).unwrap())).collect()
 }
 
 #[test]
@@ -55,17 +62,15 @@ fn a_visitor_is_limited_across_all_hosts() {
             refused(presence, host, &ada(), 2);
         }
         let third = begin(presence, "one", &network(), 1);
-        let visits = presence.visits(LONG).unwrap();
-        let shown: Vec<_> =
-            visits.iter().map(|it| (it.id, it.host.as_str(), it.visitor.clone())).collect();
-        let expected = [(first, "one", ada()), (second, "other", ada()), (third, "one", network())];
-        assert_eq!(shown, expected);
-        presence.end_visit(first).unwrap();
+        let expected = [("one", ada()), ("other", ada()), ("one", network())];
+        assert_eq!(visits(presence), expected.map(|(host, visitor)| (host.to_owned(), visitor)));
+        presence.end_other_visits("one", &[third].into()).unwrap();
+        assert_eq!(visits(presence).len(), 2);
         begin(presence, "third", &ada(), 2);
         assert_eq!(refused(presence, "third", &ada(), 0), Duration::ZERO);
         // A host that has left has no visits, and is not present.
         presence.leave("one").unwrap();
-        assert_eq!(presence.visits(LONG).unwrap().len(), 2);
+        assert_eq!(visits(presence).len(), 2);
         assert_eq!(presence.hosts(LONG).unwrap().len(), 2);
     });
 }
@@ -81,13 +86,17 @@ fn visits_count_while_their_host_is_present() {
         assert!(refused(presence, "other", &ada(), 1) < SHORT);
         // The host may have been killed, so the refusal says how old its last announcement is.
         assert!(refused(presence, "other", &network(), 1) >= SHORT * 2);
-        assert_eq!(presence.visits(SHORT).unwrap().len(), 1);
-        let begun = presence.begin_visit("other", &network(), 1, SHORT).unwrap();
+        let limits = [(ada(), 2), (network(), 1)];
+        let begun = presence.begin_visits("other", &limits, SHORT).unwrap();
         assert!(begun.is_ok(), "{begun:?}");
         // A host that was late still has its visitors.
         announce(presence, &["killed"]);
-        assert_eq!(presence.visits(SHORT).unwrap().len(), 3);
         refused(presence, "other", &network(), 2);
+        // A visit by two limits begins by both or by none.
+        let limits = [(ada(), 3), (network(), 2)];
+        let begun = presence.begin_visits("other", &limits, LONG).unwrap();
+        assert_eq!(begun.unwrap_err().0, 1);
+        assert_eq!(visits(presence).len(), 4);
     });
 }
 
@@ -130,9 +139,9 @@ fn simultaneous_visits_do_not_exceed_the_limit() {
     announce(&mut HostStore::connect(&address).unwrap(), &hosts);
     let begun = postgres::at_once(&address, 6, |host, store| {
         let host = hosts[usize::from(host) - 1];
-        let mut begin = || store.begin_visit(host, &ada(), 7, LONG).unwrap();
+        let mut begin = || store.begin_visits(host, &[(ada(), 7)], LONG).unwrap();
         [begin(), begin(), begin()]
     });
     assert_eq!(begun.as_flattened().iter().flatten().count(), 7);
-    assert_eq!(HostStore::connect(&address).unwrap().visits(LONG).unwrap().len(), 7);
+    assert_eq!(visits(&mut HostStore::connect(&address).unwrap()).len(), 7);
 }

@@ -66,11 +66,13 @@ impl Hosts {
         locked(&self.database, |database| database.is_away = is_away);
     }
 
-    /// The number of visits that count. Each visitor has one by the key and one by the address.
-    fn count(&self) -> usize {
+    /// The number of visits. Each visitor has one by the key and one by the address.
+    fn count(&self) -> i64 {
         locked(&self.database, |database| {
             database.pass();
-            database.store.visits(HOST_TIMEOUT).unwrap().len()
+            let connection = database.store.connection();
+            let sql = "SELECT count(*) FROM visits";
+            connection.query_row(sql, [], |row| row.get::<_, i64>(0)).unwrap()
         })
     }
 }
