@@ -67,7 +67,7 @@ pub enum AdminRequest {
 pub enum Target {
     /// The visitor with this session.
     Session(SessionId),
-    /// The visitors to whom a ban would apply.
+    /// The visitors that a ban would apply to.
     #[serde(untagged)]
     Visitors(BanTarget),
 }

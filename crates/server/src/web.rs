@@ -16,7 +16,7 @@
 //! - A room is drawn once for all who watch it, see [`live`], and a room that nobody watches is not drawn. A second of a
 //!   record is drawn once, see [`records`].
 //! - Requests are limited to [`MAX_REQUESTS`], in size, and in time. A flood of them displaces itself, as in
-//!   [`admission`](crate::admission). Watchers, and those who load a cast, are limited in total and by address.
+//!   [`admission`](crate::admission). Watchers and downloads of casts are limited in total and by address.
 //! - Only the configured `web-proxies` name the address of a visitor, in `X-Forwarded-For`.
 //! - Another site's page cannot open the WebSocket: its `Origin` must name the host of the request.
 //!
@@ -91,7 +91,7 @@ pub(crate) struct Web {
     watchers: Arc<Mutex<Admission>>,
 }
 
-/// What a request wants that lasts.
+/// A request whose answer lasts.
 enum Wanted {
     Room(RoomId, Form),
     /// The record with this name, from a second on, at a speed in quarters of the usual one.
@@ -203,7 +203,7 @@ impl Web {
         Ok(())
     }
 
-    /// What a request wants that lasts, or the answer to another request.
+    /// The request if its answer lasts, or otherwise the answer.
     async fn route(&self, request: &Request) -> Result<Wanted, Answer> {
         if request.method != "GET" {
             return Err(Answer::other_method());

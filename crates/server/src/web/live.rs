@@ -48,7 +48,7 @@ const CAST_INTERVAL: Duration =
 /// The form in which a room is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Form {
-    /// What a member sees, in messages for the page.
+    /// The view of a member, in messages for the page.
     Cells,
     /// The room from above, in events for asciinema's player.
     Cast,

@@ -6,7 +6,7 @@
 //! - All work on records takes place in turn, on a thread that rests for as long as it has worked. So all browsers
 //!   together, however often they seek, take at most half a processor from the rooms.
 //! - A record is read once when it is opened. The [`Reader`] keeps states on the way, from which pieces are drawn, and
-//!   the marks of events, of which the page shows at most [`MARKS_PER_KIND`] of each kind.
+//!   the marks of events. The page shows at most [`MARKS_PER_KIND`] of each kind.
 //! - At another speed, a browser gets its pieces faster or more slowly. If the thread cannot draw as fast, it gets them
 //!   when they are drawn.
 //! - At most [`MAX_OPEN`] records are open, each of at most [`MAX_BYTES`] and [`MAX_SECONDS`]; the rest of a longer one
@@ -79,7 +79,7 @@ const PICTURE_STEPS: u32 = STEPS_PER_SECOND / PICTURES_PER_SECOND;
 pub(crate) struct Records {
     rooms: Rooms,
     metrics: Arc<Metrics>,
-    /// Who may work on a record.
+    /// The permission to work on a record.
     turn: Arc<Semaphore>,
     open: Mutex<Vec<Arc<OpenRecord>>>,
     list: tokio::sync::Mutex<Option<(Instant, Value)>>,

@@ -22,7 +22,7 @@ const CONTROLS: [f64; 2] = [1.0, 10.0];
 /// Told to a browser that sends data.
 const NO_DATA: &str = "This socket only shows a room.";
 
-/// What a browser watches.
+/// A source of messages for a browser.
 pub(crate) trait Source {
     /// Waits for the next messages. A caller that stops waiting loses nothing.
     ///

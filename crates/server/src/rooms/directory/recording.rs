@@ -72,7 +72,7 @@ impl Recordings {
         (self.open)(id, is_private)
     }
 
-    /// The public logs, latest first: those that are being written, and then at most `most` finished ones.
+    /// The public logs, latest first: the unfinished ones, and then at most `most` finished ones.
     pub(crate) fn public(&self, most: usize) -> Vec<PublicRecording> {
         let Some(folder) = &self.folder else { return Vec::new() };
         locked(&folder.held, |held| {

@@ -302,7 +302,7 @@ pub(crate) fn is_of_other_version(text: &str) -> bool {
     first.strip_prefix(ROOM_RECORDING).is_some_and(|version| version != VERSION)
 }
 
-/// The header at the beginning of a recording, of which `text` is the first part.
+/// The header at the beginning of a recording. `text` is the first part of it.
 pub(crate) fn first_header(text: &str) -> Option<Header> {
     let mut lines = text.lines();
     let first = lines.next()?;
