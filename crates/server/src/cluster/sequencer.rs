@@ -201,7 +201,7 @@ impl ClusterSequencer {
             return Some(PeerMessage::Refused(token, RoomRefusal::Full));
         };
         if is_kept {
-            self.inbox.keep(member);
+            self.inbox.push_move(member, Command::Keep);
         }
         self.claimed.insert(member, now);
         let request = Joining { token, member, color: None, is_in: false };
@@ -316,7 +316,7 @@ impl ClusterSequencer {
             return;
         }
         self.claimed.insert(member, now);
-        self.inbox.take_back(member, token.0);
+        self.inbox.push_move(member, Command::Return { token: token.0 });
         for request in self.returning.iter_mut().filter(|request| request.token == token) {
             request.decision = Decision::Granted;
         }

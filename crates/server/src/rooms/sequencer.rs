@@ -607,14 +607,9 @@ impl Inbox {
         });
     }
 
-    /// Keeps the seat of a member who has just joined.
-    pub(crate) fn keep(&self, id: MemberId) {
-        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Keep)));
-    }
-
-    /// Brings a member back, on another host.
-    pub(crate) fn take_back(&self, id: MemberId, token: u64) {
-        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Return { token })));
+    /// Adds a command that keeps a member's seat, or brings the member back on another host.
+    pub(crate) fn push_move(&self, id: MemberId, command: Command) {
+        locked(&self.waiting, |waiting| waiting.moves.push_back((id, command)));
     }
 
     /// Returns true if the room has no members and nobody is about to join or leave.
