@@ -21,7 +21,7 @@ impl Scratch {
     }
 
     fn fault(&self) -> String {
-        let fault = HostMaps::read(&self.0).unwrap_err().to_string();
+        let fault = HostMaps::read(&self.0).unwrap_err();
         fault.replace(self.0.to_str().unwrap(), "maps")
     }
 }
@@ -95,7 +95,7 @@ fn entries_other_than_files_are_refused() {
     assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), 0);
     fs::create_dir(folder.0.join("deep.toml")).unwrap();
     assert!(folder.fault().starts_with("maps/deep.toml can't be read: "), "{}", folder.fault());
-    let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err().to_string();
+    let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err();
     assert!(absent.contains("can't be read"), "{absent}");
 }
 
