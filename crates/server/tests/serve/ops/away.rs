@@ -7,9 +7,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use rustix::process::Signal;
 
-use super::maps::{HALL, choose, maps};
+use super::maps::{HALL, choose, enter_hall, go_in, maps, win};
 use super::metrics::{free_port, scrape};
-use crate::player::Player;
 use crate::postgres_server::PostgresServer;
 use crate::running::{Running, user_key};
 use crate::transport::{folder, wait_until};
@@ -59,24 +58,6 @@ fn key() -> PathBuf {
     user_key(&folder())
 }
 
-/// Enters the host's own map in single-player mode.
-fn go_in(player: &Player) {
-    player.wait_for("The moss hall");
-    // The last level in the list.
-    player.send("\x1b[F\r");
-    player.wait_for("Go in");
-    player.send("\r");
-    player.wait_for("has joined.");
-}
-
-/// Walks to the exit until `sentence` appears, which states the outcome of the result.
-fn win(player: &Player, sentence: &str) {
-    wait_until(sentence, || {
-        player.send("w");
-        player.text().contains(sentence)
-    });
-}
-
 fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs()
 }
@@ -88,8 +69,7 @@ fn results_won_during_an_outage_survive_the_host() {
     let mut host = Host::start();
     let players = ["Mara", "Jon"].map(|name| {
         let player = host.running.player(Some(&key()));
-        choose(&player, name, "4");
-        go_in(&player);
+        enter_hall(&player, name);
         player
     });
     host.postgres.crash();
@@ -124,8 +104,7 @@ fn results_won_during_an_outage_survive_the_host() {
 fn a_player_who_is_still_connected_sees_the_result_recorded() {
     let host = Host::start();
     let mara = host.running.player(Some(&key()));
-    choose(&mara, "Mara", "4");
-    go_in(&mara);
+    enter_hall(&mara, "Mara");
     // A paused server neither answers nor closes its connections.
     host.postgres.pause();
     win(&mara, KEPT);

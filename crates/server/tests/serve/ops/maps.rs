@@ -72,12 +72,25 @@ pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
 /// Takes a new name, and enters the [`HALL`] to play alone.
 pub(crate) fn enter_hall(player: &Player, name: &str) {
     choose(player, name, "4");
+    go_in(player);
+}
+
+/// Enters the [`HALL`] from the list of levels.
+pub(crate) fn go_in(player: &Player) {
     player.wait_for("The moss hall");
     // The last level in the list.
     player.send("\x1b[F\r");
     player.wait_for("Go in");
     player.send("\r");
     player.wait_for("has joined.");
+}
+
+/// Walks to the exit until `sentence` appears, which states the outcome of the result.
+pub(crate) fn win(player: &Player, sentence: &str) {
+    wait_until(sentence, || {
+        player.send("w");
+        player.text().contains(sentence)
+    });
 }
 
 #[test]

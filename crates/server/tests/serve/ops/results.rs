@@ -11,18 +11,14 @@ use std::process::Command;
 
 use rustix::process::Signal;
 
-use super::maps::{HALL, enter_hall, maps, scores};
+use super::maps::{HALL, enter_hall, maps, scores, win};
 use crate::player::Player;
 use crate::running::{Running, user_key};
-use crate::transport::wait_until;
 
 /// Plays the host's own map in single-player mode until `sentence` appears, which states the outcome of the result.
-fn win(player: &Player, name: &str, sentence: &str) {
+fn play(player: &Player, name: &str, sentence: &str) {
     enter_hall(player, name);
-    wait_until(sentence, || {
-        player.send("w");
-        player.text().contains(sentence)
-    });
+    win(player, sentence);
 }
 
 #[test]
@@ -31,9 +27,9 @@ fn account_results_rank_and_survive_a_kill_but_guests_do_not_rank() {
     let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
     let mut running = Running::start(&config, "text");
     let key = user_key(&running.folder);
-    win(&running.visitor(), "Jon", "A guest's result does not count");
+    play(&running.visitor(), "Jon", "A guest's result does not count");
     assert!(!scores(&running.folder, &[]).contains("Jon"));
-    win(&running.player(Some(&key)), "Mara", "You are number 1.");
+    play(&running.player(Some(&key)), "Mara", "You are number 1.");
     running.signal(Signal::KILL);
     running.wait_for_end();
     let boards = scores(&running.folder, &["--level", "moss"]);
@@ -94,10 +90,7 @@ fn a_result_waits_until_a_full_disk_has_room() {
     let player = running.player(Some(&key));
     enter_hall(&player, "Mara");
     disk.fill();
-    wait_until("the result", || {
-        player.send("w");
-        player.text().contains("The host's disk is full; your result waits until there is space.")
-    });
+    win(&player, "The host's disk is full; your result waits until there is space.");
     assert!(!scores(&disk.0, &[]).contains("Mara"));
     assert!(!disk.0.join("waiting_results.new").exists());
     disk.make_room();
