@@ -350,7 +350,7 @@ impl Session {
         while let Some(event) = self.protocol.next_event() {
             match event {
                 Event::Key(event) if !self.takes_key(event, now) => continue,
-                Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
+                Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
                 Event::Resized | Event::ColorDepth(_) | Event::Identified => self.follow_terminal(),
                 _ => {}
             }
@@ -370,7 +370,11 @@ impl Session {
         let was_stale = std::mem::take(&mut self.ui.is_stale);
         let wanted = self.wanted();
         self.ui.event(key, now);
-        self.unanswered.press(self.ui.is_stale, self.wanted() != wanted, now);
+        let (is_shown, is_wanted) = (self.ui.is_stale, self.wanted() != wanted);
+        self.unanswered.press(is_shown, is_wanted, now);
+        if is_shown || is_wanted {
+            self.answers_key = Some(self.drawn_step);
+        }
         self.ui.is_stale |= was_stale;
     }
 

@@ -99,6 +99,42 @@ fn a_key_is_answered_before_the_next_regular_frame() {
     assert_ne!(rig.text(one), before, "the map is hidden");
 }
 
+/// A rig at this frame rate, with a member whose terminal repeats `key` for a second.
+fn holding(key: &str, frames_per_second: u32) -> (Rig, usize) {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    rig.live.replace(Config { frames_per_second, ..Config::default() });
+    rig.send(one, key);
+    rig.pump(500);
+    for _ in 0..30 {
+        rig.send(one, key);
+        rig.pump(33);
+    }
+    (rig, one)
+}
+
+#[test]
+fn a_new_key_is_answered_early_while_another_repeats() {
+    let (mut rig, one) = holding("\x1b[C", 5);
+    let before = rig.text(one);
+    rig.send(one, "m");
+    rig.pump(60);
+    assert_ne!(rig.text(one), before, "the map is hidden");
+}
+
+#[test]
+fn a_held_key_turns_as_far_at_any_frame_rate() {
+    let [slow, fast] = [5, 30].map(|frames_per_second| {
+        let (mut rig, one) = holding("\x1b[C", frames_per_second);
+        rig.pump(1_000);
+        let member = rig.member_id(one).unwrap();
+        let view = rig.view();
+        let player = view.member(member).unwrap().player.unwrap();
+        view.game.seen_by(player).unwrap().camera(FieldOfView::default()).heading
+    });
+    assert_eq!(slow, fast);
+}
+
 #[test]
 fn keys_without_effect_are_not_timed() {
     let mut rig = Rig::new(Mode::Roam);
