@@ -168,7 +168,8 @@ impl FuzzedRoom {
             for visitor in 0..self.visitors.len() {
                 let session = &mut self.visitors[visitor].session;
                 let room = self.room.view();
-                if session.wakes_at(Some(&room), self.now).is_some_and(|at| at <= self.now) {
+                let due_at = session.due_at(Some(&room), self.now);
+                if session.wakes_at(due_at).is_some_and(|at| at <= self.now) {
                     session.wake(self.now);
                     self.answer(visitor);
                 }
@@ -181,7 +182,8 @@ impl FuzzedRoom {
         let FuzzedVisitor { session, is_inside, .. } = &mut self.visitors[visitor];
         let view = self.room.view();
         let view = is_inside.then_some(&view);
-        if session.output(self.now).is_empty() && session.is_due(view, self.now) {
+        let due_at = session.due_at(view, self.now);
+        if session.output(self.now).is_empty() && due_at.is_some_and(|due| due <= self.now) {
             session.draw(view, self.now);
         }
         let output = std::mem::take(session.output(self.now));

@@ -8,7 +8,7 @@
 //! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`notify`](Session::notify),
 //!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and
 //!   [`output`](Session::output);
-//! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
+//! - when the outbox is empty, at [`due_at`](Session::due_at): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
 //!
 //! A frame is drawn only if the terminal has acknowledged the previous ones and the picture has changed. The
@@ -165,7 +165,7 @@ impl Session {
 
     /// Looks at the latest snapshot. A key that has changed nothing in the room no longer waits for a frame.
     pub(crate) fn look_at(&mut self, room: &RoomView) {
-        if self.has_acted(room) && !self.ui.is_stale(Some(room)) {
+        if self.unanswered.awaits_room() && self.has_acted(room) && !self.ui.is_stale(Some(room)) {
             self.unanswered.forget_wanted();
         }
     }
@@ -177,11 +177,6 @@ impl Session {
     /// Takes the session's requests since the last call.
     pub(crate) fn requests(&mut self) -> Vec<SessionRequest> {
         std::mem::take(&mut self.ui.requests)
-    }
-
-    /// Returns true if the driver should call [`draw`](Self::draw) now, with `room` as the latest snapshot.
-    pub(crate) fn is_due(&self, room: Option<&RoomView>, now: Duration) -> bool {
-        self.due_at(room, now).is_some_and(|due| due <= now)
     }
 
     /// Returns true if drawing a frame may take longer than other tasks should have to wait.
@@ -263,13 +258,12 @@ impl Session {
         if is_answered && ui.stay.is_some() { self.next_frame(false) } else { Duration::ZERO }
     }
 
-    /// The time of the next [`wake`](Self::wake), and the next check whether a frame [is due](Self::is_due),
-    /// if nothing happens before; `None` for never.
-    pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+    /// The time of the next [`wake`](Self::wake) if nothing happens before and the next frame is
+    /// [due](Self::due_at) at `due_at`; `None` for never.
+    pub(crate) fn wakes_at(&self, due_at: Option<Duration>) -> Option<Duration> {
         // In a room, the next step wakes the driver, unless the room stands still.
         let grace = if self.ui.stay.is_some() { STEP } else { Duration::ZERO };
-        let due_at = self.due_at(room, now).map(|due| due + grace);
-        due_at.into_iter().chain(self.acts_at()).min()
+        due_at.map(|due| due + grace).into_iter().chain(self.acts_at()).min()
     }
 
     /// The time of the next [`wake`](Self::wake) if nothing happens before; `None` for never.
@@ -301,9 +295,13 @@ impl Session {
         self.ending == Ending::Over
     }
 
-    /// The time of the next frame; `None` if the picture has not changed or the terminal is not ready.
-    fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
-        let ready_at = self.protocol.ready_at(now).filter(|_| self.ending == Ending::Not)?;
+    /// The time at which the driver should call [`draw`](Self::draw), with `room` as the latest snapshot. `None` if the
+    /// picture has not changed or the terminal is not ready. In a room, changes are not looked for before that time.
+    pub(crate) fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        let looks_at = self.looks_at(now)?;
+        if looks_at > now && self.ui.stay.is_some() {
+            return Some(looks_at);
+        }
         let stale_from = self.stale_from(room);
         if stale_from.is_none() && self.protocol.is_settled() {
             return None;
@@ -313,7 +311,7 @@ impl Session {
         let from = stale_from.unwrap_or_default();
         let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
-        Some(self.next_frame(is_prompt).max(from).max(ready_at))
+        Some(self.next_frame(is_prompt).max(from).max(looks_at))
     }
 
     /// The time from which the picture on the screen is out of date; `None` if it is up to date.

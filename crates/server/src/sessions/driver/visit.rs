@@ -314,7 +314,8 @@ impl Driver {
             None => self.lively_room(),
         };
         self.session.set_rate(self.shared.load.rate());
-        if self.session.is_due(view.as_deref(), now) {
+        let mut due_at = self.session.due_at(view.as_deref(), now);
+        if due_at.is_some_and(|due| due <= now) {
             let session = &mut self.session;
             aside(session.is_large(), || session.draw(view.as_deref(), now));
             #[cfg(test)]
@@ -322,10 +323,11 @@ impl Driver {
             let time = self.shared.now().saturating_sub(now);
             self.shared.metrics.frame_time.observe(time);
             self.answers_key = self.session.answered();
+            due_at = self.session.due_at(view.as_deref(), now);
         } else if let Some(view) = &view {
             self.session.look_at(view);
         }
-        *wakes_at = self.after_wake(self.session.wakes_at(view.as_deref(), now));
+        *wakes_at = self.after_wake(self.session.wakes_at(due_at));
         std::mem::take(self.session.output(now))
     }
 

@@ -82,6 +82,11 @@ impl Unanswered {
         }
     }
 
+    /// Returns true if a key has changed the visitor's intents, and no frame has answered it.
+    pub(crate) fn awaits_room(&self) -> bool {
+        self.wanted.is_some()
+    }
+
     /// Records that the room has acted on all intents without a visible change.
     pub(crate) fn forget_wanted(&mut self) {
         self.wanted = None;
