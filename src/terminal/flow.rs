@@ -544,7 +544,7 @@ impl Link {
     }
 
     fn is_outlier(&self, Transfer { bytes, seconds }: Transfer) -> bool {
-        self.fit.line().is_some_and(|line| {
+        self.fit.line.is_some_and(|line| {
             let expected = line.constant + line.per_byte * bytes;
             seconds > expected + (OUTLIER_DEVIATIONS * line.deviation).max(OUTLIER_SECONDS)
         })
@@ -575,7 +575,7 @@ impl Link {
     fn seconds_per_byte(&self) -> f64 {
         let usual = self
             .fit
-            .line()
+            .line
             .map_or(0.0, |line| (line.per_byte * SLOPE_MARGIN).min(line.through_origin));
         self.outlier.map_or(usual, |transfer| usual.max(transfer.seconds / transfer.bytes))
     }
@@ -606,12 +606,12 @@ impl Link {
 
     /// The mean excess of a round trip over its expected time.
     pub(crate) fn jitter(&self) -> Duration {
-        Duration::from_secs_f64(self.fit.line().map_or(0.0, |line| line.constant))
+        Duration::from_secs_f64(self.fit.line.map_or(0.0, |line| line.constant))
     }
 
     /// The maximum excess of a round trip over its mean, unless the link has changed.
     fn jitter_range(&self) -> Duration {
-        let deviation = self.fit.line().map_or(0.0, |line| line.deviation);
+        let deviation = self.fit.line.map_or(0.0, |line| line.deviation);
         Duration::from_secs_f64(LATE_DEVIATIONS * deviation)
     }
 
@@ -649,6 +649,8 @@ struct Fit {
     bytes_squared: f64,
     products: f64,
     seconds_squared: f64,
+    /// The line, with neither coefficient below zero; `None` if there was no frame.
+    line: Option<FittedLine>,
 }
 
 /// The line, in seconds and seconds per byte.
@@ -677,6 +679,7 @@ impl Fit {
         self.bytes_squared = self.bytes_squared * FORGETTING_FACTOR + bytes * bytes;
         self.products = self.products * FORGETTING_FACTOR + bytes * seconds;
         self.seconds_squared = self.seconds_squared * FORGETTING_FACTOR + seconds * seconds;
+        self.line = self.fitted();
     }
 
     /// The mean bytes and seconds of a frame; `None` if there was no frame.
@@ -684,8 +687,7 @@ impl Fit {
         (self.weight > 0.0).then(|| (self.bytes / self.weight, self.seconds / self.weight))
     }
 
-    /// The line, with neither coefficient below zero; `None` if there was no frame.
-    fn line(&self) -> Option<FittedLine> {
+    fn fitted(&self) -> Option<FittedLine> {
         let (mean_bytes, mean_seconds) = self.mean()?;
         let weight = self.weight + ORIGIN_WEIGHT;
         let (center_bytes, center_seconds) = (self.bytes / weight, self.seconds / weight);
