@@ -4,6 +4,7 @@
 //! sequences, direction marks and piles of accents, even if the caller forgets to check for them.
 
 use std::fmt;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -11,19 +12,19 @@ use crate::accounts::printable;
 
 /// Printable text that fits in a number of columns, as [`printable`] returns it. It is not empty.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct Line(String);
+#[serde(try_from = "String", into = "String")]
+pub(crate) struct Line(Arc<str>);
 
 impl Line {
     /// The printable characters of `text` that fit in `columns`. `None` if there are none.
     pub(crate) fn of(text: &str, columns: usize) -> Option<Self> {
         let line = printable(text, columns);
-        (!line.is_empty()).then_some(Self(line))
+        (!line.is_empty()).then(|| Self(line.into()))
     }
 
     /// Returns true if the line fits in `columns`.
     pub(crate) fn fits(&self, columns: usize) -> bool {
-        printable(&self.0, columns) == self.0
+        printable(&self.0, columns) == *self.0
     }
 
     pub(crate) fn as_str(&self) -> &str {
@@ -36,7 +37,13 @@ impl TryFrom<String> for Line {
     type Error = &'static str;
 
     fn try_from(text: String) -> Result<Self, &'static str> {
-        Self::of(&text, usize::MAX).filter(|line| line.0 == text).ok_or("a line")
+        Self::of(&text, usize::MAX).filter(|line| *line.0 == *text).ok_or("a line")
+    }
+}
+
+impl From<Line> for String {
+    fn from(line: Line) -> Self {
+        (*line.0).into()
     }
 }
 

@@ -27,7 +27,7 @@ mod round;
 mod tests;
 mod ways;
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -72,7 +72,7 @@ pub(crate) struct Room {
     /// The latest day that the room has heard of in this round.
     today: Option<Day>,
     emotes: Vec<(MemberId, Emote, u64)>,
-    said: VecDeque<ChatLine>,
+    said: Arc<[ChatLine]>,
     said_count: u64,
     inputs: Vec<Input>,
     standings: Arc<[Standing]>,
@@ -97,7 +97,7 @@ pub(crate) struct RoomView {
     /// The step in which the play began; `None` unless the round is being played in a mode that ends at the exit.
     pub(crate) begun: Option<u64>,
     /// The members, in the order of joining.
-    pub(crate) members: Vec<MemberView>,
+    pub(crate) members: Arc<[MemberView]>,
     /// The members' intents in the last step, in the same order.
     pub(crate) acted: Vec<Intents>,
     /// The standings of the round, winner first; empty until the round ends.
@@ -169,7 +169,7 @@ impl Room {
             again: BTreeSet::new(),
             today: None,
             emotes: Vec::new(),
-            said: VecDeque::new(),
+            said: Arc::default(),
             said_count: 0,
             inputs: Vec::new(),
             standings: Arc::from([]),
@@ -419,7 +419,7 @@ impl Room {
             acted: self.members.iter().map(|member| member.acted).collect(),
             standings: Arc::clone(&self.standings),
             replay: self.replay.clone(),
-            said: self.said.iter().cloned().collect(),
+            said: Arc::clone(&self.said),
         }
     }
 
@@ -549,7 +549,8 @@ impl Room {
     fn remember(&mut self, by: Option<(Line, PlayerColor)>, text: String) {
         self.said_count += 1;
         let line = ChatLine { number: self.said_count, by, text };
-        push_within(&mut self.said, line, SAID);
+        let first = self.said.len().saturating_sub(SAID - 1);
+        self.said = self.said[first..].iter().cloned().chain([line]).collect();
     }
 }
 

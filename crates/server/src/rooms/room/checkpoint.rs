@@ -31,7 +31,7 @@ const SAID_COLUMNS: usize = CHAT_COLUMNS + NAME_COLUMNS;
 impl Room {
     /// The whole state as bytes.
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
-        let talk = (&*self.header, &self.said, self.said_count);
+        let talk = (&*self.header, &*self.said, self.said_count);
         let mut bytes = written(KIND, &(talk, self.play()));
         // This cannot fail: all levels of a catalog come from maps, and those can be stored.
         bytes.extend(self.game.stored().unwrap_or_default());
@@ -89,7 +89,8 @@ impl Room {
     }
 
     fn read(&mut self, input: &mut Reader) -> Result<(), RestoreError> {
-        (self.said, self.said_count) = input.read()?;
+        let (said, said_count): (Vec<ChatLine>, _) = input.read()?;
+        (self.said, self.said_count) = (said.into(), said_count);
         (self.step, self.next_member, self.round) = input.read()?;
         (self.members, self.again, self.today, self.emotes) = input.read()?;
         self.standings = self.round.standings.as_slice().into();

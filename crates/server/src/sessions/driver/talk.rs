@@ -106,7 +106,7 @@ impl Driver {
     /// Lists the other visitors in the room or in the lobby.
     pub(crate) fn list_players(&mut self) {
         let view = self.place.as_mut().and_then(Place::view);
-        let members = view.iter().flat_map(|view| &view.members);
+        let members = view.iter().flat_map(|view| view.members.iter());
         let mut names: Vec<Line> = members.map(|member| member.name.clone()).collect();
         let room = self.place.as_ref().map(|place| place.room().place());
         let visitors = self.shared.visitors.names_in(room.as_deref(), MAX_PLAYERS + 1);

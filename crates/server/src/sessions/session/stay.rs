@@ -58,7 +58,7 @@ struct PictureState {
     camera: Camera,
     phase: Phase,
     times: [Option<u64>; 2],
-    members: Vec<MemberView>,
+    members: Arc<[MemberView]>,
     ghosts: Vec<Figure>,
     standings: usize,
     passed: Option<Pass>,
@@ -173,7 +173,7 @@ impl Stay {
     ) -> Option<(&'r MemberView, PlayerView<'r>)> {
         let own = self.member.and_then(|id| room.member(id));
         let watched = self.watched.and_then(|id| room.member(id));
-        let candidates = || own.into_iter().chain(watched).chain(&room.members);
+        let candidates = || own.into_iter().chain(watched).chain(room.members.iter());
         let seen = |it: &'r MemberView| Some((it, room.game.seen_by(it.player?)?));
         let playing = candidates().filter(|it| it.finish.is_none()).find_map(seen);
         playing.or_else(|| candidates().find_map(seen))
@@ -232,7 +232,7 @@ impl Stay {
             camera: self.camera(room, view),
             phase: room.phase,
             times: times(room),
-            members: room.members.clone(),
+            members: Arc::clone(&room.members),
             ghosts: self.ghosts(room, shows_ghosts).collect(),
             standings: room.standings.len(),
             passed: self.ceremony.passed(room).cloned(),
