@@ -96,7 +96,7 @@ impl<K> Default for HeldKeys<K> {
     fn default() -> Self {
         Self {
             reports_releases: false,
-            keys: Vec::with_capacity(MAX_KEYS),
+            keys: Vec::new(),
             timing: RepeatTiming::default(),
             lingers_until: Duration::ZERO,
         }

@@ -99,7 +99,7 @@ impl Driver {
                 AdminReply::Count(count) if count > 0 => SessionEvent::Told { to, text },
                 _ => SessionEvent::Advice(nobody(to.as_str())),
             };
-            _ = replies.send(Reply::SessionEvent(event)).await;
+            _ = replies.send(Box::new(Reply::SessionEvent(event))).await;
         });
     }
 
@@ -170,7 +170,7 @@ impl Driver {
         let (shared, replies) = (Arc::clone(&self.shared), self.replies.clone());
         tokio::spawn(async move {
             let sentence = shared.moderate(act).await.unwrap_or_else(|sentence| sentence);
-            _ = replies.send(Reply::SessionEvent(SessionEvent::Advice(sentence))).await;
+            _ = replies.send(Box::new(Reply::SessionEvent(SessionEvent::Advice(sentence)))).await;
         });
     }
 

@@ -72,8 +72,8 @@ pub(crate) struct Driver {
     pub(crate) talk: Bucket,
     /// Limits the rate of reports.
     pub(crate) reports: Bucket,
-    pub(crate) replies: mpsc::Sender<Reply>,
-    replied: mpsc::Receiver<Reply>,
+    pub(crate) replies: mpsc::Sender<Box<Reply>>,
+    replied: mpsc::Receiver<Box<Reply>>,
     /// The time at which the session was last woken.
     woken_at: Duration,
     /// The arrival time of the oldest key that the frame in flight answers.
@@ -98,7 +98,7 @@ enum DriverEvent {
     Drained,
     RoomsChanged,
     OnlookersChanged,
-    Replied(Reply),
+    Replied(Box<Reply>),
     Notice(Notice),
     Time,
 }
@@ -255,7 +255,7 @@ impl Driver {
                     let onlookers = self.onlookers.borrow_and_update().clone();
                     self.session.notify(SessionEvent::Onlookers(onlookers), now);
                 }
-                DriverEvent::Replied(reply) => self.hear(reply),
+                DriverEvent::Replied(reply) => self.hear(*reply),
                 DriverEvent::Notice(Notice::Removed(sentence)) => {
                     self.leave();
                     self.session.notify(SessionEvent::Ended(sentence), now);
@@ -542,7 +542,7 @@ impl Driver {
             };
             let recordings = rooms.recordings().public(MAX_LISTED_RECORDINGS);
             let rows = recordings.into_iter().filter_map(row).collect();
-            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Recordings(rows)));
+            _ = replies.try_send(Box::new(Reply::SessionEvent(SessionEvent::Recordings(rows))));
         });
     }
 
@@ -562,7 +562,8 @@ impl Driver {
                     let record = text.and_then(|text| RoomRecord::parse(&text, rooms.catalog()));
                     let record = record
                         .map_err(|reason| format!("The recording cannot be shown: {reason}."));
-                    _ = replies.try_send(Reply::SessionEvent(SessionEvent::Record(record)));
+                    _ = replies
+                        .try_send(Box::new(Reply::SessionEvent(SessionEvent::Record(record))));
                 });
             }
             RecordWish::Run { level, difficulty, name } => {
@@ -621,7 +622,7 @@ impl Driver {
         let replies = self.replies.clone();
         self.shared.store.run(move |store| {
             if let Some(reply) = act(store) {
-                _ = replies.try_send(reply);
+                _ = replies.try_send(Box::new(reply));
             }
         })
     }
@@ -650,7 +651,7 @@ impl Driver {
                     (_, None) => Err(RoomRefusal::Gone),
                 };
                 // If the visitor has gone, the place is dropped, which leaves the room.
-                _ = replies.send(Reply::Place(place)).await;
+                _ = replies.send(Box::new(Reply::Place(place))).await;
             });
             return;
         }
@@ -767,8 +768,10 @@ impl Driver {
         let replies = self.replies.clone();
         tokio::spawn(async move {
             if let Some(at) = rooms.place_of(key).await {
-                _ = replies.send(Reply::SessionEvent(SessionEvent::Result(LOOKS.to_owned()))).await;
-                _ = replies.send(Reply::Returned(rooms.resume(key, at).await)).await;
+                _ = replies
+                    .send(Box::new(Reply::SessionEvent(SessionEvent::Result(LOOKS.to_owned()))))
+                    .await;
+                _ = replies.send(Box::new(Reply::Returned(rooms.resume(key, at).await))).await;
             }
         });
     }
