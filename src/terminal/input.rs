@@ -361,8 +361,11 @@ fn told_base(unit: &[u8]) -> Option<char> {
 }
 
 /// The parser's event for `unit`. The parser is new for each unit, because a parser that has kept bytes of an unknown
-/// unit would put them before the next one.
+/// unit would put them before the next one. It allocates kilobytes, which a single character does not need.
 fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
+    if let &[byte @ b' '..=b'~'] = unit {
+        return Some(KeyCode::Char(char::from(byte)).into());
+    }
     let mut parser = termina::Parser::default();
     parser.parse(unit, false);
     match parser.pop() {
