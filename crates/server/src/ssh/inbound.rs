@@ -7,6 +7,10 @@
 //! The rate limit of a client also applies after decompression. Without it, eight clients that compressed
 //! their input kept two processors busy.
 //!
+//! Rejected: letting the repetitions of a held key wait for the next frame, with their times of arrival. A session then
+//! takes 49 turns a second instead of 57, for 70 lines of code. Rejected: letting all bytes wait. New keys take effect
+//! late.
+//!
 //! A session takes a flood in parts, and other tasks run between two of them. Rejected: whole buffers. Eight
 //! visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
 
