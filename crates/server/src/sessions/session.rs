@@ -77,14 +77,10 @@ pub(crate) struct Session {
     pace: Pace,
     /// Limits the rate of keys.
     keys: Bucket,
-    /// Whether the next frame answers a key, and the room's step in which the key was pressed.
-    answers_key: Option<u64>,
     /// The keys that no frame has answered yet.
     unanswered: Unanswered,
     /// The arrival time of the oldest key that the last frame answers.
     answered: Option<Duration>,
-    /// The room's step in the last frame.
-    drawn_step: u64,
     meter: Meter,
     /// Whether the link has made pictures of a room coarser; `None` if no room has been shown yet.
     is_limited: Option<bool>,
@@ -119,10 +115,8 @@ impl Session {
             ending: Ending::Not,
             pace,
             keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
-            answers_key: None,
             unanswered: Unanswered::default(),
             answered: None,
-            drawn_step: 0,
             meter: Meter::default(),
             is_limited: None,
         };
@@ -165,7 +159,7 @@ impl Session {
 
     /// Looks at the latest snapshot. A key that has changed nothing in the room no longer waits for a frame.
     pub(crate) fn look_at(&mut self, room: &RoomView) {
-        if self.unanswered.awaits_room() && self.has_acted(room) && !self.ui.is_stale(Some(room)) {
+        if self.unanswered.awaits(true) && self.has_acted(room) && !self.ui.is_stale(Some(room)) {
             self.unanswered.forget_wanted();
         }
     }
@@ -219,11 +213,9 @@ impl Session {
         ui.drawn();
         if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
             stay.drawn(room, ui.field_of_view, ui.identity.preferences.ghost);
-            self.drawn_step = room.step;
         } else {
             ui.lobby.drawn(room, ui.field_of_view, now);
         }
-        self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
     }
 
     /// Updates the statistics of the frames.
@@ -276,7 +268,7 @@ impl Session {
     /// [`wakes_at`](Self::wakes_at) is reached.
     pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
         let ready_at = self.protocol.ready_at(now).filter(|_| self.ending == Ending::Not)?;
-        Some(self.next_frame(self.answers_key.is_some()).max(ready_at))
+        Some(self.next_frame(self.unanswered.awaits(true)).max(ready_at))
     }
 
     /// Limits the bytes per second that frames take on the wire. `None` means no limit.
@@ -309,8 +301,8 @@ impl Session {
         let is_stale = stale_from == Some(Duration::ZERO);
         // A picture that is out of date soon is not refined meanwhile.
         let from = stale_from.unwrap_or_default();
-        let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
-        let is_prompt = is_stale && self.answers_key.is_some_and(answers);
+        let acts = |room: &RoomView| self.ui.stay.as_ref().is_none_or(|stay| stay.acts_anew(room));
+        let is_prompt = is_stale && self.unanswered.awaits(room.is_none_or(acts));
         Some(self.next_frame(is_prompt).max(from).max(looks_at))
     }
 
@@ -348,11 +340,10 @@ impl Session {
         while let Some(event) = self.protocol.next_event() {
             match event {
                 Event::Key(event) if !self.takes_key(event, now) => continue,
-                Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
                 Event::Resized | Event::ColorDepth(_) | Event::Identified => self.follow_terminal(),
                 _ => {}
             }
-            if let Event::Key(_) = event {
+            if let Event::Key(_) | Event::Mouse(_) = event {
                 self.press(event, now);
             } else {
                 self.ui.event(event, now);
@@ -368,11 +359,7 @@ impl Session {
         let was_stale = std::mem::take(&mut self.ui.is_stale);
         let wanted = self.wanted();
         self.ui.event(key, now);
-        let (is_shown, is_wanted) = (self.ui.is_stale, self.wanted() != wanted);
-        self.unanswered.press(is_shown, is_wanted, now);
-        if is_shown || is_wanted {
-            self.answers_key = Some(self.drawn_step);
-        }
+        self.unanswered.press(self.ui.is_stale, self.wanted() != wanted, now);
         self.ui.is_stale |= was_stale;
     }
 

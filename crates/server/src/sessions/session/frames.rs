@@ -82,9 +82,10 @@ impl Unanswered {
         }
     }
 
-    /// Returns true if a key has changed the visitor's intents, and no frame has answered it.
-    pub(crate) fn awaits_room(&self) -> bool {
-        self.wanted.is_some()
+    /// Returns true if a new picture may answer a key. `acts_anew` states whether the room acts on other intents than
+    /// in the last picture.
+    pub(crate) fn awaits(&self, acts_anew: bool) -> bool {
+        self.shown.is_some() || self.wanted.is_some() && acts_anew
     }
 
     /// Records that the room has acted on all intents without a visible change.

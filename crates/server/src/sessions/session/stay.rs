@@ -12,7 +12,7 @@ use crate::rooms::invitation::RoomCode;
 use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use cellcaster::app::MapDisplay;
 use cellcaster::app::parts::{MapPanel, Watch};
-use cellcaster::game::{self, Outcome, PlayerColor, PlayerView, STEPS_PER_SECOND};
+use cellcaster::game::{Intents, Look, Outcome, PlayerColor, PlayerView, STEPS_PER_SECOND};
 use cellcaster::world::{Camera, Difficulty, FieldOfView, Figure};
 
 /// A stay in a room.
@@ -55,6 +55,7 @@ pub(crate) struct Stay {
 struct PictureState {
     header: Arc<Header>,
     revision: u64,
+    acted: Option<Intents>,
     camera: Camera,
     phase: Phase,
     times: [Option<u64>; 2],
@@ -130,8 +131,17 @@ impl Stay {
 
     /// Returns true if `room` has acted on all of the member's intents.
     pub(crate) fn has_acted(&self, room: &RoomView) -> bool {
-        let acted = self.member.and_then(|id| room.acted(id));
-        acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
+        self.acted(room).is_none_or(|acted| acted == self.intents.newest())
+    }
+
+    /// Returns true if `room` acts on other intents of the member than in the last picture.
+    pub(crate) fn acts_anew(&self, room: &RoomView) -> bool {
+        self.shown.as_ref().is_none_or(|shown| shown.acted != self.acted(room))
+    }
+
+    /// The member's intents on which `room` has acted.
+    fn acted(&self, room: &RoomView) -> Option<Intents> {
+        Some(room.acted(self.member?)?.with_look(Look::NONE))
     }
 
     /// Returns true if the bell rings, for the last picture or since then.
@@ -229,6 +239,7 @@ impl Stay {
         self.shown = Some(PictureState {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
+            acted: self.acted(room),
             camera: self.camera(room, view),
             phase: room.phase,
             times: times(room),
