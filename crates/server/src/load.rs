@@ -10,9 +10,11 @@
 
 #[cfg(test)]
 mod simulated;
+#[cfg(test)]
+mod simulation;
 
+use std::mem::{replace, take};
 use std::num::NonZero;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::available_parallelism;
 use std::time::Duration;
@@ -23,26 +25,28 @@ use crate::lock::locked;
 use crate::metrics::{Metrics, cpu_time};
 use cellcaster::terminal::Effort;
 
-/// Measurements from all rooms and sessions.
+/// Measurements from all rooms and sessions, and the rate that follows from them.
 #[derive(Debug)]
 pub(crate) struct Load {
     pub(crate) metrics: Arc<Metrics>,
-    /// The sum of the delays of all steps since the last sample, in microseconds.
-    lateness: AtomicU64,
-    /// The number of steps since the last sample.
-    steps: AtomicU64,
-    /// The least time between two frames, in microseconds.
-    frame_time: AtomicU64,
-    /// Whether frames are encoded greedily.
-    is_greedy: AtomicBool,
-    /// The processor time of this process at the last sample.
-    used: Mutex<Duration>,
+    state: Mutex<LoadState>,
     /// The number of processors that this process may use.
     processors: f64,
     /// The clock of this process's processor time.
     clock: fn() -> Duration,
     #[cfg(test)]
     worker: Worker,
+}
+
+#[derive(Debug)]
+struct LoadState {
+    /// The sum of the delays of all steps since the last decision, and their number.
+    lateness: Duration,
+    steps: u32,
+    /// The processor time of this process at the last decision.
+    used: Duration,
+    governor: Governor,
+    rate: Rate,
 }
 
 impl Load {
@@ -54,16 +58,12 @@ impl Load {
     }
 
     fn with(metrics: Arc<Metrics>, processors: f64, clock: fn() -> Duration) -> Self {
-        let used = Mutex::new(clock());
-        let [lateness, steps] = [const { AtomicU64::new(0) }; 2];
-        let frame_time = AtomicU64::new(33_333);
+        let mut governor = Governor::new();
+        let rate = governor.decide(Sample::default(), FIRST_RATE);
+        let (lateness, steps, used) = (Duration::ZERO, 0, clock());
         Self {
             metrics,
-            lateness,
-            steps,
-            frame_time,
-            is_greedy: AtomicBool::new(false),
-            used,
+            state: Mutex::new(LoadState { lateness, steps, used, governor, rate }),
             processors,
             clock,
             #[cfg(test)]
@@ -73,33 +73,29 @@ impl Load {
 
     /// Records by how much a step of a room was late.
     pub(crate) fn note_lateness(&self, lateness: Duration) {
-        self.lateness.fetch_add(micros(lateness), Ordering::Relaxed);
-        self.steps.fetch_add(1, Ordering::Relaxed);
+        locked(&self.state, |state| {
+            state.lateness += lateness;
+            state.steps += 1;
+        });
         self.metrics.step_lateness.observe(lateness);
     }
 
-    /// The measurements since the last call, which was `time` ago.
-    pub(crate) fn sample(&self, time: Duration) -> Sample {
-        let steps = self.steps.swap(0, Ordering::Relaxed).max(1);
-        let lateness = Duration::from_micros(self.lateness.swap(0, Ordering::Relaxed) / steps);
+    /// Decides about the rate, by the measurements since the last decision, which was `time` ago. `most` is the
+    /// configured limit in frames a second.
+    pub(crate) fn decide(&self, time: Duration, most: u32) {
         let now = (self.clock)();
-        let used = locked(&self.used, |used| now.saturating_sub(std::mem::replace(used, now)));
-        let available = (time + lateness).as_secs_f64() * self.processors;
-        Sample { busy: used.as_secs_f64() / available, lateness }
+        locked(&self.state, |state| {
+            let lateness = take(&mut state.lateness) / take(&mut state.steps).max(1);
+            let used = now.saturating_sub(replace(&mut state.used, now));
+            let available = (time + lateness).as_secs_f64() * self.processors;
+            let sample = Sample { busy: used.as_secs_f64() / available, lateness };
+            state.rate = state.governor.decide(sample, most);
+        });
     }
 
     /// The rate of each session.
     pub(crate) fn rate(&self) -> Rate {
-        let is_greedy = self.is_greedy.load(Ordering::Relaxed);
-        Rate {
-            frame_time: Duration::from_micros(self.frame_time.load(Ordering::Relaxed)),
-            effort: if is_greedy { Effort::Greedy } else { Effort::Search },
-        }
-    }
-
-    pub(crate) fn set_rate(&self, Rate { frame_time, effort }: Rate) {
-        self.frame_time.store(micros(frame_time), Ordering::Relaxed);
-        self.is_greedy.store(effort == Effort::Greedy, Ordering::Relaxed);
+        locked(&self.state, |state| state.rate)
     }
 }
 
@@ -110,22 +106,18 @@ pub(crate) struct Rate {
     pub(crate) effort: Effort,
 }
 
-fn micros(time: Duration) -> u64 {
-    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
-}
-
 /// Measurements since the last decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sample {
+struct Sample {
     /// The share of the available processor time that was used, from 0 to 1.
-    pub(crate) busy: f64,
+    busy: f64,
     /// The mean delay of the steps of rooms.
-    pub(crate) lateness: Duration,
+    lateness: Duration,
 }
 
 /// The state of the policy for the frame rate.
 #[derive(Clone, Debug)]
-pub(crate) struct Governor {
+struct Governor {
     /// The rate in frames a second; [`f64::INFINITY`] for no limit.
     rate: f64,
     effort: Effort,
@@ -133,6 +125,8 @@ pub(crate) struct Governor {
     usual: f64,
 }
 
+/// The limit until the configured one is known, in frames a second.
+const FIRST_RATE: u32 = 30;
 /// The lowest rate, in frames a second.
 const MIN_RATE: f64 = 5.0;
 /// The busy share that the governor aims at while it limits the rate.
@@ -155,12 +149,12 @@ const WEIGHT: f64 = 0.08;
 
 impl Governor {
     /// A governor without a limit.
-    pub(crate) fn new() -> Self {
+    fn new() -> Self {
         Self { rate: f64::INFINITY, effort: Effort::Search, usual: 0.0 }
     }
 
     /// The rate of each session. `most` is the configured limit in frames a second.
-    pub(crate) fn decide(&mut self, Sample { busy, lateness }: Sample, most: u32) -> Rate {
+    fn decide(&mut self, Sample { busy, lateness }: Sample, most: u32) -> Rate {
         let most = f64::from(most).max(MIN_RATE);
         let is_full = busy >= FULL || lateness >= LATE;
         self.usual += (busy - self.usual) * WEIGHT;

@@ -42,7 +42,7 @@ use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
 use crate::config::{Config, LiveConfig};
 use crate::line::Line;
-use crate::load::{Governor, Load};
+use crate::load::Load;
 use crate::logging;
 use crate::metrics::Metrics;
 use crate::operator::Operator;
@@ -393,13 +393,10 @@ async fn follow_days(shared: Weak<Shared>) {
 
 /// Adjusts the frame rate for as long as the host exists.
 async fn govern(shared: Weak<Shared>) {
-    let mut governor = Governor::new();
     let mut ticks = interval(GOVERNOR_INTERVAL);
     loop {
         ticks.tick().await;
         let Some(shared) = shared.upgrade() else { return };
-        let most = shared.config.get().frames_per_second;
-        let sample = shared.load.sample(GOVERNOR_INTERVAL);
-        shared.load.set_rate(governor.decide(sample, most));
+        shared.load.decide(GOVERNOR_INTERVAL, shared.config.get().frames_per_second);
     }
 }
