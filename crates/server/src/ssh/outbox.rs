@@ -8,14 +8,12 @@
 //! stops reading within a frame holds only the rest of it. Rejected: counting encrypted bytes. Compression
 //! changes their number.
 
-use std::future::Future;
-use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
-use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
 use bytes::Bytes;
+use futures_util::FutureExt as _;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
@@ -63,7 +61,8 @@ impl Outbox {
     /// An outbox that sends frames to a channel.
     pub(crate) fn new(handle: Handle, channel: ChannelId, progress: Arc<FrameProgress>) -> Self {
         // The queue cannot be full: it holds at most one part, a few questions and the three closing messages.
-        Self::into(move |part| _ = at_once(handle.data(channel, part)), progress)
+        let send = move |part| _ = unconstrained(handle.data(channel, part)).now_or_never();
+        Self::into(send, progress)
     }
 
     /// An outbox that passes frames to `sink`, part by part.
@@ -246,13 +245,5 @@ impl AsRef<[u8]> for Part {
 impl Drop for Part {
     fn drop(&mut self) {
         self.progress.state.store(ENCRYPTED, Ordering::Release);
-    }
-}
-
-/// Polls a future once, regardless of the task's budget.
-fn at_once<T>(future: impl Future<Output = T>) -> Option<T> {
-    match pin!(unconstrained(future)).poll(&mut Context::from_waker(Waker::noop())) {
-        Poll::Ready(value) => Some(value),
-        Poll::Pending => None,
     }
 }

@@ -12,10 +12,11 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::time::Duration;
 
+use futures_util::future::OptionFuture;
 use tokio::runtime::{Handle, RuntimeFlavor};
 use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 use tokio::task::{block_in_place, spawn_blocking};
-use tokio::time::{Instant, sleep_until};
+use tokio::time::sleep_until;
 
 use super::login::{self, AccountData};
 use super::talk::{REPORT_BURST, REPORT_RATE, TALK_BURST, TALK_RATE};
@@ -48,7 +49,6 @@ use cellcaster::terminal::SessionOptions;
 use cellcaster::world::Difficulty;
 
 /// A visitor's driver.
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(crate) struct Driver {
     pub(crate) shared: Arc<Shared>,
     pub(crate) session: Session,
@@ -80,10 +80,8 @@ pub(crate) struct Driver {
     answers_key: Option<Duration>,
     /// The time at which the session ends because the server shuts down.
     ends_at: Option<Duration>,
-    /// Whether a frame is in flight.
-    is_sending: bool,
-    /// The bytes of the frame in flight, and the bytes on the wire before it.
-    sent: (usize, u64),
+    /// The bytes of the frame in flight, and the bytes on the wire before it; `None` if there is none.
+    sent: Option<(usize, u64)>,
     /// Whether the server is shutting down.
     is_draining: bool,
     /// Whether the host is looking for the place that the visitor had before.
@@ -195,8 +193,7 @@ impl Driver {
             woken_at: Duration::ZERO,
             answers_key: None,
             ends_at: None,
-            is_sending: false,
-            sent: (0, 0),
+            sent: None,
             is_draining: false,
             is_returning: false,
             record: None,
@@ -221,21 +218,20 @@ impl Driver {
         loop {
             self.run_requests();
             let mut wakes_at = None;
-            if !self.is_sending {
+            if self.sent.is_none() {
                 let _turn = self.turn().await;
                 let bytes = self.frame(&mut wakes_at);
                 if bytes.is_empty() && self.session.is_over() {
                     return 0;
                 }
-                self.sent = (bytes.len(), outbox.on_wire());
-                self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+                let sent = (bytes.len(), outbox.on_wire());
+                let is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+                self.sent = is_sending.then_some(sent);
                 // An empty frame is never in flight.
-                self.answers_key.take_if(|_| !self.is_sending);
+                self.answers_key.take_if(|_| !is_sending);
             }
             let event = self.wait(inbound, outbox, wakes_at).await;
-            if self.is_sending && outbox.has_drained() {
-                self.note_drained(outbox);
-            }
+            self.note_drained(outbox);
             let now = self.shared.now();
             match event {
                 DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
@@ -274,7 +270,7 @@ impl Driver {
                 }
                 DriverEvent::Time => self.wake(now),
             }
-            if self.is_sending && self.session.output(now).len() > MAX_WAITING_BYTES {
+            if self.sent.is_some() && self.session.output(now).len() > MAX_WAITING_BYTES {
                 // The client reads no frames but keeps sending queries that the session must answer.
                 self.leave();
                 return 1;
@@ -282,13 +278,13 @@ impl Driver {
         }
     }
 
-    /// Records that the frame in flight has drained.
+    /// Records that the frame in flight has drained, if it has.
     fn note_drained(&mut self, outbox: &Outbox) {
+        let sent = self.sent.take_if(|_| outbox.has_drained());
+        let Some((bytes, before)) = sent else { return };
         let at = outbox.drained_at().saturating_duration_since(self.shared.begun);
-        let (bytes, before) = self.sent;
         let on_wire = outbox.on_wire().saturating_sub(before);
         self.session.written(bytes, on_wire as usize, at);
-        self.is_sending = false;
         if let Some(key) = self.answers_key.take() {
             self.shared.metrics.key_time.observe(at.saturating_sub(key));
         }
@@ -348,7 +344,7 @@ impl Driver {
         outbox: &mut Outbox,
         wakes_at: Option<Duration>,
     ) -> DriverEvent {
-        let is_sending = self.is_sending;
+        let is_sending = self.sent.is_some();
         let now = self.shared.now();
         let drains_at = is_sending.then(|| self.session.needs_drain_at());
         let awaits_drain = drains_at.is_some_and(|time| time <= now);
@@ -356,7 +352,6 @@ impl Driver {
         let acts_at = drains_at.and_then(|_| self.after_wake(self.session.acts_at()));
         // The step of the room from which the next frame is drawn. It comes late only if the room stands still.
         let looks_at = if is_sending { drains_at } else { self.session.looks_at(now) };
-        let looks_at = looks_at.filter(|_| self.place.is_some());
         let drain_check = drains_at.map(|time| time + STEP_TIMEOUT);
         // Outside of a room, the driver is told of every change.
         let must_look = is_sending || self.place.is_some();
@@ -367,13 +362,14 @@ impl Driver {
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
         let Self { place, rooms, onlookers, replied, in_lobby, presence, .. } = self;
+        let step = place.as_ref().zip(looks_at).map(|(place, time)| place.changed(begun + time));
         tokio::select! {
             biased;
             arrival = inbound.next() => DriverEvent::Arrived(arrival),
             () = outbox.drained(), if awaits_drain => DriverEvent::Drained,
             Some(reply) = replied.recv() => DriverEvent::Replied(reply),
             notice = presence.notice() => DriverEvent::Notice(notice),
-            () = step(place.as_ref(), looks_at.map(|time| begun + time)) => DriverEvent::Time,
+            Some(()) = OptionFuture::from(step) => DriverEvent::Time,
             Ok(()) = rooms.changed(), if *in_lobby => DriverEvent::RoomsChanged,
             Ok(()) = onlookers.changed(), if *in_lobby => DriverEvent::OnlookersChanged,
             () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => DriverEvent::Time,
@@ -837,12 +833,4 @@ fn host_name(name: &str) -> Line {
     const COLUMNS: usize = 40;
     let line = Line::of(name, COLUMNS).or_else(|| Line::of("Cellcaster", COLUMNS));
     line.expect("printable characters")
-}
-
-/// Waits until `due` and for a newer snapshot.
-async fn step(place: Option<&Place>, due: Option<Instant>) {
-    match place.zip(due) {
-        Some((place, due)) => place.changed(due).await,
-        None => std::future::pending().await,
-    }
 }
