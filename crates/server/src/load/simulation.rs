@@ -52,7 +52,7 @@ fn play(players: u32, link: f64) -> Figures {
     let mut answers: Vec<(Duration, &[u8])> = Vec::new();
     let mut figures = Figures::default();
     let mut now = Duration::ZERO;
-    let seconds = (END - WARM_UP).as_secs_f64();
+    let seconds = END.saturating_sub(WARM_UP).as_secs_f64();
     while now < END {
         now += TICK;
         if now.as_millis().is_multiple_of(GOVERNED.as_millis()) {
@@ -70,7 +70,7 @@ fn play(players: u32, link: f64) -> Figures {
         let is_frame = may_draw && drawn_at + cost <= now;
         if is_frame {
             due = now + rate.frame_time.max(protocol.frame_time());
-            busy = cost.as_secs_f64() / (now - drawn_at).as_secs_f64();
+            busy = cost.as_secs_f64() / now.saturating_sub(drawn_at).as_secs_f64();
             drawn_at = now;
             figures.fidelity = protocol.fidelity();
             protocol.draw(|screen| picture(screen, now));
@@ -94,7 +94,7 @@ fn play(players: u32, link: f64) -> Figures {
             figures.bytes_a_second += output.len() as f64 / seconds;
             if is_frame {
                 figures.frames_a_second += 1.0 / seconds;
-                figures.oldest = figures.oldest.max(arrival - now);
+                figures.oldest = figures.oldest.max(arrival.saturating_sub(now));
             }
         }
     }
