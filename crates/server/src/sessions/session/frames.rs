@@ -2,9 +2,9 @@
 //! of the game the visitor sees.
 //!
 //! - **Pace.** A frame that answers a key is drawn early, so that the frame rate does not delay the answer.
-//!   It is drawn on credit: a visitor who holds a key gets no more frames than others in the long run.
-//!   Without this limit, the keys of 300 visitors triggered all their frames, and the [governor](crate::load)
-//!   had no effect.
+//!   It is drawn on credit: no visitor gets more frames than others in the long run. Without this limit, the keys
+//!   of 300 visitors triggered all their frames, and the [governor](crate::load) had no effect. Repetitions of a
+//!   held key change nothing and use no credit.
 //! - **Answers.** A frame answers a key if it shows the key's effect. A change of the screen appears in the
 //!   next picture. A change of intents appears in the first picture of a snapshot in which the room has acted
 //!   on them, if the room has changed by then. Keys without an effect are not counted. When every key counted
@@ -14,6 +14,8 @@
 
 use std::collections::VecDeque;
 use std::time::Duration;
+
+use crate::rooms::sequencer::STEP;
 
 /// The pace of frames.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +27,7 @@ pub(crate) struct Pace {
 }
 
 /// Half of a step. A frame is drawn right after a step, up to this time early or late.
-const HALF_STEP: Duration = Duration::from_micros(8_333);
+const HALF_STEP: Duration = Duration::from_nanos(STEP.as_nanos() as u64 / 2);
 /// The shortest interval between two frames.
 const MIN_FRAME_INTERVAL: Duration = Duration::from_millis(16);
 
