@@ -48,7 +48,6 @@ pub(crate) use self::round::{Finish, Phase, Role, Standing, ordinal};
 use self::ways::ExitWays;
 use crate::accounts::Day;
 use crate::line::Line;
-use crate::queue::push_within;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 use cellcaster::world::{FieldOfView, Figure};
