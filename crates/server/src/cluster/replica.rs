@@ -54,8 +54,8 @@ const SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 const STANDSTILL_TIMEOUT: Duration = Duration::from_millis(1_500);
 /// The least time for which a replica exists without members and watchers.
 const MIN_STAY: Duration = Duration::from_secs(3);
-/// The time between two claims.
-const RENEWAL_INTERVAL: Duration = Duration::from_secs(1);
+/// The time between two claims, between two checkpoints that are restored, and between two probes of the bus.
+const CLAIM_INTERVAL: Duration = Duration::from_secs(1);
 /// The time after which a request is sent again.
 const REQUEST_RETRY_INTERVAL: Duration = Duration::from_millis(500);
 /// The time after which a request fails. Another host takes over a room sooner.
@@ -270,7 +270,7 @@ impl Replica {
     }
 
     async fn claim(&mut self, now: Instant) {
-        if !is_due(self.times.claimed, now, RENEWAL_INTERVAL) {
+        if !is_due(self.times.claimed, now, CLAIM_INTERVAL) {
             return;
         }
         self.times.claimed = Some(now);
@@ -434,7 +434,7 @@ impl Replica {
     /// Replaces the state with the newest checkpoint.
     async fn restore(&mut self) -> Result<(), BusFault> {
         let now = Instant::now();
-        if !is_due(self.times.restored, now, RENEWAL_INTERVAL) {
+        if !is_due(self.times.restored, now, CLAIM_INTERVAL) {
             return Err(BusFault::Unknown);
         }
         self.times.restored = Some(now);

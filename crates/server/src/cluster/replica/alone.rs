@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{Alone, RENEWAL_INTERVAL, Replica, STANDSTILL_TIMEOUT, steps_due};
+use super::{Alone, CLAIM_INTERVAL, Replica, STANDSTILL_TIMEOUT, steps_due};
 use crate::cluster::bus::BusFault;
 use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
@@ -52,7 +52,7 @@ impl Replica {
             if probe.await.unwrap_or(false) && self.append_alone().await.is_ok() {
                 return;
             }
-        } else if alone.probe.is_none() && now.duration_since(alone.probed) >= RENEWAL_INTERVAL {
+        } else if alone.probe.is_none() && now.duration_since(alone.probed) >= CLAIM_INTERVAL {
             let (context, id, number) = (self.context.clone(), self.id, self.state.number);
             let probe = async move { context.bus.read(id, number).await.is_ok() };
             (alone.probe, alone.probed) = (Some(tokio::spawn(probe)), now);
