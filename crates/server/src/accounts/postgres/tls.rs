@@ -19,10 +19,12 @@ use tokio_rustls::{TlsConnector, client};
 
 use crate::accounts::StoreFailure;
 
-/// A factory of encrypted connections.
+/// A factory of encrypted connections, and the start of one.
 #[derive(Clone)]
 pub(crate) struct Tls {
     config: Arc<ClientConfig>,
+    /// The server; `None` for the factory, and for a server without a host name.
+    name: Option<ServerName<'static>>,
 }
 
 impl Tls {
@@ -43,29 +45,23 @@ impl Tls {
         })?;
         let mut config = config.with_root_certificates(roots).with_no_client_auth();
         config.alpn_protocols = vec![b"postgresql".to_vec()];
-        Ok(Self { config: Arc::new(config) })
+        Ok(Self { config: Arc::new(config), name: None })
     }
 }
 
 impl MakeTlsConnect<Socket> for Tls {
     type Stream = Encrypted;
-    type TlsConnect = Handshake;
+    type TlsConnect = Self;
     type Error = io::Error;
 
-    fn make_tls_connect(&mut self, host: &str) -> io::Result<Handshake> {
+    fn make_tls_connect(&mut self, host: &str) -> io::Result<Self> {
         // A socket on this machine has no name, and is not encrypted.
         let name = ServerName::try_from(host.to_owned()).ok();
-        Ok(Handshake { config: Arc::clone(&self.config), name })
+        Ok(Self { config: Arc::clone(&self.config), name })
     }
 }
 
-/// The start of an encrypted connection.
-pub(crate) struct Handshake {
-    config: Arc<ClientConfig>,
-    name: Option<ServerName<'static>>,
-}
-
-impl TlsConnect<Socket> for Handshake {
+impl TlsConnect<Socket> for Tls {
     type Stream = Encrypted;
     type Error = io::Error;
     type Future = Pin<Box<dyn Future<Output = io::Result<Encrypted>> + Send>>;
