@@ -1,7 +1,6 @@
 //! The arguments of the server's commands.
 
 use std::env;
-use std::fmt;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,7 +10,7 @@ use cellcaster::cli::parse::ValidValues;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
-use super::host_store::StoreLocation;
+use super::host_store::{Secret, StoreLocation};
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
 use crate::admin::Target;
 use crate::logging::LogFormat;
@@ -59,8 +58,8 @@ pub(crate) struct Serve {
     pub(crate) store: Store,
     /// The NATS servers through which this host shares its rooms with other hosts; the store must be a PostgreSQL
     /// database [default: `$CELLCASTER_CLUSTER`, or none]
-    #[arg(long, value_name = "URL", value_parser = ClusterAddress::parse)]
-    cluster: Option<ClusterAddress>,
+    #[arg(long, value_name = "URL", value_parser = cluster_address)]
+    cluster: Option<Secret>,
     /// The configuration file [default: cellcaster/serve.toml in the user's configuration folder]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
@@ -288,26 +287,14 @@ pub(crate) struct Replay {
     pub(crate) member: Option<String>,
 }
 
-/// The address of a cluster, which may contain a password.
-#[derive(Clone)]
-struct ClusterAddress(String);
-
-impl ClusterAddress {
-    fn parse(text: &str) -> Result<Self, ValidValues> {
-        let is_address = |text: &str| {
-            let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
-            rest.is_some_and(|rest| !rest.is_empty())
-        };
-        let takes = "a NATS address such as nats://host:4222, or several separated by commas";
-        text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(ValidValues(takes))
-    }
-}
-
-impl fmt::Debug for ClusterAddress {
-    /// Leaves out the address, because it may contain a password.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ClusterAddress").finish_non_exhaustive()
-    }
+/// Parses the address of a cluster.
+fn cluster_address(text: &str) -> Result<Secret, ValidValues> {
+    let is_address = |text: &str| {
+        let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
+        rest.is_some_and(|rest| !rest.is_empty())
+    };
+    let takes = "a NATS address such as nats://host:4222, or several separated by commas";
+    text.split(',').all(is_address).then(|| Secret(text.to_owned())).ok_or(ValidValues(takes))
 }
 
 fn address(text: &str) -> Result<SocketAddr, ValidValues> {

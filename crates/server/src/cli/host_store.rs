@@ -14,13 +14,17 @@ use cellcaster::fault::printable_path;
 
 use crate::accounts::{HostStore, StoreFailure};
 
-/// The location of a host's store.
+/// An address that may contain a password. Its `Debug` form leaves it out.
 #[derive(Clone, PartialEq)]
+pub(crate) struct Secret(pub(crate) String);
+
+/// The location of a host's store.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StoreLocation {
     /// A folder.
     Folder(PathBuf),
-    /// An address of PostgreSQL, which may contain a password.
-    Address(String),
+    /// An address of PostgreSQL.
+    Address(Secret),
 }
 
 impl StoreLocation {
@@ -41,7 +45,7 @@ impl StoreLocation {
     pub(crate) fn open(&self) -> Result<HostStore, StoreFailure> {
         match self {
             Self::Folder(folder) => HostStore::open(folder),
-            Self::Address(address) => HostStore::connect(address),
+            Self::Address(Secret(address)) => HostStore::connect(address),
         }
     }
 
@@ -49,7 +53,7 @@ impl StoreLocation {
     pub(crate) fn open_to_read(&self) -> Result<HostStore, Error> {
         let store = match self {
             Self::Folder(folder) => HostStore::open_to_read(folder),
-            Self::Address(address) => HostStore::connect_to_read(address),
+            Self::Address(Secret(address)) => HostStore::connect_to_read(address),
         };
         store.map_err(failed)?.ok_or_else(|| match self {
             Self::Folder(folder) => Error::mistake(format!(
@@ -65,20 +69,16 @@ impl StoreLocation {
     fn of(word: OsString) -> Self {
         match word.to_str() {
             Some(text) if ["postgres:", "postgresql:"].iter().any(|it| text.starts_with(it)) => {
-                Self::Address(text.to_owned())
+                Self::Address(Secret(text.to_owned()))
             }
             _ => Self::Folder(word.into()),
         }
     }
 }
 
-impl fmt::Debug for StoreLocation {
-    /// Leaves out an address, because it may contain a password.
+impl fmt::Debug for Secret {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Folder(folder) => f.debug_tuple("Folder").field(folder).finish(),
-            Self::Address(_) => f.debug_tuple("Address").finish_non_exhaustive(),
-        }
+        f.debug_struct("Secret").finish_non_exhaustive()
     }
 }
 
@@ -96,7 +96,7 @@ mod tests {
     fn an_address_is_recognised_by_its_scheme_and_hidden() {
         for text in ["postgres://ada:geheim@host/games", "postgresql://ada:geheim@host"] {
             let database = StoreLocation::of(text.into());
-            assert_eq!(database, StoreLocation::Address(text.to_owned()));
+            assert_eq!(database, StoreLocation::Address(Secret(text.to_owned())));
             assert!(!format!("{database:?}").contains("geheim"));
         }
         for text in ["data", "/var/lib/cellcaster", "postgres", "./postgres:"] {

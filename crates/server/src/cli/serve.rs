@@ -10,7 +10,7 @@ use tokio::sync::{Notify, watch};
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::host_store::{StoreLocation, failed};
+use super::host_store::{Secret, StoreLocation, failed};
 use crate::accounts::{HostNotice, HostStore, KnownPlayers, WaitingResults};
 use crate::cluster::Cluster;
 use crate::config::{Config, LiveConfig};
@@ -126,7 +126,7 @@ fn cluster(
     store: &StoreLocation,
 ) -> Result<Option<(String, [HostStore; 2])>, Error> {
     let Some(address) = options.cluster() else { return Ok(None) };
-    let StoreLocation::Address(store) = store else {
+    let StoreLocation::Address(Secret(store)) = store else {
         return Err(Error::mistake(
             "a cluster needs a database that all hosts share: name it, as in \
              \"--store postgres://USER@HOST/DATABASE\"",
