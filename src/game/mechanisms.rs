@@ -50,15 +50,14 @@ pub(crate) struct Mechanisms {
     /// The doors that switches open.
     #[serde(skip)]
     doors: Vec<(Cell, SwitchId)>,
-    /// Whether the level has levers, flames or secret walls.
+    /// Whether the level has anything to open other than doors: levers, flames or secret walls.
     #[serde(skip)]
-    /// Whether the level has anything to open other than doors.
     pub(crate) has_handles: bool,
     /// Whether the level has floors that crumble.
     #[serde(skip)]
     has_crumbling: bool,
-    #[serde(skip)]
     /// The number of secret walls found, and their total number.
+    #[serde(skip)]
     pub(crate) secrets: Share,
 }
 

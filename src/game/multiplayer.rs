@@ -72,11 +72,11 @@ pub(crate) struct Members {
     marked: Option<SpriteId>,
     /// The blows of the last step, each as the slots of the attacker and the victim.
     blows: Vec<(usize, usize)>,
-    /// Reused memory for targets, for the positions of players in the way, and for figures.
+    /// Reused memory for targets.
     #[serde(skip)]
     pub(crate) targets: Scratch<Vec<PerceivedPlayer>>,
+    /// The positions of the players who are in the way of the current player, in reused memory.
     #[serde(skip)]
-    /// The positions of the players who are in the way of the current player.
     pub(crate) in_the_way: Scratch<Vec<DVec2>>,
     #[serde(deserialize_with = "at_most::<MAX_PLAYERS, _, _>")]
     figures: Vec<Figure>,

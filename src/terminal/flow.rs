@@ -121,8 +121,8 @@ const TIMEOUT_FACTOR: u32 = 4;
 const MIN_RATE: f64 = 16_000.0;
 /// A terminal counts as silent after this number of consecutive timeouts, with keys between them.
 const MAX_TIMEOUTS: u32 = 5;
-/// The most frames in a row without a request, and the most bytes of all of them. If the link stalls, they are sent
-/// before anything tells so.
+/// The most frames in a row without a request, and the most bytes of all of them. The game cannot notice that the link
+/// stalls until it sends a frame with a request.
 const MAX_UNASKED: [usize; 2] = [2, 6_000];
 /// The time between two fences.
 const FENCE_INTERVAL: Duration = Duration::from_secs(5);
