@@ -141,7 +141,7 @@ impl Answer {
 
     pub(crate) fn bad_request() -> Self {
         let most = MAX_HEAD >> 10;
-        let text = format!("this is not an HTTP/1.1 request of at most {most} KiB\n");
+        let text = format!("this is not an HTTP/1 request of at most {most} KiB\n");
         Self::text("400 Bad Request", text)
     }
 
