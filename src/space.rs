@@ -17,6 +17,9 @@
 //! body: see `tree`. Other scenes do not use it, because most maps have few bodies, and testing
 //! rows of pixels is then faster than searching a tree.
 
+#![expect(clippy::inline_always, reason = "only inlined code is compiled for the widest registers")]
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 mod bounds;
 mod camera;
 mod checker;

@@ -10,9 +10,6 @@
 //! Rejected: several rays for each pixel. Near the horizon a pixel covers hundreds of squares, and any
 //! number of samples still shimmers there.
 
-#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
-#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
-
 use glam::DVec3;
 
 use super::lanes::{LANES, Lanes, Vectors, are_finite, greatest, least};
@@ -32,7 +29,7 @@ const MAX: f64 = (1_u64 << 50) as f64;
 /// In each lane, the ray meets the surface at `t`, where the surface has the normal of this lane.
 /// `steps` are the changes of a direction to the next column and to the next row. `are_alike` is
 /// true if all normals are equal, and all of their dot products with the directions are equal, too.
-#[inline(never)]
+#[inline(always)]
 pub(crate) fn find_footprints(
     directions: &Vectors,
     t: &Lanes,
@@ -63,11 +60,12 @@ pub(crate) fn find_footprints(
 
 /// Sets `means` to the mean of a checkerboard of +1 and −1 over a box with these `widths` around each of
 /// `points`. Both are in cubes; the cube at the origin is +1.
+#[inline(always)]
 pub(crate) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
     means.fill(1.0);
-    points.axes().into_iter().zip(widths.axes()).for_each(|(places, widths)| {
+    for (places, widths) in points.axes().into_iter().zip(widths.axes()) {
         multiply_by_means_along(places, widths, means);
-    });
+    }
 }
 
 impl SolidTexture {
@@ -92,7 +90,7 @@ fn is_first(point: DVec3) -> bool {
 }
 
 /// Multiplies `products` by the means along one axis.
-#[inline(never)]
+#[inline(always)]
 fn multiply_by_means_along(places: &Lanes, widths: &Lanes, products: &mut Lanes) {
     let ends = [least(places), greatest(places)];
     let width = greatest(widths);

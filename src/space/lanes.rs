@@ -3,9 +3,12 @@
 //! A loop over lanes that has no branches and calls no function is compiled to instructions that
 //! calculate several lanes each. This is why the functions here select instead of branching, and round by
 //! addition, as [`rounding`](crate::numeric::rounding) explains.
+//!
+//! All of this is compiled for several widths of registers, and [`in_widest_registers`] picks the widest
+//! of the processor: spheres take 0.6 of the time with AVX2. A function that is not inlined into its call
+//! keeps the narrowest registers.
 
-#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
-
+use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 /// The number of lanes. Rejected: 8 lanes, because the work that is done once for all lanes costs
@@ -40,6 +43,7 @@ impl Vectors {
     }
 
     /// Divides each lane by `divisor`.
+    #[inline(always)]
     pub(crate) fn divide(&mut self, divisor: f64) {
         for components in [&mut self.x, &mut self.y, &mut self.z] {
             for component in components {
@@ -59,10 +63,20 @@ impl Vectors {
     }
 
     /// The low and the high corner of the box around all lanes that are numbers.
+    #[inline(always)]
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
-        let [x, y, z] = self.axes().map(|lanes| [least(lanes), greatest(lanes)]);
-        [DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1])]
+        let Self { x, y, z } = self;
+        [
+            DVec3::new(least(x), least(y), least(z)),
+            DVec3::new(greatest(x), greatest(y), greatest(z)),
+        ]
     }
+}
+
+/// Calls `calculate`, compiled for the widest registers of this processor.
+#[inline(always)]
+pub(crate) fn in_widest_registers<R>(calculate: impl FnOnce() -> R) -> R {
+    dispatch!(Level::new(), simd => simd.vectorize(calculate))
 }
 
 /// The least of the lanes that are numbers.
@@ -77,29 +91,25 @@ pub(crate) fn greatest(lanes: &Lanes) -> f64 {
     reduced(lanes, |one, other| if one > other { one } else { other })
 }
 
-/// Combines all lanes. The even and the odd lanes are combined side by side, so one instruction
-/// does two lanes.
+/// Combines all lanes. Four lanes are combined side by side, so one instruction does several.
 #[inline(always)]
 fn reduced(lanes: &Lanes, combined: impl Fn(f64, f64) -> f64) -> f64 {
-    let [mut even, mut odd] = [lanes[0], lanes[1]];
-    for pair in lanes.chunks_exact(2) {
-        even = combined(even, pair[0]);
-        odd = combined(odd, pair[1]);
+    let mut four = [lanes[0], lanes[1], lanes[2], lanes[3]];
+    for lanes in lanes.as_chunks::<4>().0 {
+        for (one, &lane) in four.iter_mut().zip(lanes) {
+            *one = combined(*one, lane);
+        }
     }
-    combined(even, odd)
+    combined(combined(four[0], four[1]), combined(four[2], four[3]))
 }
 
 /// Returns true only if all lanes of both are finite. May return false if a product of two lanes
 /// overflows.
 #[inline(always)]
 pub(crate) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
-    let [mut even, mut odd] = [0.0; 2];
-    for (pair, other) in lanes.chunks_exact(2).zip(others.chunks_exact(2)) {
-        // This is zero, or a NaN.
-        even += pair[0] * other[0] * 0.0;
-        odd += pair[1] * other[1] * 0.0;
-    }
-    even + odd == 0.0
+    // A product with an infinity or a NaN, times zero, is a NaN.
+    let is_finite = |(&one, &other): (&f64, &f64)| one * other * 0.0 == 0.0;
+    lanes.iter().zip(others).fold(true, |all, pair| all & is_finite(pair))
 }
 
 #[cfg(test)]

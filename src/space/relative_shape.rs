@@ -5,9 +5,6 @@
 //! computed with compensated sums. The roots of the quadratic equation are computed without
 //! cancellation. Neither a planet under the eye nor a grain of sand on it loses digits.
 
-#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
-#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
-
 use glam::{BVec3, DVec3};
 
 use super::lanes::{Lanes, Vectors};
@@ -85,17 +82,26 @@ impl RelativeShape {
     }
 
     /// Sets each lane of `normals` to the normal for the lane's direction and `t`.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn find_normals(&self, directions: &Vectors, t: &Lanes, normals: &mut Vectors) {
         match self {
             Self::Sphere(sphere) => {
-                normals.fill(|lane| sphere.normal(directions.get(lane), t[lane]));
+                normals.fill(
+                    #[inline(always)]
+                    |lane| sphere.normal(directions.get(lane), t[lane]),
+                );
             }
             Self::Plane(plane) => {
                 let normal = unit(plane.normal);
-                normals.fill(|lane| facing_eye(normal, directions.get(lane)));
+                normals.fill(
+                    #[inline(always)]
+                    |lane| facing_eye(normal, directions.get(lane)),
+                );
             }
-            Self::Block(block) => normals.fill(|lane| block.normal(directions.get(lane))),
+            Self::Block(block) => normals.fill(
+                #[inline(always)]
+                |lane| block.normal(directions.get(lane)),
+            ),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::bounds::Bounds;
 use super::camera::{Camera, SceneProjection};
+use super::lanes::in_widest_registers;
 use super::relative_shape::RelativeShape;
 use super::row::Row;
 use super::shading::{Shader, Shading};
@@ -129,8 +130,13 @@ impl Renderer {
                 end_of_band = work + WORK_OF_BAND;
             }
             self.row.begin_row(projection.upwards(row));
-            explanation.tests += self.cast_row(row);
-            self.shade_row(&shader, whole.row_mut(row), &mut explanation);
+            in_widest_registers(
+                #[inline(always)]
+                || {
+                    explanation.tests += self.cast_row(row);
+                    self.shade_row(&shader, whole.row_mut(row), &mut explanation);
+                },
+            );
         }
         (explanation, true)
     }
@@ -152,6 +158,7 @@ impl Renderer {
     }
 
     /// Finds the hits of the rays of `row`, and returns the number of tests.
+    #[inline(always)]
     fn cast_row(&mut self, row: u32) -> u64 {
         let mut tests = 0;
         if !self.tree.is_empty() {
@@ -171,6 +178,7 @@ impl Renderer {
     }
 
     /// Colours the pixels of a row.
+    #[inline(always)]
     fn shade_row(
         &mut self,
         shader: &Shader<'_>,

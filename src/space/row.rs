@@ -4,8 +4,6 @@
 //! has its own array, and so do the hits. A test of neighbouring rays is therefore one loop without
 //! branches.
 
-#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
-
 use std::ops::Range;
 
 use glam::DVec3;
@@ -78,6 +76,7 @@ impl Row {
 
     /// Tests the rays of these `columns` against the body with this index. If several bodies are at
     /// the same distance, the first one tested is hit. Returns the number of tests.
+    #[inline(always)]
     pub(crate) fn test(
         &mut self,
         columns: Range<usize>,
@@ -131,6 +130,7 @@ impl Row {
 
     /// The index of the body that the rays from `column` on hit, and the end of the columns that
     /// hit it, at most one column for each lane.
+    #[inline(always)]
     pub(crate) fn same_from(&self, column: usize) -> (Option<usize>, usize) {
         let found = self.found[column];
         let rest = &self.found[column..];
@@ -143,6 +143,7 @@ impl Row {
 
     /// Sets `stretch` to the rays of these columns, at most one for each lane. In the remaining
     /// lanes, the directions continue, and the last distance is repeated.
+    #[inline(always)]
     pub(crate) fn take(&self, columns: Range<usize>, stretch: &mut RayGroup) {
         let RayGroup { directions, t } = stretch;
         let count = columns.len();
@@ -174,7 +175,7 @@ struct Rays<'a> {
 impl Rays<'_> {
     /// Tests the rays against the body with this index. Updates `t` and `found` for each ray to
     /// which it is nearer than all bodies tested before.
-    #[inline(never)]
+    #[inline(always)]
     fn test(self, t: &mut [f64], found: &mut [u64], index: u64, distance: impl Fn(DVec3) -> f64) {
         let rays = self.x.iter().zip(self.y).zip(self.z);
         for (((&x, &y), &z), (t, found)) in rays.zip(t.iter_mut().zip(found)) {

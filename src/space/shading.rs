@@ -1,7 +1,5 @@
 //! Shading: the colours of neighbouring pixels that show the same body, or the sky.
 
-#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
-
 use glam::DVec3;
 
 use super::camera::SceneProjection;
@@ -64,7 +62,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Colours `pixels`, which show the sky.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
         let sky = self.scene.sky;
         let mut shares = [0; LANES];
@@ -82,6 +80,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Colours `pixels`, which show `body`. Returns the number of shadow rays and of their tests.
+    #[inline(always)]
     pub(crate) fn shade(
         &self,
         body: usize,
@@ -132,7 +131,7 @@ impl<'a> Shader<'a> {
 
     /// Sets the brightness without shadows. `normal` is the normal that all pixels share, if there
     /// is one.
-    #[inline(never)]
+    #[inline(always)]
     fn find_brightness(&self, normal: Option<DVec3>, shading: &mut Shading) {
         let sun = self.scene.sun;
         let Shading { normals, brightness, .. } = shading;
@@ -148,7 +147,7 @@ impl<'a> Shader<'a> {
 
     /// Sets the light from the brightness and the fog. `is_level` is true if all pixels are at the
     /// same `t`.
-    #[inline(never)]
+    #[inline(always)]
     fn find_light(&self, is_level: bool, shading: &mut Shading) {
         const WHOLE: f64 = 256.0;
         let Shading { stretch: RayGroup { t, .. }, brightness, light, .. } = shading;
@@ -172,6 +171,7 @@ impl<'a> Shader<'a> {
     ///
     /// The colour is looked up slightly below the surface. A surface between two layers of cubes would
     /// otherwise show a random mixture of both.
+    #[inline(always)]
     fn find_shares(&self, is_level: bool, scale: f64, shading: &mut Shading) {
         /// A part of a cube that is larger than any rounding and too small to be visible.
         const DEPTH: f64 = 1.0 / 1024.0;
@@ -192,7 +192,7 @@ impl<'a> Shader<'a> {
 
 /// Colours `pixels` with the weighted mean of two colours in linear light. The weights of the second are
 /// `shares`, from 0 to 1.
-#[inline(never)]
+#[inline(always)]
 fn mix([one, other]: [Rgb; 2], shares: &Lanes, pixels: &mut [Rgb]) {
     let is_one = |&share: &f64| (share == 0.0) | (share == 1.0);
     if shares.iter().fold(true, |all, share| all & is_one(share)) {

@@ -12,12 +12,9 @@
 //! Rong ("Bedtk", 2021) describe this layout. Rejected: a grid perpendicular to the light, as in
 //! the light buffer of Haines and Greenberg (1986). A few huge bodies would fill all its cells.
 
-#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
-#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
-
 use glam::DVec3;
 
-use super::lanes::{Lanes, Vectors, greatest};
+use super::lanes::{Lanes, Vectors, greatest, in_widest_registers};
 use super::relative_shape::RelativeBlock;
 use crate::world::scene::{Body, BodyShape, Sun};
 
@@ -122,7 +119,11 @@ impl Shadows {
                 return false;
             }
             exact += 1;
-            darken_behind(&occluder.shape, points, self.light.toward_sun, ambient, brightness);
+            let (shape, direction) = (&occluder.shape, self.light.toward_sun);
+            in_widest_registers(
+                #[inline(always)]
+                || darken_behind(shape, points, direction, ambient, brightness),
+            );
             greatest(brightness) <= ambient
         });
         (boxes, exact)
@@ -220,6 +221,7 @@ fn any_at(
 
 /// Sets the `brightness` of each of `points` to `ambient` if a ray from this point along the unit
 /// vector `direction` enters `shape` from outside.
+#[inline(always)]
 fn darken_behind(
     shape: &BodyShape,
     points: &Vectors,
