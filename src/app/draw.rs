@@ -173,10 +173,12 @@ impl App {
             game.and_then(|game| Overlay::new(game, PlayerId::FIRST, &options, preferences));
         let Some(overlay) = overlay else { return options.draw_middle(canvas, area) };
         let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
-        if !looks_back {
-            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
-        }
-        overlay.draw_hud(canvas, area, self.screen() == AppScreen::Playing);
+        let map = if looks_back {
+            None
+        } else {
+            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost)
+        };
+        overlay.draw_hud(canvas, area, map, self.screen() == AppScreen::Playing);
     }
 
     fn draw_options(&self) -> DrawOptions {

@@ -189,8 +189,14 @@ impl<'a> Overlay<'a> {
     }
 
     /// Draws the middle mark, the flash at the edge, and the compass. If `shows_events`, also draws
-    /// sounds and the note.
-    pub fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
+    /// sounds and the note, both beside the `map` panel.
+    pub fn draw_hud(
+        &self,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        map: Option<Rect>,
+        shows_events: bool,
+    ) {
         let Self { player, options, .. } = self;
         options.draw_middle(canvas, area);
         let heading = player.camera(options.field_of_view).heading;
@@ -203,16 +209,22 @@ impl<'a> Overlay<'a> {
         }
         if shows_events {
             let marks = self.preferences.marks;
-            let taken = if marks { self.draw_suspicions(canvas, area) } else { Vec::new() };
-            draw_sounds(canvas, area, (player.heard(), taken), heading, options.depth);
+            let taken = if marks { self.draw_suspicions(canvas, area, map) } else { Vec::new() };
+            draw_sounds(canvas, (area, map), (player.heard(), taken), heading, options.depth);
             if let Some(note) = player.note() {
                 draw_note(canvas, area, note);
             }
         }
     }
 
-    /// Draws the suspicion of each guard in view above the guard's head. Returns the areas.
-    fn draw_suspicions(&self, canvas: &mut impl Canvas, area: Rect) -> Vec<Rect> {
+    /// Draws the suspicion of each guard in view above the guard's head, or beside the map panel.
+    /// Returns the areas.
+    fn draw_suspicions(
+        &self,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        map: Option<Rect>,
+    ) -> Vec<Rect> {
         let Self { player, options, .. } = self;
         let (width, height) = (area.width.into(), area.height.into());
         let mut taken = Vec::new();
@@ -231,7 +243,8 @@ impl<'a> Overlay<'a> {
             let y = (head - 1.0).floor().max(ROWS_ABOVE_MARKS).min(f64::from(area.height - 1));
             let mark = Line::raw(text).style(suspicion.style(options.depth));
             let (x, y) = (area.x + x as u16, area.y + y as u16);
-            let place = Rect { x, y, width: columns, height: 1 }.intersection(area);
+            let place = Rect { x, y, width: columns, height: 1 };
+            let place = beside(map, place).intersection(area);
             canvas.draw_widget(mark, place);
             taken.push(place);
         }
@@ -239,7 +252,7 @@ impl<'a> Overlay<'a> {
     }
 
     /// Draws the map panel, if it is shown, and the ghost on it, if there is one. `view` must hold
-    /// the last picture.
+    /// the last picture. Returns the area of the panel.
     pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
@@ -247,12 +260,12 @@ impl<'a> Overlay<'a> {
         panel: &mut MapPanel,
         view: &View,
         ghost: Option<MapMark>,
-    ) {
+    ) -> Option<Rect> {
         let Self { game, player, options, .. } = self;
         let camera = &player.camera(options.field_of_view);
         panel.explore(game, camera, area.width);
         if !panel.is_shown {
-            return;
+            return None;
         }
         let guards = game.guards().filter(|guard| !guard.is_down);
         let guards = guards.map(|it| MapMark { position: it.position, heading: it.heading });
@@ -269,12 +282,11 @@ impl<'a> Overlay<'a> {
             .cones(&cones)
             .faded(game.alarm() > Alarm::Calm)
             .ghost(ghost);
-        if let Some(place) = page::minimap(area, &map, panel.is_narrow_in(area.width)) {
-            let inside = framed(canvas, place, "map");
-            map.paint(inside, canvas);
-            let extent = map.extent_within(inside.as_size());
-            panel.shown(extent, game, camera);
-        }
+        let place = page::minimap(area, &map, panel.is_narrow_in(area.width))?;
+        let inside = framed(canvas, place, "map");
+        map.paint(inside, canvas);
+        panel.shown(map.extent_within(inside.as_size()), game, camera);
+        Some(place)
     }
 }
 
@@ -323,11 +335,11 @@ const ROWS_ABOVE: u16 = 1;
 /// The minimum width of a picture with room for words, in columns.
 const COLUMNS_FOR_WORDS: u16 = 40;
 
-/// Draws a mark for each of `heard`, relative to the direction of view `heading`, outside the areas
-/// that are `taken`.
+/// Draws a mark for each of `heard`, relative to the direction of view `heading`, beside the `map` panel
+/// and outside the areas that are `taken`.
 fn draw_sounds(
     canvas: &mut impl Canvas,
-    picture: Rect,
+    (picture, map): (Rect, Option<Rect>),
     (heard, mut taken): (&[Heard], Vec<Rect>),
     heading: Heading,
     depth: ColorDepth,
@@ -340,9 +352,8 @@ fn draw_sounds(
     sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
     for heard in loudest.into_iter().take(MAX) {
         let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
-        let Some(area) = free_place(ring, angle(heard.bearing, heading), &text, &taken) else {
-            continue;
-        };
+        let angle = angle(heard.bearing, heading);
+        let Some(area) = free_place((ring, map), angle, &text, &taken) else { continue };
         canvas.draw_widget(Line::raw(text).style(style(heard.kind, depth)), area);
         taken.push(area);
     }
@@ -426,7 +437,12 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
 }
 
 /// The position of `text` on the ring, or the nearest free position.
-fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect> {
+fn free_place(
+    (ring, map): (Rect, Option<Rect>),
+    angle: f64,
+    text: &str,
+    taken: &[Rect],
+) -> Option<Rect> {
     let width = text.chars().count() as u16;
     let place = place(ring, angle, width);
     let along_a_side = matches!(RingSide::of(angle), RingSide::Left | RingSide::Right);
@@ -434,11 +450,21 @@ fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect
         let (by_x, by_y) = if along_a_side { (0, by) } else { (by * i32::from(width + 1), 0) };
         let x = u16::try_from(i32::from(place.x) + by_x).ok()?;
         let y = u16::try_from(i32::from(place.y) + by_y).ok()?;
-        let moved = Rect { x, y, ..place };
+        let moved = beside(map, Rect { x, y, ..place });
         (ring.intersection(moved) == moved).then_some(moved)
     };
     let nearest = (0..MAX as i32).flat_map(|by| [by, -by]);
     nearest.filter_map(moved).find(|place| taken.iter().all(|other| !other.intersects(*place)))
+}
+
+/// The position itself, or the nearest one to its left that is beside the `map` panel.
+fn beside(map: Option<Rect>, place: Rect) -> Rect {
+    match map {
+        Some(map) if map.intersects(place) => {
+            Rect { x: map.x.saturating_sub(place.width), ..place }
+        }
+        _ => place,
+    }
 }
 
 /// The position of a mark that is `width` columns wide.

@@ -30,7 +30,7 @@ fn shown(heard: &[Heard], heading: f64, (columns, rows): (u16, u16)) -> String {
     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
     let heading = Heading::from_degrees(heading).unwrap();
     let area = Rect::new(0, 0, columns, rows);
-    draw_sounds(&mut buffer, area, (heard, Vec::new()), heading, ColorDepth::Mono);
+    draw_sounds(&mut buffer, (area, None), (heard, Vec::new()), heading, ColorDepth::Mono);
     let lines = buffer.content().chunks(columns.into());
     lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
 }
@@ -58,6 +58,22 @@ fn sounds_from_one_direction_are_side_by_side() {
         for wanted in ["!!!", "&&&", "+++", "..."] {
             assert!(text.contains(wanted), "{wanted} at {degrees}:\n{text}");
         }
+    }
+}
+
+#[test]
+fn a_sound_behind_the_map_is_shown_beside_it() {
+    let [picture, map] = [Rect::new(0, 0, 80, 23), Rect::new(50, 0, 30, 20)];
+    for degrees in [30.0, 60.0, 90.0, 120.0] {
+        let mut buffer = Buffer::empty(picture);
+        let heard = [heard(degrees, SoundKind::Shout, 3), heard(degrees, SoundKind::Bell, 2)];
+        let places = (picture, Some(map));
+        let ahead = Heading::from_degrees(0.0).unwrap();
+        draw_sounds(&mut buffer, places, (&heard, Vec::new()), ahead, ColorDepth::Mono);
+        let drawn =
+            |place: Rect| place.positions().filter(|&it| buffer[it] != Cell::default()).count();
+        assert_eq!(drawn(map), 0, "at {degrees}");
+        assert!(drawn(picture) > 5, "both sounds at {degrees}");
     }
 }
 

@@ -192,8 +192,8 @@ impl Ui {
                 overhead::draw(canvas, area, &options, player, (room, ignored), &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
-                    overlay.draw_map(canvas, area, &mut stay.map, &view, None);
-                    overlay.draw_hud(canvas, area, page == Page::Room);
+                    let map = overlay.draw_map(canvas, area, &mut stay.map, &view, None);
+                    overlay.draw_hud(canvas, area, map, page == Page::Room);
                 }
             }
             VIEW.set(Some(view));
