@@ -48,4 +48,4 @@ pub use self::protocol::Protocol;
 pub use self::session::Session;
 pub use self::tmux::TmuxClient;
 #[cfg(feature = "cli")]
-pub(crate) use self::unix::take_keys_from_terminal;
+pub(crate) use self::unix::{accepts_output, take_keys_from_terminal};

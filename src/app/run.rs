@@ -87,8 +87,11 @@ pub fn play(
     let (mut session, detection) = enter(&settings, recording.terminal)?;
     let mut app = App { detection, ..App::opened(opening, settings, store) };
     app.script = recording.script;
-    app.run(&mut session)?;
+    let ended = app.run(&mut session);
+    // The disk may be slow, and the shell needs its terminal.
+    drop(session);
     _ = app.leave_game();
+    ended?;
     let trouble = app.store.trouble().map(str::to_owned);
     Ok(ClosingLines { done: app.left, trouble })
 }

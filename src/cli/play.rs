@@ -14,7 +14,7 @@ use super::{Error, level};
 use crate::app;
 use crate::app::{ClosingLines, InitialState, Levels, Offers, Settings};
 use crate::game::{Header, LevelName, Rules};
-use crate::terminal::{self, take_keys_from_terminal};
+use crate::terminal::{self, accepts_output, take_keys_from_terminal};
 use crate::world::Difficulty;
 
 /// Play; without MAP, from the title screen
@@ -131,10 +131,14 @@ fn header(opening: &InitialState, level: Option<LevelName>, difficulty: Difficul
 /// Prints a line about the game, and a sentence about any problem with the stored data.
 pub(crate) fn say_farewell(ClosingLines { done, trouble }: &ClosingLines, damage: Option<String>) {
     // The terminal may be gone, and then nobody reads the output.
-    if let Some(done) = done {
+    if let Some(done) = done
+        && accepts_output(&io::stdout())
+    {
         _ = writeln!(io::stdout(), "{done}");
     }
-    if let Some(sentence) = trouble.clone().or(damage) {
+    if let Some(sentence) = trouble.clone().or(damage)
+        && accepts_output(&io::stderr())
+    {
         Error::machine(sentence).warn();
     }
 }

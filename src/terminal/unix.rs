@@ -161,6 +161,15 @@ pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     Ok(())
 }
 
+/// Returns true as soon as `stream` accepts bytes, and false if it accepts none for a while. A write to a terminal
+/// whose link is down would not end.
+#[cfg(feature = "cli")]
+pub(crate) fn accepts_output(stream: &impl AsFd) -> bool {
+    const TIMEOUT: Duration = Duration::from_millis(250);
+    let mut streams = [PollFd::new(stream, PollFlags::OUT)];
+    wait(&mut streams, Some(TIMEOUT)).is_ok() && !streams[0].revents().is_empty()
+}
+
 /// Opens the terminal `stream` again, so that reads and writes do not block. Duplicates it if its name does not
 /// lead to the terminal.
 fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {

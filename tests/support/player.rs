@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use pty_process::Size;
 use pty_process::blocking::{Command, Pts, Pty};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags};
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
@@ -204,6 +205,19 @@ impl Player {
             assert!(Instant::now() < deadline, "the terminal never was full");
             thread::sleep(Duration::from_millis(5));
         }
+    }
+
+    /// Keeps the terminal full for as long as it does not read.
+    pub(crate) fn keep_full(&self) {
+        let name = rustix::termios::ttyname(&self.terminal, Vec::new()).unwrap();
+        let flags = OFlags::WRONLY | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+        let terminal = rustix::fs::open(name, flags, Mode::empty()).unwrap();
+        let shared = Arc::clone(&self.shared);
+        thread::spawn(move || {
+            while !shared.state.lock().unwrap().reading {
+                _ = rustix::io::write(&terminal, &[b' '; 1024]);
+            }
+        });
     }
 
     /// Makes the terminal interpret and echo keys, as it did before the program.

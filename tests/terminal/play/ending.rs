@@ -115,6 +115,19 @@ fn the_game_ends_even_while_the_link_is_down() {
     assert!(ending.attributes_restored);
 }
 
+/// The line about the game has nowhere to go.
+#[test]
+fn the_game_ends_even_if_the_terminal_stays_full() {
+    let mut game = Game::start();
+    game.press(Key::Right);
+    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+    game.set_reading(false);
+    game.wait_until_full();
+    game.keep_full();
+    game.signal(Signal::TERM);
+    assert!(game.wait_for_end().attributes_restored);
+}
+
 #[cfg(debug_assertions)]
 #[test]
 fn a_panic_restores_the_terminal_and_then_prints_one_sentence() {
