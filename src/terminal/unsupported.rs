@@ -6,8 +6,8 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::error::Kind;
-use super::guard::Guard;
+use super::error::TerminalErrorKind;
+use super::guard::TerminalGuard;
 use super::{Error, QuitReason, WindowSize};
 
 /// A device. None can exist on this platform.
@@ -50,7 +50,7 @@ pub(crate) fn accepts_output<T>(_: &T) -> bool {
 
 impl Device {
     pub(crate) fn open() -> Result<Self, Error> {
-        Err(Kind::UnsupportedPlatform.into())
+        Err(TerminalErrorKind::UnsupportedPlatform.into())
     }
 
     pub(crate) fn make_raw(&self) -> io::Result<()> {
@@ -91,8 +91,8 @@ impl Device {
 }
 
 impl Signals {
-    pub(crate) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
-        match *guard.device() {}
+    pub(crate) fn listen(guard: &Arc<TerminalGuard>) -> io::Result<Self> {
+        match guard.device {}
     }
 
     pub(crate) fn take(&mut self) -> Vec<Signal> {
