@@ -494,14 +494,16 @@ fn style(kind: SoundKind, depth: ColorDepth) -> Style {
     }
 }
 
-/// The style with this colour among 16, among 256 and among all colours.
+/// The style with this colour among 16, among 256 and among all colours, on black: the background of a light
+/// terminal would make it hard to read.
 fn colored(depth: ColorDepth, of_16: u8, of_256: u8, (red, green, blue): (u8, u8, u8)) -> Style {
-    match depth {
-        ColorDepth::Mono => Style::new().add_modifier(Modifier::REVERSED),
-        ColorDepth::Indexed16 => Style::new().fg(Color::Indexed(of_16)),
-        ColorDepth::Indexed256 => Style::new().fg(Color::Indexed(of_256)),
-        ColorDepth::True => Style::new().fg(Color::Rgb(red, green, blue)),
-    }
+    let (color, black) = match depth {
+        ColorDepth::Mono => return Style::new().add_modifier(Modifier::REVERSED),
+        ColorDepth::Indexed16 => (Color::Indexed(of_16), Color::Indexed(0)),
+        ColorDepth::Indexed256 => (Color::Indexed(of_256), Color::Indexed(16)),
+        ColorDepth::True => (Color::Rgb(red, green, blue), Color::Rgb(0, 0, 0)),
+    };
+    Style::new().fg(color).bg(black)
 }
 
 /// The suspicion of a guard.
