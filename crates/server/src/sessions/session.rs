@@ -159,13 +159,18 @@ impl Session {
 
     /// Looks at the latest snapshot. A key that has changed nothing in the room no longer waits for a frame.
     pub(crate) fn look_at(&mut self, room: &RoomView) {
-        if self.unanswered.awaits(true) && self.has_acted(room) && !self.ui.is_stale(Some(room)) {
+        let has_acted = |stay: &Stay| stay.has_acted(room);
+        if self.unanswered.awaits(true)
+            && self.ui.stay.as_ref().is_none_or(has_acted)
+            && !self.ui.is_stale(Some(room))
+        {
             self.unanswered.forget_wanted();
         }
     }
 
-    fn has_acted(&self, room: &RoomView) -> bool {
-        self.ui.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
+    fn shows_intents(&self, room: Option<&RoomView>) -> bool {
+        let stay = self.ui.stay.as_ref().zip(room);
+        stay.is_none_or(|(stay, room)| stay.shows_intents(room))
     }
 
     /// Takes the session's requests since the last call.
@@ -198,8 +203,8 @@ impl Session {
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
         // Measured before drawing, so that the picture shows the newest figures.
         self.measure(now);
-        let has_acted = room.is_none_or(|room| self.has_acted(room));
-        let answered = self.unanswered.answer(has_acted);
+        let shows_intents = self.shows_intents(room);
+        let answered = self.unanswered.answer(shows_intents);
         self.answered = self.answered.into_iter().chain(answered).min();
         let Self { protocol, ui, .. } = self;
         if let Some(room) = room {
@@ -301,8 +306,7 @@ impl Session {
         let is_stale = stale_from == Some(Duration::ZERO);
         // A picture that is out of date soon is not refined meanwhile.
         let from = stale_from.unwrap_or_default();
-        let acts = |room: &RoomView| self.ui.stay.as_ref().is_none_or(|stay| stay.acts_anew(room));
-        let is_prompt = is_stale && self.unanswered.awaits(room.is_none_or(acts));
+        let is_prompt = is_stale && self.unanswered.awaits(self.shows_intents(room));
         Some(self.next_frame(is_prompt).max(from).max(looks_at))
     }
 

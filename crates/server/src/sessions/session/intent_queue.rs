@@ -23,6 +23,8 @@ const MAX_WAITING: usize = 8;
 pub(crate) struct IntentQueue {
     sent: Intents,
     sent_at: Option<Duration>,
+    /// The time at which a change was last sent.
+    changed_at: Option<Duration>,
     waiting: VecDeque<Intents>,
     /// The turn and the tilt not sent yet, in units of [`Look`].
     angles: [i32; 2],
@@ -56,6 +58,9 @@ impl IntentQueue {
         if self.next_at().is_none_or(|due| due > now) {
             return None;
         }
+        if !self.is_renewed() {
+            self.changed_at = Some(now);
+        }
         self.sent = self.waiting.pop_front().unwrap_or(self.sent);
         self.sent_at = Some(now);
         let [turn, tilt] = std::mem::take(&mut self.angles).map(|angle| angle as i16);
@@ -64,13 +69,17 @@ impl IntentQueue {
 
     /// The time at which [`take`](Self::take) next returns intents; `None` for never.
     pub(crate) fn next_at(&self) -> Option<Duration> {
-        let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
-        let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
-        match (is_renewed, self.sent.is_empty()) {
-            (false, _) => Some(after(MIN_INTERVAL)),
-            (true, false) => Some(after(RENEWAL_INTERVAL)),
+        let after = |sent: Option<_>, time| sent.map_or(Duration::ZERO, |sent| sent + time);
+        match (self.is_renewed(), self.sent.is_empty()) {
+            (false, _) => Some(after(self.changed_at, MIN_INTERVAL)),
+            (true, false) => Some(after(self.sent_at, RENEWAL_INTERVAL)),
             (true, true) => None,
         }
+    }
+
+    /// Returns true if the next intents are the last ones again.
+    fn is_renewed(&self) -> bool {
+        self.waiting.is_empty() && self.angles == [0, 0]
     }
 }
 
@@ -111,6 +120,8 @@ mod tests {
         intents.set(forward);
         assert_eq!(intents.take(at(249)), None);
         assert_eq!(intents.take(at(250)), Some(forward));
+        intents.set(Intents::new());
+        assert_eq!(intents.take(at(251)), Some(Intents::new()), "it does not delay a change");
     }
 
     #[test]

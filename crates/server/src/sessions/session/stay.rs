@@ -134,9 +134,10 @@ impl Stay {
         self.acted(room).is_none_or(|acted| acted == self.intents.newest())
     }
 
-    /// Returns true if `room` acts on other intents of the member than in the last picture.
-    pub(crate) fn acts_anew(&self, room: &RoomView) -> bool {
-        self.shown.as_ref().is_none_or(|shown| shown.acted != self.acted(room))
+    /// Returns true if `room` acts on other intents of the member than in the last picture, or on the newest ones.
+    pub(crate) fn shows_intents(&self, room: &RoomView) -> bool {
+        self.has_acted(room)
+            || self.shown.as_ref().is_none_or(|shown| shown.acted != self.acted(room))
     }
 
     /// The member's intents on which `room` has acted.

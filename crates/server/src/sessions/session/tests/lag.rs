@@ -105,7 +105,7 @@ fn holding(key: &str, frames_per_second: u32) -> (Rig, usize) {
     let one = rig.member("Mara", (80, 24), Speaks::Plain);
     rig.live.replace(Config { frames_per_second, ..Config::default() });
     rig.send(one, key);
-    rig.pump(500);
+    rig.pump(507);
     for _ in 0..30 {
         rig.send(one, key);
         rig.pump(33);
@@ -120,6 +120,24 @@ fn a_new_key_is_answered_early_while_another_repeats() {
     rig.send(one, "m");
     rig.pump(60);
     assert_ne!(rig.text(one), before, "the map is hidden");
+}
+
+#[test]
+fn taps_are_answered_early_while_another_key_repeats() {
+    for frames_per_second in [10, 20] {
+        let (mut rig, one) = holding("w", frames_per_second);
+        let key_time = rig.metrics().key_time.0.clone();
+        let (count, sum) = (key_time.count(), key_time.sum());
+        for tap in 0..40 {
+            rig.send(one, ["l", "\x1b[C"][tap % 2]);
+            for _ in 0..10 + tap % 7 {
+                rig.send(one, "w");
+                rig.pump(33);
+            }
+        }
+        let mean = (key_time.sum() - sum) / (key_time.count() - count) as f64;
+        assert!(mean < 0.015, "{mean} s at {frames_per_second} frames a second");
+    }
 }
 
 #[test]
