@@ -6,10 +6,9 @@
 //! ```
 //!
 //! The server is a separate process on processor 0, and all clients are in this process on
-//! processor 1. Each client walks about in a room, answers the terminal's queries, counts frames
-//! and bytes, and measures the time from a key to the frame that answers it. `--silent N` adds
-//! connections that never read. `--server PATH` names the program; the default is
-//! `cellcaster-server` beside this one.
+//! processor 1. Each client walks about in a room, and answers the terminal's queries. The figures are
+//! the server's own metrics. `--silent N` adds connections that never read. `--server PATH` names the
+//! program; the default is `cellcaster-server` beside this one.
 //!
 //! `--browsers N` also measures before that, for as long, while N browsers watch the room with the most players. It
 //! prints the share of the processor that they add.
@@ -31,8 +30,6 @@
 mod browser;
 mod bus;
 mod client;
-#[path = "../../server/tests/support/lamp.rs"]
-mod lamp;
 mod plan;
 mod report;
 mod server;
@@ -41,8 +38,6 @@ mod table;
 #[path = "../../server/tests/support/wanderer.rs"]
 mod wanderer;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use tokio::runtime::Builder;
@@ -52,7 +47,7 @@ use tokio::time::sleep;
 use browser::Browsers;
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
-use report::{Figures, Tally};
+use report::{Figures, Samples};
 use server::{ServerProcess, Usage, between, pin};
 
 /// The time between two connections.
@@ -125,15 +120,14 @@ async fn play(
     plan: &Load,
     servers: &[ServerProcess],
 ) -> Result<Measured, Box<dyn std::error::Error>> {
-    let counts = Arc::new(AtomicBool::new(false));
     let mut clients = JoinSet::new();
     let empty = usage(servers);
     for (number, server) in (0..plan.sessions).zip(servers.iter().cycle()) {
-        let counts = counts.clone();
-        let (address, delay) = (server.address, plan.answer_delay());
-        clients.spawn(async move {
-            let played = client::play(address, number as u64, delay, &counts);
-            played.await.map_err(|it| it.to_string())
+        let played = client::play(server.address, number as u64, plan.answer_delay());
+        clients.spawn(async {
+            if let Err(error) = played.await {
+                eprintln!("a client failed: {error}");
+            }
         });
         sleep(PAUSE).await;
     }
@@ -143,21 +137,20 @@ async fn play(
     let walking = usage(servers);
     let mut silent = Vec::new();
     for _ in 0..plan.silent {
-        silent.push(client::connect(servers[0].address, 0).await?);
+        silent.push(wanderer::connect(servers[0].address, "load", client::WINDOW).await?);
     }
     let browsers = match plan.browsers {
         0 => None,
         count => Some(browser::watch((count, plan.seconds), &servers[0]).await?),
     };
     sleep(Duration::from_secs(2)).await;
-    let (before, others_before) = (usage(servers), plan.others());
-    counts.store(true, Ordering::Release);
+    let samples = || servers.iter().map(soak::figures).collect::<Result<Samples, _>>();
+    let (before, others_before, first) = (usage(servers), plan.others(), samples()?);
     sleep(Duration::from_secs(plan.seconds)).await;
-    counts.store(false, Ordering::Release);
-    let (after, others_after) = (usage(servers), plan.others());
-    let tallies = ended(clients).await;
+    let (after, others_after, last) = (usage(servers), plan.others(), samples()?);
+    let processor = between(&before, &after);
     Ok(Measured {
-        figures: Figures::of(&tallies, plan.seconds, &between(&before, &after)),
+        figures: Figures::of(plan.sessions, plan.seconds, [&first, &last], &processor),
         megabytes: [&empty, &walking, &after].map(|usage| megabytes(usage)),
         others: between(&others_before, &others_after),
         browsers,
@@ -171,17 +164,4 @@ fn usage(servers: &[ServerProcess]) -> Vec<Usage> {
 
 fn megabytes(usage: &[Usage]) -> f64 {
     usage.iter().map(|it| it.megabytes).sum()
-}
-
-/// The counts of the clients.
-async fn ended(mut clients: JoinSet<Result<Tally, String>>) -> Vec<Tally> {
-    let mut tallies = Vec::new();
-    while let Some(client) = clients.join_next().await {
-        match client {
-            Ok(Ok(tally)) => tallies.push(tally),
-            Ok(Err(error)) => eprintln!("a client failed: {error}"),
-            Err(error) => eprintln!("a client failed: {error}"),
-        }
-    }
-    tallies
 }

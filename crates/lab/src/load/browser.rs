@@ -118,7 +118,7 @@ impl Browsers {
     pub(crate) fn print(&self, alone: &Figures) {
         let share = |busy: f64| format!("{:.1} %", busy * 100.0);
         // With browsers, the players may have got fewer frames.
-        let frames = alone.frames[0] * alone.sessions as f64;
+        let frames = alone.frames * alone.sessions as f64;
         let added = self.busy - alone.busy() * self.frames / frames.max(1.0);
         let player = alone.busy() / alone.sessions.max(1) as f64;
         println!(

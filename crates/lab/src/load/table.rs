@@ -54,7 +54,7 @@ fn row(who: &str, rate: u32, players: usize, measured: &Measured, megabytes: f64
     let plays = figures.sessions > 0;
     let rounded = |value: f64| if plays { Value::Number(value.round()) } else { Value::None };
     let values = vec![
-        if plays { Value::Number(to_tenths(figures.frames[0])) } else { Value::None },
+        if plays { Value::Number(to_tenths(figures.frames)) } else { Value::None },
         rounded(figures.key_time[0]),
         rounded(figures.key_time[1]),
         rounded(figures.kilobytes),

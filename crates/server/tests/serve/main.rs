@@ -5,8 +5,6 @@
 #[path = "../../../../tests/support/emulator.rs"]
 mod emulator;
 mod kept;
-#[path = "../support/lamp.rs"]
-mod lamp;
 #[path = "../../../../tests/support/looks.rs"]
 mod looks;
 #[cfg(feature = "system-tests")]

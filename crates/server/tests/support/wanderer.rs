@@ -79,20 +79,50 @@ pub(crate) async fn visit(
     Ok(leaving)
 }
 
+/// Opens a session in a window of this size. Dropping the handle ends the connection. Also returns a second descriptor
+/// of the socket.
+pub(crate) async fn connect(
+    address: SocketAddr,
+    user: &str,
+    [columns, rows]: [u32; 2],
+) -> Result<(Handle<Anyone>, Channel<Msg>, std::net::TcpStream), Error> {
+    let socket = TcpStream::connect(address).await?.into_std()?;
+    socket.set_nodelay(true)?;
+    let stream = TcpStream::from_std(socket.try_clone()?)?;
+    let config = Arc::<client::Config>::default();
+    let mut handle = client::connect_stream(config, stream, Anyone).await?;
+    while !handle.authenticate_none(user).await?.success() {}
+    let channel = handle.channel_open_session().await?;
+    channel.set_env(false, "COLORTERM", "truecolor").await?;
+    channel.request_pty(false, "xterm-256color", columns, rows, 0, 0, &[]).await?;
+    channel.request_shell(false).await?;
+    Ok((handle, channel, socket))
+}
+
+/// The replies to the terminal queries in `data`. `unread` holds the last bytes before it, which may contain the start
+/// of a query.
+pub(crate) fn replies(unread: &mut Vec<u8>, data: &[u8]) -> Vec<u8> {
+    unread.extend_from_slice(data);
+    let mut replies = Vec::new();
+    for query in unread.windows(4).filter(|it| it.starts_with(b"\x1b[")) {
+        match query {
+            [_, _, b'5', b'n'] => replies.extend_from_slice(b"\x1b[0n"),
+            [_, _, b'6', b'n'] => replies.extend_from_slice(b"\x1b[1;1R"),
+            [_, _, b'c', _] => replies.extend_from_slice(b"\x1b[?62;22c"),
+            _ => {}
+        }
+    }
+    // A query of three bytes at the very end is answered with the next data. Each frame ends with a query
+    // of four bytes.
+    let kept = unread.len().saturating_sub(3);
+    unread.drain(..kept);
+    replies
+}
+
 impl Wanderer {
     async fn connect(address: SocketAddr, mut chance: SplitMix64) -> Result<Self, Error> {
-        let socket = TcpStream::connect(address).await?.into_std()?;
-        socket.set_nodelay(true)?;
-        let stream = TcpStream::from_std(socket.try_clone()?)?;
-        let config = Arc::<client::Config>::default();
-        let mut handle = client::connect_stream(config, stream, Anyone).await?;
         let user = format!("soak{}", chance.below(100_000));
-        while !handle.authenticate_none(&user).await?.success() {}
-        let channel = handle.channel_open_session().await?;
-        channel.set_env(false, "COLORTERM", "truecolor").await?;
-        let [columns, rows] = window(&mut chance);
-        channel.request_pty(false, "xterm-256color", columns, rows, 0, 0, &[]).await?;
-        channel.request_shell(false).await?;
+        let (handle, channel, socket) = connect(address, &user, window(&mut chance)).await?;
         let next_key = Instant::now() + WAY_PAUSE;
         Ok(Self { handle, channel, chance, unread: Vec::new(), next_key, keys: 0, socket })
     }
@@ -159,21 +189,8 @@ impl Wanderer {
 
     /// Replies to the terminal queries in `data`.
     async fn answer(&mut self, data: &[u8]) -> Result<(), Error> {
-        self.unread.extend_from_slice(data);
-        let mut answers = Vec::new();
-        for query in self.unread.windows(4).filter(|it| it.starts_with(b"\x1b[")) {
-            match query {
-                [_, _, b'5', b'n'] => answers.extend_from_slice(b"\x1b[0n"),
-                [_, _, b'6', b'n'] => answers.extend_from_slice(b"\x1b[1;1R"),
-                [_, _, b'c', _] => answers.extend_from_slice(b"\x1b[?62;22c"),
-                _ => {}
-            }
-        }
-        // A query of three bytes at the very end is answered with the next data. Each frame ends with a query
-        // of four bytes.
-        let kept = self.unread.len().saturating_sub(3);
-        self.unread.drain(..kept);
-        if answers.is_empty() { Ok(()) } else { self.channel.data(&answers[..]).await }
+        let replies = replies(&mut self.unread, data);
+        if replies.is_empty() { Ok(()) } else { self.channel.data(&replies[..]).await }
     }
 }
 
