@@ -172,18 +172,26 @@ impl RowEncoder {
         }
         let notation = notation(row.targets, pen.palette().is_on);
         let price = Price::at(fidelity, notation);
-        self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
-        self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
-        self.shift(pen, shifts, &mut row, price);
-        self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
+        if effort == Effort::Search {
+            self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
+            self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
+            self.shift(pen, shifts, &mut row, price);
+            self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
+        }
         let terms = RowParameters { price, style: pen.style, repeats: pen.repeats };
         let mut store = ColorTables { inks: &mut self.inks, palette: pen.palette() };
         let wanted =
             |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
-        let (keep, actions) = (&self.keep, &mut self.actions);
+        let actions = &mut self.actions;
         match effort {
-            Effort::Search => self.trellis.search(keep, wanted, terms, &mut store, actions),
-            Effort::Greedy => greedy::choose(keep, wanted, terms, &mut store, actions),
+            Effort::Search => self.trellis.search(&self.keep, wanted, terms, &mut store, actions),
+            Effort::Greedy => {
+                let is_wrong = |column: usize, inks: &mut Inks| {
+                    let (shown, target) = (row.shown[column], row.targets[column]);
+                    shown != target && error(shown, target, row.glyph_table, inks) > price.farthest
+                };
+                greedy::choose(0..row.width(), is_wrong, wanted, terms, &mut store, actions);
+            }
         }
         for &(column, action) in &self.actions {
             match action {
@@ -545,7 +553,23 @@ fn errors<'a>(row: &'a ScreenRow, inks: &'a mut Inks) -> impl Iterator<Item = In
 }
 
 /// The largest distance between two colours at the same place. Infinite if the cells cannot be compared.
+#[inline]
 fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
+    if let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) {
+        let errors = [0, 1].map(|half| inks.of(shown[half]).distance(inks.of(wanted[half])));
+        return errors[0].max(errors[1]);
+    }
+    error_of_forms(shown, wanted, glyph_table, inks)
+}
+
+/// The same as [`error`] for cells of any form.
+#[inline(never)]
+fn error_of_forms(
+    shown: PackedCell,
+    wanted: PackedCell,
+    glyph_table: &GlyphTable,
+    inks: &mut Inks,
+) -> f32 {
     let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
     let pairs = match (shown_form, form) {
