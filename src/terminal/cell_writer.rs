@@ -6,9 +6,9 @@
 //! Ratatui's own backends send both colours if one differs, and 25 bytes for a frame without a change.
 //!
 //! The writer keeps a model of the screen, cell by cell. It does not send cells that are already right. If parts of a
-//! row have moved sideways, it makes the terminal shift them. At a [`Fidelity`] that is not exact, it searches each
-//! row for the cheapest way to show it within the tolerance: half blocks or characters, in true colour or in a
-//! palette. A screen that does not change becomes exact in ten frames.
+//! row have moved sideways, it makes the terminal shift them, unless the [`Effort`] is greedy. At a [`Fidelity`] that is
+//! not exact, it searches each row for the cheapest way to show it within the tolerance: half blocks or characters, in
+//! true colour or in a palette. A screen that does not change becomes exact in ten frames.
 
 mod block;
 mod bytes;

@@ -55,8 +55,13 @@ const OWN: f32 = 1e6;
 /// The distance ΔE of CIE76.
 #[inline]
 pub(crate) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
+    squared_distance(one, other).sqrt()
+}
+
+#[inline]
+fn squared_distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     let [l, a, b] = [one[0] - other[0], one[1] - other[1], one[2] - other[2]];
-    (l * l + a * a + b * b).sqrt()
+    l * l + a * a + b * b
 }
 
 /// The nearest of at most 256 points, given component by component, and the square of its distance.
@@ -196,6 +201,12 @@ impl Price {
     #[inline]
     pub(crate) fn of_distance(self, distance: f32) -> f32 {
         if distance > self.farthest { f32::INFINITY } else { distance * self.bytes }
+    }
+
+    /// Returns true if one colour may be shown in place of another.
+    #[inline]
+    pub(crate) fn allows(self, shown: Ink, wanted: Ink) -> bool {
+        squared_distance(shown.lab, wanted.lab) <= self.farthest * self.farthest
     }
 
     /// The price of showing one colour in place of another, in bytes. Infinite if the error exceeds

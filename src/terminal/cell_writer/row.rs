@@ -188,7 +188,7 @@ impl RowEncoder {
             Effort::Greedy => {
                 let is_wrong = |column: usize, inks: &mut Inks| {
                     let (shown, target) = (row.shown[column], row.targets[column]);
-                    shown != target && error(shown, target, row.glyph_table, inks) > price.farthest
+                    !is_near(shown, target, row.glyph_table, inks, price)
                 };
                 greedy::choose(0..row.width(), is_wrong, wanted, terms, &mut store, actions);
             }
@@ -552,24 +552,27 @@ fn errors<'a>(row: &'a ScreenRow, inks: &'a mut Inks) -> impl Iterator<Item = In
     )
 }
 
-/// The largest distance between two colours at the same place. Infinite if the cells cannot be compared.
+/// Returns true if a cell may be shown in place of another: if its error is within the tolerance.
 #[inline]
-fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
-    if let Some((shown, wanted)) = shown.halves().zip(wanted.halves()) {
-        let errors = [0, 1].map(|half| inks.of(shown[half]).distance(inks.of(wanted[half])));
-        return errors[0].max(errors[1]);
-    }
-    error_of_forms(shown, wanted, glyph_table, inks)
-}
-
-/// The same as [`error`] for cells of any form.
-#[inline(never)]
-fn error_of_forms(
+fn is_near(
     shown: PackedCell,
     wanted: PackedCell,
     glyph_table: &GlyphTable,
     inks: &mut Inks,
-) -> f32 {
+    price: Price,
+) -> bool {
+    if shown == wanted {
+        return true;
+    }
+    let Some(([above, below], [upper, lower])) = shown.halves().zip(wanted.halves()) else {
+        return error(shown, wanted, glyph_table, inks) <= price.farthest;
+    };
+    let mut is_near = |one, other| one == other || price.allows(inks.of(one), inks.of(other));
+    is_near(above, upper) && is_near(below, lower)
+}
+
+/// The largest distance between two colours at the same place. Infinite if the cells cannot be compared.
+fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
     let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
     let pairs = match (shown_form, form) {
