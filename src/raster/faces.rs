@@ -17,35 +17,30 @@ use super::texture_columns::{self, TextureColumns};
 use crate::cast::Side;
 use crate::color::Rgb;
 use crate::visibility::{
-    DrawList, Face, FaceColumn, FaceTexels, Facing, Faded, FrameContext, Lighting, Material, Pass,
-    SideLit, Surface,
+    DrawList, Face, FaceColumn, FaceTexels, Facing, FrameContext, Lighting, Material, Pass, Surface,
 };
 use crate::world::texture::MipLevel;
-use crate::world::{FaceLight, Glass, Paint, Texture, TextureId};
+use crate::world::{Glass, Paint, Texture, TextureId};
 
 /// Draws the faces of `list` that hide what is behind them.
 pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target<'_>) {
-    for face in &list.faces {
-        if let Material::Opaque(paint) = face.material {
-            ShownFace::new(scene, list, face).record(paint, target);
-        }
+    let opaque = || {
+        list.faces.iter().filter_map(|face| match face.material {
+            Material::Opaque(paint) => Some((ShownFace::new(scene, list, face), paint)),
+            Material::Masked(_) | Material::Translucent(_) => None,
+        })
+    };
+    if target.counts() || target.keeps_surfaces() {
+        opaque().for_each(|(face, paint)| face.record(paint, target));
     }
     let band = target.band_mut();
     let Range { start, end } = band.rows();
     let at_once = texture_columns::rows_at_once(band.width()) as u32;
     for first in (start..end).step_by(at_once as usize) {
         let rows = first..end.min(first + at_once);
-        for face in &list.faces {
-            let Material::Opaque(paint) = face.material else { continue };
-            let shown = ShownFace::new(scene, list, face);
-            if shown.columns.iter().all(|column| column.rows.within(&rows).is_empty()) {
-                continue;
-            }
-            let is_fully_lit = face.light == FaceLight::FULL && scene.world.fog().is_none();
-            if let Some(side) = shown.side().filter(|_| is_fully_lit) {
-                shown.draw(paint, &rows, band, |_| SideLit(side));
-            } else {
-                shown.draw(paint, &rows, band, |index| shown.lighting(index));
+        for (face, paint) in opaque() {
+            if face.columns.iter().any(|column| !column.rows.within(&rows).is_empty()) {
+                face.draw(paint, &rows, band);
             }
         }
     }
@@ -104,13 +99,33 @@ impl<'a> ShownFace<'a> {
     }
 
     /// The lighting of a column.
-    fn lighting(&self, index: usize) -> Faded {
+    #[inline]
+    fn lighting(&self, index: usize) -> Lighting {
         let FaceColumn { t, u, .. } = self.columns[index];
         let (light, fog) = (self.face.light.at(u), self.scene.world.fog());
         match self.face.facing {
-            Facing::Side(side) => Faded::of_wall(side, light, fog, t),
-            _ => Faded::of_surface(self.normal(index), light, fog, t),
+            Facing::Side(side) => Lighting::of_wall(side, light, fog, t),
+            _ => Lighting::of_surface(self.normal(index), light, fog, t),
         }
+    }
+
+    /// Passes the columns of `range`, which must not be empty, to `draw`. Neighbouring columns in the same
+    /// lighting are passed together.
+    #[inline]
+    fn for_each_lighting(&self, range: Range<usize>, mut draw: impl FnMut(Range<usize>, Lighting)) {
+        let Range { start: mut first, end } = range;
+        let mut lighting = self.lighting(first);
+        let is_even = self.face.light.is_even() && self.scene.world.fog().is_none();
+        if !is_even || self.side().is_none() {
+            for index in first + 1..end {
+                let next = self.lighting(index);
+                if next != lighting {
+                    draw(first..index, lighting);
+                    (first, lighting) = (index, next);
+                }
+            }
+        }
+        draw(first..end, lighting);
     }
 
     /// The surface that a column shows.
@@ -122,11 +137,8 @@ impl<'a> ShownFace<'a> {
         Surface::of_wall(side)
     }
 
-    /// Counts the pixels and records the surfaces, if the target keeps either.
+    /// Counts the pixels and records the surfaces.
     fn record(&self, paint: Paint, target: &mut Target<'_>) {
-        if !target.counts() && !target.keeps_surfaces() {
-            return;
-        }
         let rows = target.rows();
         for (index, (x, column)) in (self.face.columns.clone()).zip(self.columns).enumerate() {
             let rows = column.rows.within(&rows);
@@ -137,23 +149,29 @@ impl<'a> ShownFace<'a> {
     }
 
     /// Draws `rows` of the face in `paint`.
-    fn draw<L: Lighting>(
-        &self,
-        paint: Paint,
-        rows: &Range<u32>,
-        band: &mut Band<'_>,
-        lighting: impl Fn(usize) -> L,
-    ) {
+    fn draw(&self, paint: Paint, rows: &Range<u32>, band: &mut Band<'_>) {
+        let first = self.face.columns.start;
         match paint {
             Paint::Color(color) => {
-                for (index, (x, column)) in self.face.columns.clone().zip(self.columns).enumerate()
-                {
-                    let color = lighting(index).apply(color);
-                    band.column_mut(x, column.rows.within(rows)).for_each(|pixel| *pixel = color);
-                }
+                self.for_each_lighting(0..self.columns.len(), |range, lighting| {
+                    let color = lighting.apply(color);
+                    for (x, column) in (first + range.start as u32..).zip(&self.columns[range]) {
+                        band.column_mut(x, column.rows.within(rows))
+                            .for_each(|pixel| *pixel = color);
+                    }
+                })
             }
             Paint::Texture(id) => self.for_each_level(id, |level, range| {
-                self.draw_level(level, range, rows, band, &lighting);
+                let texels = (level, self.texels(level));
+                let is_horizon_near = self.scene.projection.is_horizon_near();
+                self.for_each_lighting(range, |range, lighting| {
+                    let columns = (first + range.start as u32, &self.columns[range]);
+                    TextureColumns::new(texels, lighting, columns).draw(
+                        rows,
+                        is_horizon_near,
+                        band,
+                    );
+                });
             }),
         }
     }
@@ -189,38 +207,6 @@ impl<'a> ShownFace<'a> {
             *(if is_same(middle) { &mut same } else { &mut other }) = middle;
         }
         other
-    }
-
-    /// Draws `rows` of the columns of `range`, which show `level`.
-    #[inline]
-    fn draw_level<L: Lighting>(
-        &self,
-        level: &MipLevel,
-        range: Range<usize>,
-        rows: &Range<u32>,
-        band: &mut Band<'_>,
-        lighting: impl Fn(usize) -> L,
-    ) {
-        let texels = self.texels(level);
-        let is_horizon_near = self.scene.projection.is_horizon_near();
-        let mut first = range.start;
-        while first < range.end {
-            let of_first = lighting(first);
-            let end = if L::HAS_TEXELS {
-                range.end
-            } else {
-                (first + 1..range.end).find(|&it| lighting(it) != of_first).unwrap_or(range.end)
-            };
-            let columns = TextureColumns {
-                level,
-                texels,
-                lighting: of_first,
-                x: self.face.columns.start + first as u32,
-                columns: &self.columns[first..end],
-            };
-            columns.draw(rows, is_horizon_near, band);
-            first = end;
-        }
     }
 
     /// The texels of the face at `level`.
@@ -273,15 +259,9 @@ impl ShownFace<'_> {
     }
 
     fn draw_tint(&self, glass: Glass, target: &mut Target<'_>) {
-        let color = |index: usize| self.lighting(index).apply(glass.color);
-        let mut first = 0;
-        while first < self.columns.len() {
-            let shown = color(first);
-            let end = (first + 1..self.columns.len()).find(|&index| color(index) != shown);
-            let end = end.unwrap_or(self.columns.len());
-            self.paint_over(first..end, shown, glass.opacity, target);
-            first = end;
-        }
+        self.for_each_lighting(0..self.columns.len(), |range, lighting| {
+            self.paint_over(range, lighting.apply(glass.color), glass.opacity, target);
+        });
     }
 
     /// Blends `color` over the pixels of the columns of `range`. Rows that all of the columns share

@@ -2,9 +2,8 @@
 
 use super::faces;
 use super::target::Target;
-use crate::visibility::{
-    Billboard, BillboardPart, DrawList, FrameContext, FullyLit, Layer, Lighting, Pass, Surface,
-};
+use crate::color::Rgb;
+use crate::visibility::{Billboard, BillboardPart, DrawList, FrameContext, Layer, Pass, Surface};
 
 /// Draws the layers of `list` in order.
 pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target<'_>) {
@@ -24,33 +23,24 @@ fn draw_billboard(
     part: &BillboardPart,
     target: &mut Target<'_>,
 ) {
-    let Billboard { lighting, opacity, .. } = list.billboards[part.billboard];
-    let solid = |alpha: u8| alpha;
-    let thinned = |alpha: u8| share_of(alpha, opacity);
-    match (lighting, opacity) {
-        (None, u8::MAX) => draw_lit(scene, list, part, FullyLit, solid, target),
-        (Some(faded), u8::MAX) => draw_lit(scene, list, part, faded, solid, target),
-        (None, _) => draw_lit(scene, list, part, FullyLit, thinned, target),
-        (Some(faded), _) => draw_lit(scene, list, part, faded, thinned, target),
+    let lighting = list.billboards[part.billboard].lighting;
+    if lighting.is_full() {
+        draw_lit(scene, list, part, |color| color, target);
+    } else {
+        draw_lit(scene, list, part, |color| lighting.apply(color), target);
     }
 }
 
-/// The product of `alpha` and `opacity`, each in 255ths, rounded to the nearest 255th.
-fn share_of(alpha: u8, opacity: u8) -> u8 {
-    let most = u32::from(u8::MAX);
-    ((u32::from(alpha) * u32::from(opacity) + most / 2) / most) as u8
-}
-
-fn draw_lit<L: Lighting>(
+fn draw_lit(
     scene: FrameContext<'_>,
     list: &DrawList,
     part: &BillboardPart,
-    lighting: L,
-    alpha_shown: impl Fn(u8) -> u8,
+    lit: impl Fn(Rgb) -> Rgb,
     target: &mut Target<'_>,
 ) {
     let billboard = &list.billboards[part.billboard];
     let Some(level) = billboard.level(scene, list.player.as_ref()) else { return };
+    let opacity = billboard.opacity;
     let band = target.rows();
     for (x, rows) in part.columns.clone().zip(&list.billboard_rows[part.first..]) {
         let rows = rows.within(&band);
@@ -59,16 +49,25 @@ fn draw_lit<L: Lighting>(
         let u = billboard.u(x);
         let (texels, alphas) = (level.column(u), level.alpha_column(u));
         let texel = |row: u32| billboard.texel(row).min(texels.len() - 1);
-        let alpha = |texel: usize| alpha_shown(alphas.map_or(u8::MAX, |alphas| alphas[texel]));
+        let alpha = |texel: usize| {
+            let alpha = alphas.map_or(u8::MAX, |alphas| alphas[texel]);
+            if opacity == u8::MAX { alpha } else { share_of(alpha, opacity) }
+        };
         for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {
             let texel = texel(row);
             *pixel = match alpha(texel) {
                 0 => *pixel,
-                u8::MAX => lighting.apply(texels[texel]),
-                alpha => lighting.apply(texels[texel]).over(*pixel, alpha),
+                u8::MAX => lit(texels[texel]),
+                alpha => lit(texels[texel]).over(*pixel, alpha),
             };
         }
         let shown = rows.clone().map(|row| alpha(texel(row)) > u8::MAX / 2);
         target.mark(x, rows.start, Surface::Thing, shown);
     }
+}
+
+/// The product of `alpha` and `opacity`, each in 255ths, rounded to the nearest 255th.
+fn share_of(alpha: u8, opacity: u8) -> u8 {
+    let most = u32::from(u8::MAX);
+    ((u32::from(alpha) * u32::from(opacity) + most / 2) / most) as u8
 }

@@ -23,8 +23,7 @@ use super::span_pair::SpanPairs;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
-    Backdrop, DrawList, Faded, FrameContext, Lighting, Pass, PlaneKind, Rows, SpanMapping,
-    VisiblePlane,
+    Backdrop, DrawList, FrameContext, Lighting, Pass, PlaneKind, Rows, SpanMapping, VisiblePlane,
 };
 use crate::world::{Covering, Light, Paint, Pattern, PlaneSide, PlaneSurface, TileId};
 
@@ -144,14 +143,14 @@ fn draw_backdrops(
                 }
             }
             Some(Backdrop::Color { color, light, .. }) if scene.world.fog().is_none() => {
-                let color = Faded::of_plane(light, None, 0.0).map_or(color, |it| it.apply(color));
+                let color = Lighting::of_plane(light, None, 0.0).apply(color);
                 target.whole_rows_mut(pass, rows).fill(color);
             }
             Some(Backdrop::Color { color, light, height }) => {
                 for row in rows {
                     let distance = projection.mapping_at(row, height).distance;
-                    let faded = Faded::of_plane(light, scene.world.fog(), distance);
-                    let color = faded.map_or(color, |faded| faded.apply(color));
+                    let lighting = Lighting::of_plane(light, scene.world.fog(), distance);
+                    let color = lighting.apply(color);
                     target.whole_rows_mut(pass, row..row + 1).fill(color);
                 }
             }
@@ -459,10 +458,8 @@ impl<'a> PlaneDrawing<'a> {
         let span = PlaneSpan { pass: pass_of(self.side), row, columns, covering, mapping };
         let pixels = span::draw(self.scene, &span, target);
         for (columns, light) in lights {
-            let faded = Faded::of_plane(*light, self.scene.world.fog(), mapping.distance);
-            if let Some(faded) = faded {
-                faded.apply_to_all(&mut pixels[columns.start - first..columns.end - first]);
-            }
+            let lighting = Lighting::of_plane(*light, self.scene.world.fog(), mapping.distance);
+            lighting.apply_to_all(&mut pixels[columns.start - first..columns.end - first]);
         }
     }
 

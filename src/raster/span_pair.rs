@@ -11,7 +11,7 @@ use super::planes::DrawnPlane;
 use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Faded, FrameContext, Lighting, SpanMapping, TexelPlaces};
+use crate::visibility::{FrameContext, Lighting, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
@@ -89,11 +89,8 @@ impl<'a> SpanPairs<'a> {
         let drawn = textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
             for (span, light) in pair.spans().into_iter().flatten() {
-                let faded = Faded::of_plane(light, scene.world.fog(), mapping.distance);
-                let pixels = span::draw(scene, &span, target);
-                if let Some(faded) = faded {
-                    faded.apply_to_all(pixels);
-                }
+                let lighting = Lighting::of_plane(light, scene.world.fog(), mapping.distance);
+                lighting.apply_to_all(span::draw(scene, &span, target));
             }
         }
     }
@@ -122,7 +119,7 @@ impl<'a> TexturePair<'a> {
         target: &mut Target<'_>,
     ) -> Option<()> {
         let (mapping, per_cell) = (pair.mapping, self.per_cell);
-        if Faded::of_plane(self.light, scene.world.fog(), mapping.distance).is_some() {
+        if !Lighting::of_plane(self.light, scene.world.fog(), mapping.distance).is_full() {
             return None;
         }
         let lod = Sampler { scene, mapping, per_cell }.lod_of(self.textures[0]);

@@ -26,40 +26,53 @@ pub(crate) fn rows_at_once(width: usize) -> usize {
     CACHE / bytes_between_sets
 }
 
-/// Neighbouring columns of pixels that show one level of a face in one lighting. The first of them
-/// is column `x`.
-pub(crate) struct TextureColumns<'a, L> {
-    pub(crate) level: &'a MipLevel,
-    pub(crate) texels: FaceTexels,
-    pub(crate) lighting: L,
-    pub(crate) x: u32,
-    pub(crate) columns: &'a [FaceColumn],
+/// Neighbouring columns of pixels that show one level of a face in one lighting.
+pub(crate) struct TextureColumns<'a> {
+    level: &'a MipLevel,
+    /// The texels of the level, and the lighting that still has to be applied to them.
+    texels: &'a [Rgb],
+    lighting: Option<Lighting>,
+    of_face: FaceTexels,
+    /// The first column, and the values of it and the others.
+    x: u32,
+    columns: &'a [FaceColumn],
 }
 
-impl<L: Lighting> TextureColumns<'_, L> {
+impl<'a> TextureColumns<'a> {
+    pub(crate) fn new(
+        (level, of_face): (&'a MipLevel, FaceTexels),
+        lighting: Lighting,
+        (x, columns): (u32, &'a [FaceColumn]),
+    ) -> Self {
+        let (texels, lighting) = match lighting.stored_texels(level) {
+            Some(texels) => (texels, None),
+            None => (level.texels(), Some(lighting)),
+        };
+        Self { level, texels, lighting, of_face, x, columns }
+    }
+
     /// Draws `rows` of the columns on `band`.
     pub(crate) fn draw(&self, rows: &Range<u32>, is_horizon_near: bool, band: &mut Band<'_>) {
-        let texels = self.lighting.texels(self.level);
         match self.level.height() {
-            _ if !is_horizon_near => self.draw_exactly(texels, rows, band),
-            1024 => self.draw_texels::<1024, 10>(texels, rows, band),
-            512 => self.draw_texels::<512, 9>(texels, rows, band),
-            256 => self.draw_texels::<256, 8>(texels, rows, band),
-            128 => self.draw_texels::<128, 7>(texels, rows, band),
-            64 => self.draw_texels::<64, 6>(texels, rows, band),
-            32 => self.draw_texels::<32, 5>(texels, rows, band),
-            16 => self.draw_texels::<16, 4>(texels, rows, band),
-            8 => self.draw_texels::<8, 3>(texels, rows, band),
-            4 => self.draw_texels::<4, 2>(texels, rows, band),
-            2 => self.draw_texels::<2, 1>(texels, rows, band),
-            _ => self.draw_exactly(texels, rows, band),
+            _ if !is_horizon_near => self.draw_exactly(rows, band),
+            1024 => self.draw_texels::<1024, 10>(rows, band),
+            512 => self.draw_texels::<512, 9>(rows, band),
+            256 => self.draw_texels::<256, 8>(rows, band),
+            128 => self.draw_texels::<128, 7>(rows, band),
+            64 => self.draw_texels::<64, 6>(rows, band),
+            32 => self.draw_texels::<32, 5>(rows, band),
+            16 => self.draw_texels::<16, 4>(rows, band),
+            8 => self.draw_texels::<8, 3>(rows, band),
+            4 => self.draw_texels::<4, 2>(rows, band),
+            2 => self.draw_texels::<2, 1>(rows, band),
+            _ => self.draw_exactly(rows, band),
         }
     }
 
     /// Draws `rows` of columns with any number of texels, at any height above the horizon.
-    fn draw_exactly(&self, texels: &[Rgb], rows: &Range<u32>, band: &mut Band<'_>) {
+    fn draw_exactly(&self, rows: &Range<u32>, band: &mut Band<'_>) {
         for (x, column) in (self.x..).zip(self.columns) {
-            self.draw_rows(texels, (x, column), column.rows.within(rows), band);
+            self.draw_rows((x, column), column.rows.within(rows), band);
         }
     }
 
@@ -67,15 +80,12 @@ impl<L: Lighting> TextureColumns<'_, L> {
     #[inline(never)]
     fn draw_texels<const N: usize, const BITS: u32>(
         &self,
-        texels: &[Rgb],
         all_rows: &Range<u32>,
         band: &mut Band<'_>,
     ) {
-        let (of_columns, _) = texels.as_chunks::<N>();
+        let (of_columns, _) = self.texels.as_chunks::<N>();
         let width = band.width();
-        let mut shaded = [Rgb::BLACK; N];
-        // The column of the texture in `shaded`, and its shaded texels.
-        let mut latest = (usize::MAX, 0..0);
+        let mut shaded = ShadedColumn { texels: [Rgb::BLACK; N], index: usize::MAX, known: 0..0 };
         for (x, column) in (self.x..).zip(self.columns) {
             let rows = column.rows.within(all_rows);
             let index = self.level.column_index(column.u);
@@ -83,26 +93,20 @@ impl<L: Lighting> TextureColumns<'_, L> {
             if rows.is_empty() {
                 continue;
             }
-            let stepper = self.texels.at(column.t);
+            let stepper = self.of_face.at(column.t);
             let position = stepper.in_uppermost::<BITS>(rows.start);
             let pixels = band.pixels_from(x, rows.clone());
-            if L::HAS_TEXELS {
-                draw_pixels::<N, BITS>(of_column, position, pixels, width);
-            } else {
-                let shown = stepper.texels_of(&rows);
-                let (of_shaded, known) = &latest;
-                let is_known = known.start <= shown.start && shown.end <= known.end;
-                if *of_shaded != index || !is_known {
-                    shaded[shown.clone()].copy_from_slice(&of_column[shown.clone()]);
-                    self.lighting.apply_to_all(&mut shaded[shown.clone()]);
-                    latest = (index, shown);
+            let of_column = match self.lighting {
+                None => of_column,
+                Some(lighting) => {
+                    shaded.shade(lighting, (index, of_column), stepper.texels_of(&rows))
                 }
-                draw_pixels::<N, BITS>(&shaded, position, pixels, width);
-            }
+            };
+            draw_pixels::<N, BITS>(of_column, position, pixels, width);
             // Rounding may move the first and the last row one texel too far.
             if !stepper.has_ends_of(&rows) {
                 for row in [rows.start, rows.end - 1] {
-                    self.draw_rows(texels, (x, column), row..row + 1, band);
+                    self.draw_rows((x, column), row..row + 1, band);
                 }
             }
         }
@@ -111,20 +115,41 @@ impl<L: Lighting> TextureColumns<'_, L> {
     /// Draws these `rows` of a column.
     #[cold]
     #[inline(never)]
-    fn draw_rows(
-        &self,
-        texels: &[Rgb],
-        (x, column): (u32, &FaceColumn),
-        rows: Range<u32>,
-        band: &mut Band<'_>,
-    ) {
+    fn draw_rows(&self, (x, column): (u32, &FaceColumn), rows: Range<u32>, band: &mut Band<'_>) {
         let height = self.level.height() as usize;
-        let texels = &texels[self.level.column_index(column.u) * height..][..height];
-        let (stepper, first) = (self.texels.at(column.t), rows.start);
+        let texels = &self.texels[self.level.column_index(column.u) * height..][..height];
+        let (stepper, first) = (self.of_face.at(column.t), rows.start);
         for (pixel, row) in band.column_mut(x, rows).zip(first..) {
             let texel = texels[stepper.at(row)];
-            *pixel = if L::HAS_TEXELS { texel } else { self.lighting.apply(texel) };
+            *pixel = self.lighting.map_or(texel, |lighting| lighting.apply(texel));
         }
+    }
+}
+
+/// A column of a texture in one lighting.
+struct ShadedColumn<const N: usize> {
+    texels: [Rgb; N],
+    /// The index of the column, and the range of its texels that are shaded.
+    index: usize,
+    known: Range<usize>,
+}
+
+impl<const N: usize> ShadedColumn<N> {
+    /// The texels of the column `index`. At least the texels in `shown` are shaded.
+    #[inline(never)]
+    fn shade(
+        &mut self,
+        lighting: Lighting,
+        (index, texels): (usize, &[Rgb; N]),
+        shown: Range<usize>,
+    ) -> &[Rgb; N] {
+        let is_known = self.known.start <= shown.start && shown.end <= self.known.end;
+        if self.index != index || !is_known {
+            self.texels[shown.clone()].copy_from_slice(&texels[shown.clone()]);
+            lighting.apply_to_all(&mut self.texels[shown.clone()]);
+            (self.index, self.known) = (index, shown);
+        }
+        &self.texels
     }
 }
 
@@ -172,7 +197,7 @@ mod tests {
     use super::*;
     use crate::cast::Side;
     use crate::render::Frame;
-    use crate::visibility::{Faded, FrameSize, PixelAspect, Projection, Rows, SideLit};
+    use crate::visibility::{FrameSize, PixelAspect, Projection, Rows};
     use crate::world::{Camera, FieldOfView, Heading, Light, Pitch, Texture};
 
     const HEIGHT: u32 = 90;
@@ -207,7 +232,8 @@ mod tests {
             let camera = Camera::new((0.0, 0.0).into(), east, FieldOfView::default()).unwrap();
             let camera = camera.with_pitch(Pitch::from_degrees(degrees).unwrap());
             let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
-            let faded = |t: f64| Faded::of_wall(side, Light::new(0.7).unwrap(), None, t);
+            let light = if is_faded { Light::new(0.7).unwrap() } else { Light::FULL };
+            let lighting = Lighting::of_wall(side, light, None, 1.0);
             let mut frame = Frame::new(size, PixelAspect::SQUARE);
             let mut expected = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
             let mut band = frame.whole();
@@ -216,21 +242,13 @@ mod tests {
                 let texels = projection.face_texels(count.get() as usize, (bottom, top));
                 for row in start..end {
                     let texel = level.column(u)[texels.at(t).at(row)];
-                    let lit = if is_faded { faded(t).apply(texel) } else { SideLit(side).apply(texel) };
-                    expected[row as usize][x] = lit;
+                    expected[row as usize][x] = lighting.apply(texel);
                 }
                 let (x, columns) = (x as u32, &[FaceColumn { rows: Rows { start, end }, t, u }]);
                 for first in (0..HEIGHT).step_by(rows_at_once) {
                     let rows = first..HEIGHT.min(first + rows_at_once as u32);
-                    if is_faded {
-                        let lighting = faded(t);
-                        let columns = TextureColumns { level, texels, lighting, x, columns };
-                        columns.draw(&rows, is_horizon_near, &mut band);
-                    } else {
-                        let lighting = SideLit(side);
-                        let columns = TextureColumns { level, texels, lighting, x, columns };
-                        columns.draw(&rows, is_horizon_near, &mut band);
-                    }
+                    let columns = TextureColumns::new((level, texels), lighting, (x, columns));
+                    columns.draw(&rows, is_horizon_near, &mut band);
                 }
             }
             prop_assert!(frame.rows().eq(expected));

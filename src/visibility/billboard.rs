@@ -6,7 +6,7 @@ use glam::DVec2;
 
 #[cfg(feature = "terminal")]
 use super::Projection;
-use super::{Faded, FrameContext};
+use super::{FrameContext, Lighting};
 use crate::cast::MirrorTransform;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
@@ -27,8 +27,7 @@ pub(crate) struct Billboard {
     /// The index of the sprite's picture, and its mip level.
     picture: usize,
     lod: usize,
-    /// The lighting; `None` if neither light nor fog changes the colours.
-    pub(crate) lighting: Option<Faded>,
+    pub(crate) lighting: Lighting,
     /// The opacity, from 1 to 255.
     pub(crate) opacity: u8,
     /// The distance from the camera plane, in cells.
@@ -175,7 +174,7 @@ impl Billboard {
         let pose = Pose::Fixed { frame: usize::from(frame), heading };
         let light = world.light_on(figure);
         let billboard = Self::new(scene, image.0, sprite, pose, (place, base), light)?;
-        let lighting = billboard.lighting.filter(|_| !sprite.glows);
+        let lighting = if sprite.glows { Lighting::FULL } else { billboard.lighting };
         let (row, column) = figure.cell().map_or((0, 0), |cell| (cell.row, cell.column));
         let order = (row, column, figure.sprite.0, number);
         Some(Self { sprite: Some(figure.sprite), opacity, lighting, order, ..billboard })
@@ -226,7 +225,7 @@ impl Billboard {
             is_animated: false,
             picture,
             lod,
-            lighting: Faded::of_plane(light, world.fog(), depth),
+            lighting: Lighting::of_plane(light, world.fog(), depth),
             opacity: u8::MAX,
             depth,
             left,
