@@ -17,7 +17,6 @@ mod pieces;
 mod planes;
 mod sky;
 mod span;
-mod span_pair;
 mod target;
 mod texture_columns;
 

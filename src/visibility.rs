@@ -82,6 +82,7 @@ pub(crate) fn fill(
     list.sectors.begin(scene.world, walk::top_of_sky(scene));
     list.directions.begin(scene.projection);
     let counts = walk::walk(scene, walk, list);
+    list.join_planes(scene.projection.eye());
     let considered = layers::fill(scene, layers, list);
     stats.change(|stats| {
         let drawn = list.billboards.iter().filter(|it| it.is_drawn && it.is_of_thing());

@@ -3,7 +3,7 @@
 use super::faces;
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Billboard, BillboardPart, DrawList, FrameContext, Layer, Pass, Surface};
+use crate::visibility::{BillboardPart, DrawList, FrameContext, Layer, Pass, Surface};
 
 /// Draws the layers of `list` in order.
 pub(crate) fn draw(scene: FrameContext<'_>, list: &DrawList, target: &mut Target<'_>) {

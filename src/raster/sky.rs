@@ -76,12 +76,12 @@ impl<'a> SkyView<'a> {
         }
     }
 
-    /// Draws the sky in `columns` of `row`, as seen in the mirrors of `image` if there is one.
+    /// Draws the sky in `columns` of `row`, as seen in the mirrors of `image`.
     pub(crate) fn draw(
         &self,
         row: u32,
         columns: Range<usize>,
-        image: Option<MirrorTransform>,
+        image: MirrorTransform,
         target: &mut Target<'_>,
     ) {
         let across = columns.clone();
@@ -100,14 +100,10 @@ impl<'a> SkyView<'a> {
                     let down = (1.0 - slope * column.up_for_slope) * WHOLE_IN_32_BITS;
                     level.at_short_fraction((across >> u32::BITS) as u32, down as u32)
                 };
-                let pixels = pixels.iter_mut().zip(&places[across]);
-                match image {
-                    Some(image) => pixels.for_each(|(pixel, column)| {
-                        *pixel = texel(column, column.reflected_across(image));
-                    }),
-                    None => pixels.for_each(|(pixel, column)| {
-                        *pixel = texel(column, column.across);
-                    }),
+                let [factor, offset] = reflected(image);
+                for (pixel, column) in pixels.iter_mut().zip(&places[across]) {
+                    let across = column.across.wrapping_mul(factor).wrapping_add(offset);
+                    *pixel = texel(column, across);
                 }
             }
         }
@@ -121,15 +117,15 @@ impl SkyColumn {
         let turn = if turn < 0.0 { turn + 1.0 } else { turn };
         Self { across: (turn * WHOLE) as u64, up_for_slope: 1.0 / (direction.length() * height) }
     }
+}
 
-    /// The distance from the left edge after the reflections of `transform`. Angles are measured
-    /// from the east, so a mirror that faces north or south negates them.
-    fn reflected_across(&self, transform: MirrorTransform) -> u64 {
-        const HALF: u64 = 1 << 63;
-        let direction = transform.direction_to_map(DVec2::ONE);
-        let across = if direction.y < 0.0 { self.across.wrapping_neg() } else { self.across };
-        if direction.x < 0.0 { HALF.wrapping_sub(across) } else { across }
-    }
+/// The factor and the offset of distances from the left edge in the mirrors of `image`. Angles are measured from
+/// the east, so a mirror that faces north or south negates them.
+fn reflected(image: MirrorTransform) -> [u64; 2] {
+    const HALF: u64 = 1 << 63;
+    let direction = image.direction_to_map(DVec2::ONE);
+    let factor = if direction.x * direction.y < 0.0 { u64::MAX } else { 1 };
+    [factor, if direction.x < 0.0 { HALF } else { 0 }]
 }
 
 /// The colour of a gradient at this slope. It changes quickly at the horizon and slowly above.

@@ -59,18 +59,13 @@ pub(crate) fn draw<'p>(
 
 /// Draws `level` on `pixels`.
 pub(crate) fn draw_level(level: &MipLevel, places: TexelPlaces, pixels: &mut [Rgb]) {
-    match level.by_shifts() {
-        Some(level) => draw_by_shifts(level, places, pixels),
-        None => {
-            for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-                *pixel = level.at_fraction(x, y);
-            }
+    let Some(level) = level.by_shifts() else {
+        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+            *pixel = level.at_fraction(x, y);
         }
-    }
-}
-
-/// Draws `level` on `pixels`. For the usual numbers of texels, no lookup needs a bounds check.
-fn draw_by_shifts(level: MipLevelByShifts<'_>, places: TexelPlaces, pixels: &mut [Rgb]) {
+        return;
+    };
+    // For the usual numbers of texels, no lookup needs a bounds check.
     match level.texels().len() {
         16384 => draw_texels::<16384>(level, places, pixels),
         4096 => draw_texels::<4096>(level, places, pixels),
@@ -82,6 +77,29 @@ fn draw_by_shifts(level: MipLevelByShifts<'_>, places: TexelPlaces, pixels: &mut
             for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
                 *pixel = level.at_index(level.index(x, y));
             }
+        }
+    }
+}
+
+/// Draws two levels of the same size on as many pixels each.
+pub(crate) fn draw_two_levels(
+    levels: [&MipLevel; 2],
+    places: TexelPlaces,
+    [above, below]: [&mut [Rgb]; 2],
+) {
+    let both = levels.map(MipLevel::texels);
+    match (levels[0].by_shifts(), both[0].len()) {
+        (Some(level), 16384) => draw_both::<16384>(level, both, places, [above, below]),
+        (Some(level), 4096) => draw_both::<4096>(level, both, places, [above, below]),
+        (Some(level), 1024) => draw_both::<1024>(level, both, places, [above, below]),
+        (Some(level), 256) => draw_both::<256>(level, both, places, [above, below]),
+        (Some(level), 64) => draw_both::<64>(level, both, places, [above, below]),
+        (Some(level), 16) => draw_both::<16>(level, both, places, [above, below]),
+        (Some(level), 4) => draw_both::<4>(level, both, places, [above, below]),
+        (Some(level), 1) => draw_both::<1>(level, both, places, [above, below]),
+        _ => {
+            draw_level(levels[0], places.clone(), above);
+            draw_level(levels[1], places, below);
         }
     }
 }
@@ -109,10 +127,39 @@ fn draw_texels<const N: usize>(
     });
 }
 
+/// Draws the texels of two levels of the shape of `level`, `N` each.
+fn draw_both<const N: usize>(
+    level: MipLevelByShifts<'_>,
+    texels: [&[Rgb]; 2],
+    places: TexelPlaces,
+    [above, below]: [&mut [Rgb]; 2],
+) {
+    let [Some(upper), Some(lower)] = texels.map(|texels| texels.first_chunk::<N>()) else { return };
+    let look_up = |indices: &[u32], above: &mut [Rgb], below: &mut [Rgb]| {
+        for ((above, below), &index) in above.iter_mut().zip(below).zip(indices) {
+            let index = index as usize % N;
+            *above = upper[index];
+            *below = lower[index];
+        }
+    };
+    let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
+    let blocks = blocks.map(|(above, below)| (above.len(), [above, below]));
+    for_each_block(level, places, blocks, |indices, [above, below]| {
+        let (above, rest_above) = above.as_chunks_mut::<UNROLLED>();
+        let (below, rest_below) = below.as_chunks_mut::<UNROLLED>();
+        let (indices, rest) = indices.split_at(above.as_flattened().len());
+        let indices = indices.as_chunks::<UNROLLED>().0;
+        for ((above, below), indices) in above.iter_mut().zip(below).zip(indices) {
+            look_up(indices, above, below);
+        }
+        look_up(rest, rest_above, rest_below);
+    });
+}
+
 /// Passes each of `blocks` to `draw` with the indices of its texels. A block comes with its number
 /// of pixels. The loop that computes the indices reads no texel, so the compiler vectorizes it.
 #[inline]
-pub(crate) fn for_each_block<B>(
+fn for_each_block<B>(
     level: MipLevelByShifts<'_>,
     mut places: TexelPlaces,
     blocks: impl Iterator<Item = (usize, B)>,
@@ -131,10 +178,10 @@ pub(crate) fn for_each_block<B>(
 }
 
 /// The most pixels that are drawn at once.
-pub(crate) const AT_ONCE: usize = 64;
+const AT_ONCE: usize = 64;
 /// A multiple of the number of indices that a processor computes at once.
 const LANES: usize = 4;
-pub(crate) const UNROLLED: usize = 8;
+const UNROLLED: usize = 8;
 
 /// The inputs for sampling the paints of a span.
 #[derive(Clone, Copy)]

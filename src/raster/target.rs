@@ -76,16 +76,15 @@ impl<'a> Target<'a> {
         &mut self.band.row_mut(row)[columns]
     }
 
-    /// The pixels of `columns` in two rows, to be written for two passes. The first row is further
-    /// up. Counts a texel for each pixel.
-    #[expect(clippy::inline_always, reason = "a call would cost a fiftieth of a small picture")]
-    #[inline(always)]
+    /// The pixels of `columns` in a row of the ceiling and in a row of the floor below it. Counts a texel for each
+    /// pixel.
+    #[inline]
     pub(crate) fn two_spans_mut(
         &mut self,
-        passes: [Pass; 2],
         rows: [u32; 2],
         columns: &Range<usize>,
     ) -> [&mut [Rgb]; 2] {
+        let passes = [Pass::Ceiling, Pass::Floor];
         self.stats.change(|stats| {
             for pass in passes {
                 stats.spans += 1;

@@ -53,18 +53,26 @@ impl<'a> TextureColumns<'a> {
 
     /// Draws `rows` of the columns on `band`.
     pub(crate) fn draw(&self, rows: &Range<u32>, is_horizon_near: bool, band: &mut Band<'_>) {
-        match self.level.height() {
+        match self.lighting {
             _ if !is_horizon_near => self.draw_exactly(rows, band),
-            1024 => self.draw_texels::<1024, 10>(rows, band),
-            512 => self.draw_texels::<512, 9>(rows, band),
-            256 => self.draw_texels::<256, 8>(rows, band),
-            128 => self.draw_texels::<128, 7>(rows, band),
-            64 => self.draw_texels::<64, 6>(rows, band),
-            32 => self.draw_texels::<32, 5>(rows, band),
-            16 => self.draw_texels::<16, 4>(rows, band),
-            8 => self.draw_texels::<8, 3>(rows, band),
-            4 => self.draw_texels::<4, 2>(rows, band),
-            2 => self.draw_texels::<2, 1>(rows, band),
+            None => self.draw_stored::<true>(rows, band),
+            Some(_) => self.draw_stored::<false>(rows, band),
+        }
+    }
+
+    /// Draws `rows` of the columns. `IS_STORED` is true if no lighting has to be applied.
+    fn draw_stored<const IS_STORED: bool>(&self, rows: &Range<u32>, band: &mut Band<'_>) {
+        match self.level.height() {
+            1024 => self.draw_texels::<IS_STORED, 1024, 10>(rows, band),
+            512 => self.draw_texels::<IS_STORED, 512, 9>(rows, band),
+            256 => self.draw_texels::<IS_STORED, 256, 8>(rows, band),
+            128 => self.draw_texels::<IS_STORED, 128, 7>(rows, band),
+            64 => self.draw_texels::<IS_STORED, 64, 6>(rows, band),
+            32 => self.draw_texels::<IS_STORED, 32, 5>(rows, band),
+            16 => self.draw_texels::<IS_STORED, 16, 4>(rows, band),
+            8 => self.draw_texels::<IS_STORED, 8, 3>(rows, band),
+            4 => self.draw_texels::<IS_STORED, 4, 2>(rows, band),
+            2 => self.draw_texels::<IS_STORED, 2, 1>(rows, band),
             _ => self.draw_exactly(rows, band),
         }
     }
@@ -78,7 +86,7 @@ impl<'a> TextureColumns<'a> {
 
     /// Draws `all_rows` of columns of `N` texels. `N` is 2 to the power of `BITS`.
     #[inline(never)]
-    fn draw_texels<const N: usize, const BITS: u32>(
+    fn draw_texels<const IS_STORED: bool, const N: usize, const BITS: u32>(
         &self,
         all_rows: &Range<u32>,
         band: &mut Band<'_>,
@@ -97,10 +105,10 @@ impl<'a> TextureColumns<'a> {
             let position = stepper.in_uppermost::<BITS>(rows.start);
             let pixels = band.pixels_from(x, rows.clone());
             let of_column = match self.lighting {
-                None => of_column,
-                Some(lighting) => {
+                Some(lighting) if !IS_STORED => {
                     shaded.shade(lighting, (index, of_column), stepper.texels_of(&rows))
                 }
+                _ => of_column,
             };
             draw_pixels::<N, BITS>(of_column, position, pixels, width);
             // Rounding may move the first and the last row one texel too far.

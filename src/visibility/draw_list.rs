@@ -25,9 +25,14 @@ pub(crate) struct DrawList {
     pub(crate) images: Vec<MirrorTransform>,
     /// The backdrops below and above the horizon, behind all other items, if they are the same in all columns.
     pub(crate) backdrops: [Option<Backdrop>; 2],
+    /// The floors and the ceilings, as visits find them.
+    plane_parts: Vec<VisiblePlane>,
+    /// The same, joined: planes in the order of drawing. A ceiling that may be the mirror image of a floor
+    /// follows it.
     pub(crate) planes: Vec<VisiblePlane>,
+    plane_order: Vec<PlaneKey>,
     /// The rows of each column of the planes.
-    pub(crate) plane_rows: Vec<Rows>,
+    plane_rows: Vec<Rows>,
     /// The opaque faces.
     pub(crate) faces: Vec<Face>,
     /// The masks and tints.
@@ -120,6 +125,38 @@ pub(crate) struct BillboardPart {
     pub(crate) billboard: usize,
 }
 
+/// The sort key of a plane: the distance of its height from the eye, its image, its side and its index.
+type PlaneKey = (u64, usize, u8, usize);
+
+impl VisiblePlane {
+    /// Returns true if `other` has the same height, side and image, and looks the same in each cell.
+    fn is_alike(&self, other: &Self) -> bool {
+        (self.height, self.kind.side(), self.look, self.image)
+            == (other.height, other.kind.side(), other.look, other.image)
+            && (self.look.is_some() || self.kind == other.kind)
+    }
+}
+
+/// Adds `added` to the rows `known`, column by column. Adds nothing and returns `false` if they do not adjoin in
+/// some column.
+fn join_rows(known: &mut [Rows], added: &[Rows]) -> bool {
+    let adjoin = |(known, added): (&Rows, &Rows)| {
+        let are_both = !known.is_empty() && !added.is_empty();
+        !are_both || known.end == added.start || added.end == known.start
+    };
+    if !known.iter().zip(added).all(adjoin) {
+        return false;
+    }
+    for (known, added) in known.iter_mut().zip(added) {
+        *known = match (known.is_empty(), added.is_empty()) {
+            (true, _) => *added,
+            (_, true) => *known,
+            _ => Rows { start: known.start.min(added.start), end: known.end.max(added.end) },
+        };
+    }
+    true
+}
+
 impl PlaneKind {
     pub(crate) fn side(self) -> PlaneSide {
         match self {
@@ -139,8 +176,12 @@ impl DrawList {
         self.images.clear();
         self.images.push(MirrorTransform::default());
         self.backdrops = [None; 2];
-        self.planes.clear();
-        self.planes.reserve(4 * width);
+        for planes in [&mut self.plane_parts, &mut self.planes] {
+            planes.clear();
+            planes.reserve(4 * width);
+        }
+        self.plane_order.clear();
+        self.plane_order.reserve(4 * width);
         self.plane_rows.clear();
         self.plane_rows.reserve(width * OF_A_COLUMN);
         self.faces.clear();
@@ -186,7 +227,46 @@ impl DrawList {
             return;
         }
         let columns = columns.clone();
-        self.planes.push(VisiblePlane { columns, first, kind, height, look, image });
+        self.plane_parts.push(VisiblePlane { columns, first, kind, height, look, image });
+    }
+
+    /// Joins the planes that have the same height, look and image. Otherwise a cell with a shape, which is a
+    /// separate sector, would cut the floor around it into short spans.
+    pub(crate) fn join_planes(&mut self, eye: f64) {
+        let mut order = std::mem::take(&mut self.plane_order);
+        order.extend(self.plane_parts.iter().enumerate().map(|(index, plane)| {
+            let from_eye = (plane.height - eye).abs().to_bits();
+            (from_eye, self.index_of_image(plane.image), plane.kind.side() as u8, index)
+        }));
+        order.sort_unstable();
+        let mut rest = order.as_slice();
+        while let Some((&(.., first), others)) = rest.split_first() {
+            let plane = &self.plane_parts[first];
+            let is_alike = |key: &&PlaneKey| plane.is_alike(&self.plane_parts[key.3]);
+            let count = others.iter().take_while(is_alike).count();
+            rest = others;
+            let mut joined = plane.clone();
+            if count > 0 {
+                joined.columns = others[..count].iter().fold(joined.columns, |columns, key| {
+                    let others = &self.plane_parts[key.3].columns;
+                    columns.start.min(others.start)..columns.end.max(others.end)
+                });
+                joined.first = self.plane_rows.len();
+                let end = joined.first + joined.columns.len();
+                self.plane_rows.resize(end, Rows::NONE);
+                let (rows, of_joined) = self.plane_rows.split_at_mut(joined.first);
+                let mut join = |part: &VisiblePlane| {
+                    let rows = &rows[part.first..][..part.columns.len()];
+                    let first = (part.columns.start - joined.columns.start) as usize;
+                    join_rows(&mut of_joined[first..][..rows.len()], rows)
+                };
+                join(plane);
+                let parts = others[..count].iter().map(|key| &self.plane_parts[key.3]);
+                rest = &others[parts.take_while(|part| join(part)).count()..];
+            }
+            self.planes.push(joined);
+        }
+        self.plane_order = order;
     }
 
     /// The first column of `plane`, and its rows from that column on.
