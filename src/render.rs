@@ -178,7 +178,7 @@ impl Renderer {
             FrameContext { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
         let list = &mut memory.list;
         memory.next_change = visibility::fill(scene, &mut memory.visibility, list, stats);
-        let sky = &SkyView::new(scene, list.shows_sky(), &mut memory.sky);
+        let sky = &SkyView::new(scene, list, &mut memory.sky);
         let bands = (frame, &mut memory.surfaces);
         draw_bands(threads, samples, bands, &mut memory.threads, stats, |memory, target| {
             raster::draw(scene, list, sky, memory, target);

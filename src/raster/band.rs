@@ -69,21 +69,21 @@ impl<'a> Band<'a> {
     #[inline]
     pub(crate) fn column_mut(
         &mut self,
-        x: u32,
+        x: usize,
         rows: Range<u32>,
     ) -> impl Iterator<Item = &mut Rgb> {
         let (count, width) = (rows.len(), self.width);
-        let first = (self.places(rows).start + x as usize).min(self.pixels.len());
+        let first = (self.places(rows).start + x).min(self.pixels.len());
         self.pixels[first..].iter_mut().step_by(width).take(count)
     }
 
     /// The pixels from column `x` in the first of `rows` to the pixel before column `x` in the row
     /// after the last. The rows are in the band.
     #[inline]
-    pub(crate) fn pixels_from(&mut self, x: u32, rows: Range<u32>) -> &mut [Rgb] {
+    pub(crate) fn pixels_from(&mut self, x: usize, rows: Range<u32>) -> &mut [Rgb] {
         let Range { start, end } = self.places(rows);
-        let end = (end + x as usize).min(self.pixels.len());
-        self.pixels.get_mut(start + x as usize..end).unwrap_or_default()
+        let end = (end + x).min(self.pixels.len());
+        self.pixels.get_mut(start + x..end).unwrap_or_default()
     }
 
     /// The range of the pixels of `rows` in the band's pixels.

@@ -71,7 +71,7 @@ impl<'a> ShownFace<'a> {
     /// The direction of a column's ray on the map.
     #[inline]
     fn direction(&self, index: usize) -> DVec2 {
-        let direction = self.list.directions.of(self.face.columns.start + index as u32);
+        let direction = self.list.directions.of(self.face.columns.start + index);
         self.face.image.direction_to_map(direction)
     }
 
@@ -155,7 +155,7 @@ impl<'a> ShownFace<'a> {
             Paint::Color(color) => {
                 self.for_each_lighting(0..self.columns.len(), |range, lighting| {
                     let color = lighting.apply(color);
-                    for (x, column) in (first + range.start as u32..).zip(&self.columns[range]) {
+                    for (x, column) in (first + range.start..).zip(&self.columns[range]) {
                         band.column_mut(x, column.rows.within(rows))
                             .for_each(|pixel| *pixel = color);
                     }
@@ -165,7 +165,7 @@ impl<'a> ShownFace<'a> {
                 let texels = (level, self.texels(level));
                 let is_horizon_near = self.scene.projection.is_horizon_near();
                 self.for_each_lighting(range, |range, lighting| {
-                    let columns = (first + range.start as u32, &self.columns[range]);
+                    let columns = (first + range.start, &self.columns[range]);
                     TextureColumns::new(texels, lighting, columns).draw(
                         rows,
                         is_horizon_near,
@@ -268,7 +268,7 @@ impl ShownFace<'_> {
     /// are blended row by row, the rest column by column.
     fn paint_over(&self, range: Range<usize>, color: Rgb, opacity: u8, target: &mut Target<'_>) {
         let band_rows = target.rows();
-        let x = self.face.columns.start as usize + range.start;
+        let x = self.face.columns.start + range.start;
         let rows = |column: &FaceColumn| column.rows.within(&band_rows);
         let columns = &self.columns[range];
         let pixels = columns.iter().map(|column| rows(column).len()).sum();
@@ -280,7 +280,7 @@ impl ShownFace<'_> {
         for row in start..end {
             color.paint_over(&mut band.row_mut(row)[x..x + columns.len()], opacity);
         }
-        for (x, column) in (x as u32..).zip(columns) {
+        for (x, column) in (x..).zip(columns) {
             let Range { start: top, end: bottom } = rows(column);
             for rest in [top..bottom.min(start), top.max(end)..bottom] {
                 for pixel in band.column_mut(x, rest) {

@@ -293,8 +293,8 @@ impl<'a> PlaneDrawing<'a> {
             && floor.columns == ceiling.columns;
         let height = self.scene.projection.rows();
         let is_mirrored = |(one, other): (&Rows, &Rows)| {
-            one.is_empty() && other.is_empty()
-                || (one.start + other.end, one.end + other.start) == (height, height)
+            (one.start + other.end, one.end + other.start) == (height, height)
+                || one.is_empty() && other.is_empty()
         };
         let [(_, rows), (_, others)] = [floor, ceiling].map(|it| self.list.rows_of_plane(it));
         let is_pair = has_same && rows.iter().zip(others).all(is_mirrored);

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::visibility::{FrameContext, Pass, Projection};
+use crate::visibility::{DrawList, FrameContext, Pass, Projection};
 use crate::world::{Sky, SkyGradient, Texture};
 
 /// The sky as seen by a camera.
@@ -49,14 +49,15 @@ const WHOLE: f64 = 18_446_744_073_709_551_616.0;
 const WHOLE_IN_32_BITS: f64 = 4_294_967_296.0;
 
 impl<'a> SkyView<'a> {
-    /// The sky of `scene`. The colours of a gradient are computed only if the sky `is_shown`.
-    pub(crate) fn new(scene: FrameContext<'a>, is_shown: bool, memory: &'a mut SkyMemory) -> Self {
+    /// The sky of `scene`. The colours of a gradient are computed only if `list` shows it.
+    pub(crate) fn new(scene: FrameContext<'a>, list: &DrawList, memory: &'a mut SkyMemory) -> Self {
+        let directions = &list.directions;
         let FrameContext { world, projection, plan, .. } = scene;
         let SkyMemory { rows, columns } = memory;
         match world.sky() {
             Sky::Gradient(SkyGradient { zenith, horizon }) => {
                 rows.clear();
-                let shown = 0..if is_shown { projection.first_row_of_ground() } else { 0 };
+                let shown = 0..if list.shows_sky() { projection.first_row_of_ground() } else { 0 };
                 rows.extend(shown.map(|row| gradient(zenith, horizon, projection.slope(row))));
                 Self::Gradient { rows, horizon }
             }
@@ -68,8 +69,7 @@ impl<'a> SkyView<'a> {
                 let lod = plan.filter.lod(area.x * area.y);
                 let height = f64::from(texture.height()) / texels_per_radian;
                 columns.clear();
-                let directions =
-                    (0..projection.columns() as u32).map(|column| projection.direction_of(column));
+                let directions = (0..projection.columns()).map(|x| directions.of(x));
                 columns.extend(directions.map(|direction| SkyColumn::new(direction, height)));
                 Self::Panorama { projection, texture, lod, columns }
             }

@@ -105,7 +105,7 @@ impl<'a> Target<'a> {
     #[inline]
     pub(crate) fn column_mut(
         &mut self,
-        x: u32,
+        x: usize,
         rows: Range<u32>,
     ) -> impl Iterator<Item = &mut Rgb> {
         self.band.column_mut(x, rows)
@@ -145,12 +145,12 @@ impl<'a> Target<'a> {
     /// true.
     pub(crate) fn mark(
         &mut self,
-        x: u32,
+        x: usize,
         row: u32,
         surface: Surface,
         shown: impl Iterator<Item = bool>,
     ) {
-        self.surfaces.mark(x as usize, row, surface, shown);
+        self.surfaces.mark(x, row, surface, shown);
     }
 }
 

@@ -34,7 +34,7 @@ pub(crate) struct TextureColumns<'a> {
     lighting: Option<Lighting>,
     of_face: FaceTexels,
     /// The first column, and the values of it and the others.
-    x: u32,
+    x: usize,
     columns: &'a [FaceColumn],
 }
 
@@ -42,7 +42,7 @@ impl<'a> TextureColumns<'a> {
     pub(crate) fn new(
         (level, of_face): (&'a MipLevel, FaceTexels),
         lighting: Lighting,
-        (x, columns): (u32, &'a [FaceColumn]),
+        (x, columns): (usize, &'a [FaceColumn]),
     ) -> Self {
         let (texels, lighting) = match lighting.stored_texels(level) {
             Some(texels) => (texels, None),
@@ -123,7 +123,7 @@ impl<'a> TextureColumns<'a> {
     /// Draws these `rows` of a column.
     #[cold]
     #[inline(never)]
-    fn draw_rows(&self, (x, column): (u32, &FaceColumn), rows: Range<u32>, band: &mut Band<'_>) {
+    fn draw_rows(&self, (x, column): (usize, &FaceColumn), rows: Range<u32>, band: &mut Band<'_>) {
         let height = self.level.height() as usize;
         let texels = &self.texels[self.level.column_index(column.u) * height..][..height];
         let (stepper, first) = (self.of_face.at(column.t), rows.start);
@@ -252,7 +252,7 @@ mod tests {
                     let texel = level.column(u)[texels.at(t).at(row)];
                     expected[row as usize][x] = lighting.apply(texel);
                 }
-                let (x, columns) = (x as u32, &[FaceColumn { rows: Rows { start, end }, t, u }]);
+                let (x, columns) = (x, &[FaceColumn { rows: Rows { start, end }, t, u }]);
                 for first in (0..HEIGHT).step_by(rows_at_once) {
                     let rows = first..HEIGHT.min(first + rows_at_once as u32);
                     let columns = TextureColumns::new((level, texels), lighting, (x, columns));

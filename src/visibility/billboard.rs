@@ -36,7 +36,7 @@ pub(crate) struct Billboard {
     left: f64,
     width: f64,
     /// The columns of pixels whose centres it covers.
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     /// The position of the top in rows, and the number of texels per row of pixels.
     top: f64,
     texels_in_row: f64,
@@ -69,7 +69,7 @@ pub(crate) fn may_show(
     }
     let half = projection.columns_for(sprite.width(), place.depth) / 2.0 + MARGIN;
     let covered = projection.columns_between(place.column - half, place.column + half);
-    let ends = distances.get(covered.start as usize..covered.end as usize);
+    let ends = distances.get(covered);
     let top = figure.base + sprite.height.cells();
     world.tile_facts().have_open_sky && top > Heights::LEVEL.ceiling()
         || ends.is_none_or(|ends| ends.iter().any(|&end| place.depth <= end))
@@ -95,7 +95,7 @@ struct Placement {
     depth: f64,
     left: f64,
     width: f64,
-    columns: Range<u32>,
+    columns: Range<usize>,
 }
 
 impl Placement {
@@ -119,7 +119,7 @@ impl Placement {
         let columns = projection.columns_between(left, left + width);
         let is_reached = match distances {
             Some(ends) => {
-                let mut ends = ends[columns.start as usize..columns.end as usize].iter();
+                let mut ends = ends[columns.clone()].iter();
                 ends.any(|&end| depth < end)
             }
             None => !columns.is_empty(),
@@ -259,8 +259,8 @@ impl Billboard {
     }
 
     /// The position across its picture of the pixel centres in `column`, from 0 to 1.
-    pub(crate) fn u(&self, column: u32) -> f64 {
-        let u = (f64::from(column) + 0.5 - self.left) / self.width;
+    pub(crate) fn u(&self, column: usize) -> f64 {
+        let u = (column as f64 + 0.5 - self.left) / self.width;
         if self.is_mirrored { 1.0 - u } else { u }
     }
 

@@ -43,7 +43,7 @@ pub(crate) struct DrawList {
     /// The columns of the ray parts in `passed`.
     pub(crate) stretches: Vec<RaySegment>,
     /// The columns at the corners of the ray parts.
-    pub(crate) corners: Vec<u32>,
+    pub(crate) corners: Vec<usize>,
     /// The items in front of all planes and opaque faces, in the order of painting.
     pub(crate) layers: Vec<Layer>,
     pub(crate) billboards: Vec<Billboard>,
@@ -63,7 +63,7 @@ pub(crate) enum Backdrop {
 /// A floor, a ceiling or a sky in neighbouring columns.
 #[derive(Clone, Debug)]
 pub(crate) struct VisiblePlane {
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     /// The index of the rows of the first column. The others follow.
     pub(crate) first: usize,
     pub(crate) kind: PlaneKind,
@@ -95,7 +95,7 @@ pub(crate) enum Layer {
 /// The parts of neighbouring rays in one sector.
 #[derive(Clone, Debug)]
 pub(crate) struct RayPart {
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     /// The index of the first stretch. The others follow.
     pub(crate) first: usize,
     /// The indices of the columns at the corners of the area that the parts cover on the map. Between two of
@@ -118,7 +118,7 @@ pub(crate) struct RaySegment {
 /// Neighbouring columns of a billboard.
 #[derive(Clone, Debug)]
 pub(crate) struct BillboardPart {
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     /// The index of the rows of the first column. The others follow.
     pub(crate) first: usize,
     /// An index into `billboards`.
@@ -217,7 +217,7 @@ impl DrawList {
         (kind, height): (PlaneKind, f64),
         look: Option<PlaneSurface>,
         image: MirrorTransform,
-        columns: &Range<u32>,
+        columns: &Range<usize>,
         rows: impl Iterator<Item = Rows>,
     ) {
         let first = self.plane_rows.len();
@@ -257,7 +257,7 @@ impl DrawList {
                 let (rows, of_joined) = self.plane_rows.split_at_mut(joined.first);
                 let mut join = |part: &VisiblePlane| {
                     let rows = &rows[part.first..][..part.columns.len()];
-                    let first = (part.columns.start - joined.columns.start) as usize;
+                    let first = part.columns.start - joined.columns.start;
                     join_rows(&mut of_joined[first..][..rows.len()], rows)
                 };
                 join(plane);
@@ -271,7 +271,7 @@ impl DrawList {
 
     /// The first column of `plane`, and its rows from that column on.
     pub(crate) fn rows_of_plane(&self, plane: &VisiblePlane) -> (usize, &[Rows]) {
-        (plane.columns.start as usize, &self.plane_rows[plane.first..][..plane.columns.len()])
+        (plane.columns.start, &self.plane_rows[plane.first..][..plane.columns.len()])
     }
 
     /// Adds a face whose columns are at the end of `face_columns`, unless it has no rows in any of them.

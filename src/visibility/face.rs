@@ -10,7 +10,7 @@ use crate::world::{Cell, FaceLight, Glass, Grid, Outline, Paint, TextureId, Tile
 /// Neighbouring columns that show one upright surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     /// The index of its first face column. The others follow.
     pub(crate) first: usize,
     pub(crate) facing: Facing,
@@ -67,7 +67,13 @@ impl Rows {
         self.start >= self.end
     }
 
-    /// The rows that are in both ranges.
+    /// The rows that are in both.
+    #[inline]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self { start: self.start.max(other.start), end: self.end.min(other.end) }
+    }
+
+    /// The rows that are in both ranges, as a range that does not end before its start.
     #[inline]
     pub(crate) fn within(self, rows: &Range<u32>) -> Range<u32> {
         let start = self.start.max(rows.start);

@@ -27,7 +27,7 @@ use crate::world::{Cell, Grid, SectorId, Sectors, TileId};
 /// Neighbouring columns whose rays leave a sector through one face.
 #[derive(Clone, Debug)]
 pub(crate) struct Border {
-    pub(crate) columns: Range<u32>,
+    pub(crate) columns: Range<usize>,
     pub(crate) face: CellFace,
     /// The cell behind the face; `None` at the edge of the map.
     pub(crate) into: Option<(Cell, TileId)>,
@@ -46,7 +46,7 @@ pub(crate) struct RayStarts<'a> {
 /// The cell in which rays enter a sector: the ray of `column`, and the rays to its right up to the next entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectorEntry {
-    pub(crate) column: u32,
+    pub(crate) column: usize,
     /// The column and the row of the cell along the straight rays.
     pub(crate) place: [i64; 2],
 }
@@ -70,7 +70,7 @@ pub(crate) struct Fan<'a> {
 }
 
 /// Rays whose neighbours to the left are not known yet, in memory that is reused from frame to frame.
-pub(crate) type FanMemory = Vec<(u32, FaceHit)>;
+pub(crate) type FanMemory = Vec<(usize, FaceHit)>;
 
 /// The face through which a ray leaves a sector, and the cell behind the face.
 type FaceHit = (CellFace, Option<(Cell, TileId)>);
@@ -84,7 +84,7 @@ impl Directions {
         let Self { places, along: [x, y] } = self;
         if places.len() != projection.columns() {
             places.clear();
-            places.extend((0..projection.columns() as u32).map(|it| projection.place_of(it)));
+            places.extend((0..projection.columns()).map(|it| projection.place_of(it)));
         }
         let (middle, right) = (projection.direction(), projection.plane());
         x.clear();
@@ -95,9 +95,9 @@ impl Directions {
 
     /// The direction of the ray of `column`.
     #[inline]
-    pub(crate) fn of(&self, column: u32) -> DVec2 {
+    pub(crate) fn of(&self, column: usize) -> DVec2 {
         let [x, y] = &self.along;
-        DVec2::new(x[column as usize], y[column as usize])
+        DVec2::new(x[column], y[column])
     }
 
     /// The components of all directions across the lines of `side`.
@@ -124,13 +124,13 @@ impl<'a> Fan<'a> {
     pub(crate) fn find(
         &self,
         view: RayStarts<'_>,
-        columns: Range<u32>,
+        columns: Range<usize>,
         memory: &mut FanMemory,
         borders: &mut Vec<Border>,
     ) {
         borders.clear();
         let grid = self.grid_of(view);
-        let cast = |column: u32| self.cast(view, grid, column);
+        let cast = |column: usize| self.cast(view, grid, column);
         let is_each_cast = !self.scene.projection.fans_out()
             || matches!(view.sector, SectorId::BEYOND | SectorId::SOLID);
         if is_each_cast {
@@ -145,8 +145,8 @@ impl<'a> Fan<'a> {
             memory.push((last, cast(last)));
         }
         while let Some(&(column, right)) = memory.last() {
-            let gap = RayPair { projection: self.scene.projection, first, width: column - first };
-            let next = match gap.step(self, [&left.0, &right.0]) {
+            let pair = RayPair { fan: self, first, width: column - first };
+            let next = match pair.step([&left.0, &right.0]) {
                 FanStep::Split(split) => {
                     extend(borders, first + 1..first + split, left);
                     extend(borders, first + split..column + 1, right);
@@ -179,7 +179,7 @@ impl<'a> Fan<'a> {
     }
 
     /// The hit of the ray of `column`.
-    fn cast(&self, view: RayStarts<'_>, grid: Option<&Grid>, column: u32) -> FaceHit {
+    fn cast(&self, view: RayStarts<'_>, grid: Option<&Grid>, column: usize) -> FaceHit {
         let direction = self.directions.of(column);
         let hit = grid.and_then(|grid| self.cast_through(grid, direction));
         hit.unwrap_or_else(|| self.walk(view, column, direction))
@@ -212,7 +212,7 @@ impl<'a> Fan<'a> {
     }
 
     /// The hit of the ray of `column`, found by following it from cell to cell.
-    fn walk(&self, view: RayStarts<'_>, column: u32, direction: DVec2) -> FaceHit {
+    fn walk(&self, view: RayStarts<'_>, column: usize, direction: DVec2) -> FaceHit {
         let grid = self.scene.world.grid();
         let mut order = self.order.along(direction);
         let entry = view.entries.iter().rfind(|entry| entry.column <= column);
@@ -239,7 +239,7 @@ impl<'a> Fan<'a> {
 /// Adds `columns` whose rays leave through the face of a hit. They extend the last border if it has the same
 /// face.
 #[inline]
-fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): FaceHit) {
+fn extend(borders: &mut Vec<Border>, columns: Range<usize>, (face, into): FaceHit) {
     if columns.is_empty() {
         return;
     }
@@ -251,24 +251,24 @@ fn extend(borders: &mut Vec<Border>, columns: Range<u32>, (face, into): FaceHit)
 
 /// Two rays with known hits, and the columns from the first to the second.
 struct RayPair<'a> {
-    projection: &'a Projection,
-    first: u32,
+    fan: &'a Fan<'a>,
+    first: usize,
     /// The number of columns from the first ray to the second.
-    width: u32,
+    width: usize,
 }
 
 /// The next step for the rays in a gap. Columns are counted from the column of the first ray.
 enum FanStep {
     /// The rays before this column hit the first face, and the others hit the second one.
-    Split(u32),
+    Split(usize),
     /// The ray of this column must be cast.
-    Cast(u32),
+    Cast(usize),
 }
 
 impl RayPair<'_> {
     /// The next step for the rays between the two: the split if it follows from their hits, else the ray to
     /// cast.
-    fn step(&self, fan: &Fan<'_>, faces: [&CellFace; 2]) -> FanStep {
+    fn step(&self, faces: [&CellFace; 2]) -> FanStep {
         let [left, right] = faces;
         let (width, last) = (self.width, self.width - 1);
         if left == right || width == 1 {
@@ -278,11 +278,11 @@ impl RayPair<'_> {
         let end_of_left = self.column_of(left.right_end()).unwrap_or(f64::INFINITY);
         let beyond_left = self.first_column_from(end_of_left);
         if (1..=width).contains(&beyond_left) {
-            let is_clear = |column: u32| (end_of_left - f64::from(column)).abs() > EPSILON;
+            let is_clear = |column: usize| (end_of_left - column as f64).abs() > EPSILON;
             let are_known = left.is_beside(right)
                 && is_clear(beyond_left - 1)
                 && is_clear(beyond_left)
-                && self.has_no_room_for_a_cell(fan, faces);
+                && self.has_no_room_for_a_cell(faces);
             return if are_known {
                 FanStep::Split(beyond_left)
             } else {
@@ -303,11 +303,11 @@ impl RayPair<'_> {
     }
 
     /// Returns true if no cell in front of the line of both faces fits between the rays.
-    fn has_no_room_for_a_cell(&self, fan: &Fan<'_>, [left, right]: [&CellFace; 2]) -> bool {
-        let origin = self.projection.origin();
+    fn has_no_room_for_a_cell(&self, [left, right]: [&CellFace; 2]) -> bool {
+        let origin = self.fan.scene.projection.origin();
         let to_line = left.distance_to_line(origin);
-        let point = |column: u32, face: &CellFace| {
-            let direction = fan.directions.of(column);
+        let point = |column: usize, face: &CellFace| {
+            let direction = self.fan.directions.of(column);
             let t = (to_line / direction[face.side as usize]).abs();
             direction * t
         };
@@ -319,16 +319,16 @@ impl RayPair<'_> {
     /// The position of `point`, in columns from the first ray. Integers are the centres of columns. `None` if
     /// the point is behind the camera.
     fn column_of(&self, point: DVec2) -> Option<f64> {
-        let place = self.projection.place(point);
-        (place.depth > 0.0).then_some(place.column - 0.5 - f64::from(self.first))
+        let place = self.fan.scene.projection.place(point);
+        (place.depth > 0.0).then_some(place.column - 0.5 - self.first as f64)
     }
 
     /// The first column whose centre is not before `position`, limited to one column after the second ray.
-    fn first_column_from(&self, position: f64) -> u32 {
-        let position = position.max(0.0).min(f64::from(self.width) + 1.0);
+    fn first_column_from(&self, position: f64) -> usize {
+        let position = position.max(0.0).min(self.width as f64 + 1.0);
         // On old processors `f64::ceil` is a call.
-        let column = position as u32;
-        column + u32::from(f64::from(column) < position)
+        let column = position as usize;
+        column + usize::from((column as f64) < position)
     }
 }
 

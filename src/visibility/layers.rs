@@ -146,8 +146,8 @@ fn for_each_edge(
     for layer in &list.passed {
         let Layer::Part(part) = layer else { continue };
         let index = list.index_of_image(part.image);
-        let ends = |column: u32| {
-            let stretch = list.stretches[part.first + (column - part.columns.start) as usize];
+        let ends = |column: usize| {
+            let stretch = list.stretches[part.first + column - part.columns.start];
             let direction = list.directions.of(column);
             [stretch.from, stretch.to].map(|t| part.image.to_map(origin + direction * t))
         };
@@ -204,7 +204,7 @@ fn cut(scene: FrameContext<'_>, memory: &LayerMemory, part: &RayPart, list: &mut
         }
         let limits = limits(scene, part, list.sectors.get(part.sector), billboard);
         let first_rows = list.billboard_rows.len();
-        let of_columns = &stretches[(columns.start - part.columns.start) as usize..];
+        let of_columns = &stretches[columns.start - part.columns.start..];
         list.billboard_rows.extend(of_columns[..columns.len()].iter().map(|stretch| {
             let &RaySegment { rows, from, to } = stretch;
             let is_in_it = from <= billboard.depth && billboard.depth < to;

@@ -33,10 +33,6 @@ pub struct Projection {
     focal_length_across: f64,
 }
 
-/// A height relative to the eye: in rows above the horizon at distance 1, negative below.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RelativeHeight(f64);
-
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct ProjectedPoint {
@@ -133,40 +129,24 @@ impl Projection {
 
     /// The position of `column` across the picture, from −1 at the left edge to 1 at the right edge.
     #[inline]
-    pub(crate) fn place_of(&self, column: u32) -> f64 {
+    pub(crate) fn place_of(&self, column: usize) -> f64 {
         let width = f64::from(self.width);
         // A quotient of two integers: a column and its mirror image have exactly opposite positions.
-        (f64::from(column) * 2.0 + 1.0 - width) / width
+        (column as f64 * 2.0 + 1.0 - width) / width
     }
 
-    /// The direction of the ray of `column`.
+    /// The first row whose centre is not above a point at `height` at distance `t`.
     #[inline]
-    pub(crate) fn direction_of(&self, column: u32) -> DVec2 {
-        self.direction + self.plane * self.place_of(column)
+    pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {
+        let mut row = 0;
+        self.rows_of(height, &[t], std::slice::from_mut(&mut row));
+        row
     }
 
-    /// The rise from the eye to `height`.
-    pub(crate) fn relative_height(&self, height: f64) -> RelativeHeight {
-        let rise = height - self.eye;
-        RelativeHeight(rise * self.focal_length)
-    }
-
-    /// The first row whose centre is not above a point with `rise` at distance `t`.
+    /// Writes the row of `height` at each of `distances` to `rows`, as `row_of_height` does for one distance.
     #[inline]
-    pub(crate) fn row_of(&self, RelativeHeight(rise): RelativeHeight, t: f64) -> u32 {
-        if rise == 0.0 {
-            return self.first_row_of_ground();
-        }
-        self.first_row_below(self.horizon - rise / t)
-    }
-
-    /// Writes the row of `rise` at each of `distances` to `rows`, as `row_of` does for one distance.
-    pub(crate) fn rows_of(
-        &self,
-        RelativeHeight(rise): RelativeHeight,
-        distances: &[f64],
-        rows: &mut [u32],
-    ) {
+    pub(crate) fn rows_of(&self, height: f64, distances: &[f64], rows: &mut [u32]) {
+        let rise = (height - self.eye) * self.focal_length;
         if rise == 0.0 {
             rows.fill(self.first_row_of_ground());
             return;
@@ -174,12 +154,6 @@ impl Projection {
         for (row, t) in rows.iter_mut().zip(distances) {
             *row = self.first_row_below(self.horizon - rise / t);
         }
-    }
-
-    /// The first row whose centre is not above a point at `height`, for callers that need it once.
-    #[inline]
-    pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {
-        self.row_of(self.relative_height(height), t)
     }
 
     /// The position in the picture of a point on the map.
@@ -197,8 +171,8 @@ impl Projection {
     }
 
     /// The columns whose centres are between two positions, in columns from the left edge.
-    pub(crate) fn columns_between(&self, left: f64, right: f64) -> Range<u32> {
-        let first = |x: f64| (x - 0.5).ceil().clamp(0.0, f64::from(self.width)) as u32;
+    pub(crate) fn columns_between(&self, left: f64, right: f64) -> Range<usize> {
+        let first = |x: f64| (x - 0.5).ceil().clamp(0.0, f64::from(self.width)) as usize;
         first(left)..first(right)
     }
 

@@ -12,6 +12,7 @@
 //! cell to cell, one by one or neighbouring rays together. In a hall, most cells that they cross look alike,
 //! and each cell costs time in every column that it covers.
 
+use std::iter::zip;
 use std::mem;
 use std::ops::Range;
 
@@ -20,7 +21,6 @@ use glam::DVec2;
 use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, RaySegment};
 use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
 use super::fan::{Border, Fan, FanMemory, RayStarts, SectorEntry};
-use super::projection::RelativeHeight;
 use super::{FrameContext, WalkStats};
 use crate::cast::{Course, Hit, Intersection, MirrorTransform, Ray, from_left, is_from_left};
 use crate::world::sprite::builtin;
@@ -41,8 +41,6 @@ pub(crate) struct WalkMemory {
     entries: Vec<SectorEntry>,
     fan: FanMemory,
     borders: Vec<Border>,
-    /// The passage of each ray of a visit through the cell of an object.
-    passages: Vec<Intersection>,
     /// Values of the current visit, by column.
     columns: ColumnMemory,
     /// The next visits: in the lower gap, in the upper gap, and in a mirror.
@@ -57,7 +55,7 @@ struct Visit {
     bounces: u32,
     /// `true` if the rays begin at the camera, in this sector.
     is_at_camera: bool,
-    columns: Range<u32>,
+    columns: Range<usize>,
     /// The index of the first column's clip, and of the first entry. The others follow.
     first_clip: usize,
     first_entry: usize,
@@ -80,9 +78,11 @@ struct ColumnMemory {
     /// The distance at which the ray leaves the sector or meets an object in it.
     t: Vec<f64>,
     u: Vec<f64>,
-    /// The row of a bottom and the row of a top at this distance.
-    bottoms: Vec<u32>,
+    /// The row of a top and the row of a bottom at this distance.
     tops: Vec<u32>,
+    bottoms: Vec<u32>,
+    /// The passage of the ray through the cell of an object.
+    passages: Vec<Intersection>,
 }
 
 /// An incomplete visit, which the next face may extend.
@@ -97,9 +97,10 @@ struct PendingVisit {
 struct BorderGroup {
     /// The indices of the borders.
     borders: Range<usize>,
-    columns: Range<u32>,
+    columns: Range<usize>,
     /// The face of the first border.
     face: CellFace,
+    look: BorderLook,
 }
 
 /// The light on a face, and its paint if it is the jamb of a door.
@@ -114,19 +115,32 @@ enum VisitKind {
 }
 
 impl ColumnMemory {
-    /// The columns of a face in `range`, with the open rows between `tops` and `bottoms`.
+    /// The rows of `range` that no nearer surface covers.
     #[inline]
-    fn of_face(&self, range: &Range<u32>) -> impl Iterator<Item = FaceColumn> {
-        let indices = range.start as usize..range.end as usize;
-        let Self { starts, ends, t, u, bottoms, tops, .. } = self;
-        let starts = starts[indices.clone()].iter().zip(&tops[indices.clone()]);
-        let ends = ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
-        let places = t[indices.clone()].iter().zip(&u[indices]);
-        starts.zip(ends).zip(places).map(|(((start, top), (end, bottom)), (&t, &u))| {
-            let rows = Rows { start: *start.max(top), end: *end.min(bottom) };
-            FaceColumn { rows, t, u }
-        })
+    fn open(&self, range: &Range<usize>) -> impl Iterator<Item = Rows> {
+        zip(&self.starts[range.clone()], &self.ends[range.clone()])
+            .map(|(&start, &end)| Rows { start, end })
     }
+
+    /// The open rows of `range` between `tops` and `bottoms`.
+    #[inline]
+    fn shown(&self, range: &Range<usize>) -> impl Iterator<Item = Rows> {
+        let limits = zip(&self.tops[range.clone()], &self.bottoms[range.clone()]);
+        zip(self.open(range), limits).map(|(open, (&start, &end))| open.and(Rows { start, end }))
+    }
+}
+
+/// Takes the first columns from `rest`: all up to the first with another `value`. Returns `None` if there is none.
+#[inline]
+fn next_run<T: PartialEq>(
+    rest: &mut Range<usize>,
+    value: impl Fn(usize) -> T,
+) -> Option<(Range<usize>, T)> {
+    let start = rest.next()?;
+    let of_run = value(start);
+    let end = rest.clone().find(|&x| value(x) != of_run).unwrap_or(rest.end);
+    rest.start = end;
+    Some((start..end, of_run))
 }
 
 impl WalkMemory {
@@ -141,18 +155,16 @@ impl WalkMemory {
         self.entries.reserve(width * OF_A_COLUMN);
         self.borders.clear();
         self.borders.reserve(width);
-        self.passages.clear();
-        self.passages.reserve(width);
         self.fan.clear();
         self.fan.reserve(width);
-        let columns = &mut self.columns;
-        let ColumnMemory { starts, ends, from, t, u, bottoms, tops } = columns;
-        for rows in [starts, ends, bottoms, tops] {
+        let ColumnMemory { starts, ends, from, t, u, tops, bottoms, passages } = &mut self.columns;
+        for rows in [starts, ends, tops, bottoms] {
             rows.resize(width, 0);
         }
         for distances in [from, t, u] {
             distances.resize(width, 0.0);
         }
+        passages.resize(width, Intersection::NONE);
         for next in &mut self.next {
             next.rows.resize(width, Rows::NONE);
             next.entries.clear();
@@ -217,37 +229,29 @@ impl SectorWalk<'_> {
         let edge = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let is_inside = origin.cmpgt(DVec2::ZERO).all() && origin.cmplt(edge).all();
         let is_one_cell = is_inside && origin.fract().cmpne(DVec2::ZERO).all();
-        let signs = |column: u32| {
-            let DVec2 { x, y } = self.fan.directions.of(column);
-            [x > 0.0, x < 0.0, y > 0.0, y < 0.0]
-        };
-        let width = projection.columns() as u32;
-        let mut first = 0;
-        while first < width {
-            let is_next = |&column: &u32| !is_one_cell && signs(column) != signs(first);
-            let end = (first + 1..width).find(is_next).unwrap_or(width);
-            self.store_first(first..end);
-            first = end;
+        let mut rest = 0..projection.columns();
+        while let Some((columns, _)) = next_run(&mut rest, |x| {
+            let DVec2 { x, y } = self.fan.directions.of(x);
+            (!is_one_cell).then_some([x > 0.0, x < 0.0, y > 0.0, y < 0.0])
+        }) {
+            let ray = Ray::of_camera(origin, self.fan.directions.of(columns.start));
+            let course = Course::new(grid, &ray);
+            let tile = course.cell(grid).map(|(_, tile)| tile);
+            let WalkMemory { visits, clips, entries, .. } = &mut *self.memory;
+            let (first_clip, first_entry) = (clips.len(), entries.len());
+            let open = Rows { start: 0, end: projection.rows() };
+            clips.extend(columns.clone().map(|_| Clip { rows: open, from: 0.0 }));
+            entries.push(SectorEntry { column: columns.start, place: course.place() });
+            visits.push(Visit {
+                sector: self.fan.sectors.of_eye(tile, projection.eye()),
+                image: MirrorTransform::default(),
+                bounces: 0,
+                is_at_camera: true,
+                columns,
+                first_clip,
+                first_entry,
+            });
         }
-    }
-
-    /// Stores a visit to the sector of the camera.
-    fn store_first(&mut self, columns: Range<u32>) {
-        let FrameContext { world, projection, .. } = self.scene;
-        let ray = Ray::of_camera(projection.origin(), self.fan.directions.of(columns.start));
-        let course = Course::new(world.grid(), &ray);
-        let tile = course.cell(world.grid()).map(|(_, tile)| tile);
-        let WalkMemory { visits, clips, entries, .. } = &mut *self.memory;
-        visits.push(Visit {
-            sector: self.fan.sectors.of_eye(tile, projection.eye()),
-            image: MirrorTransform::default(),
-            bounces: 0,
-            is_at_camera: true,
-            first_clip: clips.len(),
-            first_entry: entries.len(),
-            columns: columns.clone(),
-        });
-        entries.push(SectorEntry { column: columns.start, place: course.place() });
     }
 
     fn follow_all(&mut self) {
@@ -259,17 +263,14 @@ impl SectorWalk<'_> {
     fn follow(&mut self, visit: &Visit) {
         self.stats.sectors += 1;
         let WalkMemory { clips, entries, columns, fan, borders, .. } = &mut *self.memory;
-        let indices = visit.columns.start as usize..visit.columns.end as usize;
-        if visit.is_at_camera {
-            columns.starts[indices.clone()].fill(0);
-            columns.ends[indices.clone()].fill(self.scene.projection.rows());
-            columns.from[indices].fill(0.0);
-        } else {
-            for (x, clip) in indices.zip(&clips[visit.first_clip..]) {
-                columns.starts[x] = clip.rows.start;
-                columns.ends[x] = clip.rows.end;
-                columns.from[x] = clip.from;
-            }
+        let range = &visit.columns;
+        let of_visit = &clips[visit.first_clip..];
+        let rows = zip(&mut columns.starts[range.clone()], &mut columns.ends[range.clone()]);
+        for ((start, end), clip) in zip(rows, of_visit) {
+            (*start, *end) = (clip.rows.start, clip.rows.end);
+        }
+        for (from, clip) in zip(&mut columns.from[range.clone()], of_visit) {
+            *from = clip.from;
         }
         clips.truncate(visit.first_clip);
         let view = RayStarts {
@@ -278,7 +279,7 @@ impl SectorWalk<'_> {
             entries: &entries[visit.first_entry..],
             is_at_camera: visit.is_at_camera,
         };
-        self.fan.find(view, visit.columns.clone(), fan, borders);
+        self.fan.find(view, range.clone(), fan, borders);
         let first_place = view.entries[0].place;
         entries.truncate(visit.first_entry);
         let sector = self.fan.sectors.get(visit.sector);
@@ -286,7 +287,7 @@ impl SectorWalk<'_> {
             self.meet_standing(visit, sector, first_place);
         }
         self.find_distances();
-        self.close(visit, sector, visit.columns.clone());
+        self.close(visit, sector, range);
         self.pass_borders(visit, sector);
     }
 
@@ -295,111 +296,87 @@ impl SectorWalk<'_> {
         let origin = self.scene.projection.origin();
         let WalkMemory { borders, columns, .. } = &mut *self.memory;
         for Border { columns: range, face, .. } in &*borders {
-            let range = range.start as usize..range.end as usize;
             let offset = face.line() as f64 - origin[face.side as usize];
             let across = &self.fan.directions.across(face.side)[range.clone()];
-            for (t, direction) in columns.t[range].iter_mut().zip(across) {
+            for (t, direction) in zip(&mut columns.t[range.clone()], across) {
                 *t = (offset / direction).abs();
             }
         }
     }
 
-    /// Writes the rows at which the rays of `range` meet `height` to `tops` or `bottoms`.
-    fn find_rows(&mut self, height: f64, range: &Range<u32>, is_top: bool) {
-        let ColumnMemory { t, bottoms, tops, .. } = &mut self.memory.columns;
-        let range = range.start as usize..range.end as usize;
-        let rows = if is_top { tops } else { bottoms };
-        let rise: RelativeHeight = self.scene.projection.relative_height(height);
-        self.scene.projection.rows_of(rise, &t[range.clone()], &mut rows[range]);
+    /// Writes the rows at which the rays of `range` meet `height` to `tops`.
+    fn find_tops(&mut self, height: f64, range: &Range<usize>) {
+        let ColumnMemory { t, tops, .. } = &mut self.memory.columns;
+        self.scene.projection.rows_of(height, &t[range.clone()], &mut tops[range.clone()]);
+    }
+
+    /// Writes the same rows to `bottoms`.
+    fn find_bottoms(&mut self, height: f64, range: &Range<usize>) {
+        let ColumnMemory { t, bottoms, .. } = &mut self.memory.columns;
+        self.scene.projection.rows_of(height, &t[range.clone()], &mut bottoms[range.clone()]);
     }
 
     /// Shows the floor and the ceiling of the sector in `range` up to the distances `t`, and removes their rows
     /// from the clip ranges. The rays leave the sector there, or meet an object in it.
-    fn close(&mut self, visit: &Visit, sector: &Sector, range: Range<u32>) {
+    fn close(&mut self, visit: &Visit, sector: &Sector, range: &Range<usize>) {
         let projection = self.scene.projection;
-        let (eye, ground) = (projection.eye(), projection.first_row_of_ground());
+        let eye = projection.eye();
         if self.has_things {
-            self.add_part(visit, sector, range.clone(), None);
-        }
-        // At the height of a plane, the eye sees the point of the plane at its own position.
-        let shows_floor = eye >= sector.bottom;
-        let shows_ceiling = eye <= sector.top;
-        if shows_floor {
-            self.find_rows(sector.bottom, &range, false);
-        }
-        if sector.top == f64::INFINITY {
-            // Above the horizon, there is only sky.
-            self.memory.columns.tops[range.start as usize..range.end as usize].fill(ground);
-        } else if shows_ceiling {
-            self.find_rows(sector.top, &range, true);
+            self.add_part(visit, sector, range, None);
         }
         let is_everything = visit.is_at_camera
             && range.len() == projection.columns()
             && sector.holds != GapObject::Standing;
-        let [floor, ceiling] = self.looks_of_planes(visit, sector, &range);
-        let sides =
-            [(PlaneSide::Floor, floor, shows_floor), (PlaneSide::Ceiling, ceiling, shows_ceiling)];
-        for (side, look, is_shown) in sides {
-            if is_shown && !(is_everything && self.show_behind(sector, side, look)) {
-                self.add_plane(visit, sector, &range, (side, look));
-            }
-        }
+        let [floor, ceiling] = self.looks_of_planes(visit, sector, range);
         if visit.bounces == 0 {
-            self.extend_distances(&range);
+            self.extend_distances(range);
         }
-        let indices = range.start as usize..range.end as usize;
-        let ColumnMemory { starts, ends, from, t, bottoms, tops, .. } = &mut self.memory.columns;
-        if shows_floor {
-            for (end, bottom) in ends[indices.clone()].iter_mut().zip(&bottoms[indices.clone()]) {
+        // At the height of a plane, the eye sees the point of the plane at its own position.
+        if eye >= sector.bottom {
+            self.find_bottoms(sector.bottom, range);
+            if !(is_everything && self.show_behind(sector, PlaneSide::Floor, floor)) {
+                let ColumnMemory { bottoms, .. } = &self.memory.columns;
+                let rows = zip(self.memory.columns.open(range), &bottoms[range.clone()]);
+                let rows = rows.map(|(open, &row)| Rows { start: open.start.max(row), ..open });
+                let plane = (PlaneKind::Floor(visit.sector), sector.bottom);
+                self.list.add_plane(plane, floor, visit.image, range, rows);
+            }
+            let ColumnMemory { ends, bottoms, .. } = &mut self.memory.columns;
+            for (end, bottom) in zip(&mut ends[range.clone()], &bottoms[range.clone()]) {
                 *end = (*end).min(*bottom);
             }
         }
-        if shows_ceiling {
-            for (start, top) in starts[indices.clone()].iter_mut().zip(&tops[indices.clone()]) {
+        if eye <= sector.top {
+            if sector.top == f64::INFINITY {
+                // Above the horizon, there is only sky.
+                self.memory.columns.tops[range.clone()].fill(projection.first_row_of_ground());
+            } else {
+                self.find_tops(sector.top, range);
+            }
+            if !(is_everything && self.show_behind(sector, PlaneSide::Ceiling, ceiling)) {
+                let ColumnMemory { tops, .. } = &self.memory.columns;
+                let rows = zip(self.memory.columns.open(range), &tops[range.clone()]);
+                let rows = rows.map(|(open, &row)| Rows { end: open.end.min(row), ..open });
+                let plane = (PlaneKind::Ceiling(visit.sector), sector.top);
+                self.list.add_plane(plane, ceiling, visit.image, range, rows);
+            }
+            let ColumnMemory { starts, tops, .. } = &mut self.memory.columns;
+            for (start, top) in zip(&mut starts[range.clone()], &tops[range.clone()]) {
                 *start = (*start).max(*top);
             }
         }
-        from[indices.clone()].copy_from_slice(&t[indices]);
+        let ColumnMemory { from, t, .. } = &mut self.memory.columns;
+        from[range.clone()].copy_from_slice(&t[range.clone()]);
     }
 
     /// Extends the distances of the columns in `range` to `t`, if they have open rows. No billboard behind them
     /// is in view.
-    fn extend_distances(&mut self, range: &Range<u32>) {
-        let range = range.start as usize..range.end as usize;
-        let ColumnMemory { starts, ends, t, .. } = &self.memory.columns;
-        let rows = starts[range.clone()].iter().zip(&ends[range.clone()]);
-        let distances = self.list.distances[range.clone()].iter_mut().zip(&t[range]);
-        for ((distance, &t), (start, end)) in distances.zip(rows) {
-            if start < end && t > *distance {
+    fn extend_distances(&mut self, range: &Range<usize>) {
+        let columns = &self.memory.columns;
+        let distances = zip(&mut self.list.distances[range.clone()], &columns.t[range.clone()]);
+        for ((distance, &t), rows) in zip(distances, columns.open(range)) {
+            if !rows.is_empty() && t > *distance {
                 *distance = t;
-            }
-        }
-    }
-
-    /// Adds the floor or the ceiling of the sector in `range`. Its rows are in `bottoms` or `tops`.
-    fn add_plane(
-        &mut self,
-        visit: &Visit,
-        sector: &Sector,
-        range: &Range<u32>,
-        (side, look): (PlaneSide, Option<PlaneSurface>),
-    ) {
-        let indices = range.start as usize..range.end as usize;
-        let ColumnMemory { starts, ends, bottoms, tops, .. } = &self.memory.columns;
-        let clips = starts[indices.clone()].iter().zip(&ends[indices.clone()]);
-        match side {
-            PlaneSide::Floor => {
-                let rows = clips.zip(&bottoms[indices]);
-                let rows =
-                    rows.map(|((&start, &end), &bottom)| Rows { start: bottom.max(start), end });
-                let plane = (PlaneKind::Floor(visit.sector), sector.bottom);
-                self.list.add_plane(plane, look, visit.image, range, rows);
-            }
-            PlaneSide::Ceiling => {
-                let rows = clips.zip(&tops[indices]);
-                let rows = rows.map(|((&start, &end), &top)| Rows { start, end: top.min(end) });
-                let plane = (PlaneKind::Ceiling(visit.sector), sector.top);
-                self.list.add_plane(plane, look, visit.image, range, rows);
             }
         }
     }
@@ -410,7 +387,7 @@ impl SectorWalk<'_> {
         &self,
         visit: &Visit,
         sector: &Sector,
-        range: &Range<u32>,
+        range: &Range<usize>,
     ) -> [Option<PlaneSurface>; 2] {
         /// The most cells to compare. In more, the looks count as uneven.
         const MAX_CELLS: i64 = 1024;
@@ -456,7 +433,7 @@ impl SectorWalk<'_> {
         &self,
         visit: &Visit,
         sector: &Sector,
-        range: &Range<u32>,
+        range: &Range<usize>,
     ) -> Option<[[i64; 2]; 2]> {
         /// A coordinate beyond all images of maps.
         const FAR: f64 = 1e9;
@@ -465,9 +442,9 @@ impl SectorWalk<'_> {
         let origin = self.scene.projection.origin();
         let WalkMemory { borders, columns: ColumnMemory { from, t, .. }, .. } = &*self.memory;
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let mut add = |column: u32| {
-            let direction = self.fan.directions.of(column);
-            for t in [from[column as usize], t[column as usize]] {
+        let mut add = |x: usize| {
+            let direction = self.fan.directions.of(x);
+            for t in [from[x], t[x]] {
                 let point = origin + direction * t;
                 (least, most) = (least.min(point), most.max(point));
             }
@@ -517,33 +494,30 @@ impl SectorWalk<'_> {
         &mut self,
         visit: &Visit,
         sector: &Sector,
-        range: Range<u32>,
+        range: &Range<usize>,
         top_below: Option<f64>,
     ) {
-        let first_corner = self.list.corners.len();
+        let DrawList { corners, stretches, passed, .. } = &mut *self.list;
+        let (first_corner, first) = (corners.len(), stretches.len());
         if sector.holds == GapObject::Standing {
             // The rays begin or end at an object, which may be round.
-            self.list.corners.extend(range.clone());
+            corners.extend(range.clone());
         } else {
             for Border { columns, .. } in &self.memory.borders {
-                self.list.corners.push(columns.start);
+                corners.push(columns.start);
                 if columns.len() > 1 {
-                    self.list.corners.push(columns.end - 1);
+                    corners.push(columns.end - 1);
                 }
             }
         }
-        let corners = first_corner..self.list.corners.len();
-        let ColumnMemory { starts, ends, from, t, .. } = &self.memory.columns;
-        let first = self.list.stretches.len();
-        self.list.stretches.extend(range.clone().map(|column| {
-            let x = column as usize;
-            let rows = Rows { start: starts[x], end: ends[x] };
-            RaySegment { rows, from: from[x], to: t[x] }
-        }));
-        self.list.passed.push(Layer::Part(RayPart {
-            columns: range,
+        let columns = &self.memory.columns;
+        let ends = zip(&columns.from[range.clone()], &columns.t[range.clone()]);
+        let parts = zip(columns.open(range), ends);
+        stretches.extend(parts.map(|(rows, (&from, &to))| RaySegment { rows, from, to }));
+        passed.push(Layer::Part(RayPart {
+            columns: range.clone(),
             first,
-            corners,
+            corners: first_corner..corners.len(),
             sector: visit.sector,
             top_below,
             image: visit.image,
@@ -564,6 +538,7 @@ impl SectorWalk<'_> {
                 borders: first..end,
                 columns: borders[first].columns.start..borders[end - 1].columns.end,
                 face: borders[first].face,
+                look,
             };
             match borders[first].into {
                 Some((_, id)) => self.meet(visit, sector, group, id),
@@ -604,28 +579,22 @@ impl SectorWalk<'_> {
     /// the sky, and the ground below the horizon.
     fn meet_edge(&mut self, visit: &Visit, sector: &Sector, group: &BorderGroup) {
         let ground = self.fan.sectors.get(SectorId::BEYOND).bottom;
-        let range = &group.columns;
         if ground > sector.bottom {
             self.find_limits(sector, group, ground, f64::NEG_INFINITY);
             let material = Material::Opaque(self.scene.world.ground().riser);
-            let heights = (sector.bottom, ground.min(sector.top));
-            self.show_face(visit, group, material, heights);
+            self.show_face(visit, group, material, (sector.bottom, ground.min(sector.top)));
         }
         self.find_limits(sector, group, f64::INFINITY, ground);
         let horizon = self.scene.projection.first_row_of_ground();
-        let indices = range.start as usize..range.end as usize;
-        let ColumnMemory { starts, ends, bottoms, .. } = &self.memory.columns;
-        let ends = || ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
-        let clips =
-            || starts[indices.clone()].iter().zip(ends().map(|(end, bottom)| end.min(bottom)));
-        let above = clips().map(|(&start, &end)| Rows { start, end: end.min(horizon) });
-        let below = clips().map(|(&start, &end)| Rows { start: start.max(horizon), end });
+        let range = &group.columns;
+        let shown = || self.memory.columns.shown(range);
+        let above = shown().map(|rows| Rows { end: rows.end.min(horizon), ..rows });
+        let below = shown().map(|rows| Rows { start: rows.start.max(horizon), ..rows });
         let sky = (PlaneKind::Ceiling(SectorId::BEYOND), f64::INFINITY);
         let ground = (PlaneKind::Floor(SectorId::BEYOND), ground);
         let look = |side| self.fan.sectors.even_surface(SectorId::BEYOND, side);
-        let [look_of_sky, look] = [PlaneSide::Ceiling, PlaneSide::Floor].map(look);
-        self.list.add_plane(sky, look_of_sky, visit.image, range, above);
-        self.list.add_plane(ground, look, visit.image, range, below);
+        self.list.add_plane(sky, look(PlaneSide::Ceiling), visit.image, range, above);
+        self.list.add_plane(ground, look(PlaneSide::Floor), visit.image, range, below);
     }
 
     /// Shows the solid parts of the cells of the tile `id` behind `group`, and prepares the visits to their
@@ -656,18 +625,17 @@ impl SectorWalk<'_> {
     /// all rows or none.
     fn find_limits(&mut self, sector: &Sector, group: &BorderGroup, top: f64, bottom: f64) {
         let range = &group.columns;
-        let indices = range.start as usize..range.end as usize;
         if sector.is_inside(top) {
-            self.find_rows(top, range, true);
+            self.find_tops(top, range);
         } else {
-            let everything = if top >= sector.top { 0 } else { u32::MAX };
-            self.memory.columns.tops[indices.clone()].fill(everything);
+            let all = if top >= sector.top { 0 } else { u32::MAX };
+            self.memory.columns.tops[range.clone()].fill(all);
         }
         if sector.is_inside(bottom) {
-            self.find_rows(bottom, range, false);
+            self.find_bottoms(bottom, range);
         } else {
-            let everything = if bottom <= sector.bottom { u32::MAX } else { 0 };
-            self.memory.columns.bottoms[indices].fill(everything);
+            let all = if bottom <= sector.bottom { u32::MAX } else { 0 };
+            self.memory.columns.bottoms[range.clone()].fill(all);
         }
     }
 
@@ -685,20 +653,11 @@ impl SectorWalk<'_> {
                 self.reflect(visit, group, tint);
                 return;
             }
-            _ => self.paint_of_rock(visit, group, tile),
+            TileKind::Wall(_) => group.look.1.unwrap_or(tile.riser),
+            _ => tile.riser,
         };
         let heights = (sector.bottom, top.min(sector.top));
         self.show_face(visit, group, Material::Opaque(paint), heights);
-    }
-
-    /// The paint of the sides of `tile`.
-    fn paint_of_rock(&self, visit: &Visit, group: &BorderGroup, tile: &Tile) -> Paint {
-        match tile.kind {
-            TileKind::Wall(_) if self.scene.plan.walls.jambs => {
-                self.jamb(visit, &group.face).unwrap_or(tile.riser)
-            }
-            _ => tile.riser,
-        }
     }
 
     /// The paint of a wall that faces a door: the door's jamb.
@@ -722,18 +681,16 @@ impl SectorWalk<'_> {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
             self.show_face(visit, group, Material::Translucent(tint), everywhere);
         }
-        let face = group.face;
         let mut image = visit.image;
-        _ = image.reflect(face.side, face.line(), 0);
+        _ = image.reflect(group.face.side, group.face.line(), 0);
         self.list.add_image(image);
-        let ColumnMemory { starts, ends, tops, .. } = &self.memory.columns;
-        let rows = &mut self.memory.next[VisitKind::Mirror as usize].rows;
-        for x in group.columns.start as usize..group.columns.end as usize {
-            rows[x] = Rows { start: starts[x].max(tops[x]), end: ends[x] };
-            self.stats.bounces += u64::from(!rows[x].is_empty());
+        let rows = &mut self.memory.next[VisitKind::Mirror as usize].rows[group.columns.clone()];
+        for (rows, shown) in zip(rows, self.memory.columns.shown(&group.columns)) {
+            *rows = shown;
+            self.stats.bounces += u64::from(!shown.is_empty());
         }
-        let bounces = visit.bounces + 1;
-        self.extend(VisitKind::Mirror, visit.sector, (image, bounces), group);
+        let next = (visit.sector, image, visit.bounces + 1);
+        self.extend(VisitKind::Mirror, next, group);
     }
 
     /// Prepares the visit to a gap of the cells of `tile` behind `group`, if it has open rows.
@@ -746,12 +703,11 @@ impl SectorWalk<'_> {
     ) {
         let gap = self.fan.sectors.get(id);
         self.find_limits(sector, group, gap.top, gap.bottom);
-        let ColumnMemory { starts, ends, tops, bottoms, .. } = &self.memory.columns;
-        let rows = &mut self.memory.next[slot as usize].rows;
+        let rows = &mut self.memory.next[slot as usize].rows[group.columns.clone()];
         let mut is_seen = false;
-        for x in group.columns.start as usize..group.columns.end as usize {
-            rows[x] = Rows { start: starts[x].max(tops[x]), end: ends[x].min(bottoms[x]) };
-            is_seen |= !rows[x].is_empty();
+        for (rows, shown) in zip(rows, self.memory.columns.shown(&group.columns)) {
+            *rows = shown;
+            is_seen |= !shown.is_empty();
         }
         if !is_seen {
             return;
@@ -759,7 +715,7 @@ impl SectorWalk<'_> {
         if let GapObject::Cube(_) = gap.holds {
             self.pass_cube(visit, group, slot, tile);
         }
-        self.extend(slot, id, (visit.image, visit.bounces), group);
+        self.extend(slot, (id, visit.image, visit.bounces), group);
     }
 
     /// Shows the face of the glass or the mask behind `group`, in the rows of the next visit.
@@ -774,12 +730,11 @@ impl SectorWalk<'_> {
             TileKind::Mask(texture) => Material::Masked(texture),
             _ => return,
         };
-        self.find_rows(bottom, &group.columns, false);
-        self.find_rows(top, &group.columns, true);
-        let indices = group.columns.start as usize..group.columns.end as usize;
+        self.find_tops(top, &group.columns);
+        self.find_bottoms(bottom, &group.columns);
         let rows = &mut self.memory.next[slot as usize].rows;
         let ColumnMemory { tops, bottoms, .. } = &mut self.memory.columns;
-        for x in indices {
+        for x in group.columns.clone() {
             tops[x] = tops[x].max(rows[x].start);
             bottoms[x] = bottoms[x].min(rows[x].end);
             if matches!(material, Material::Opaque(_)) && tops[x] < bottoms[x] {
@@ -789,7 +744,7 @@ impl SectorWalk<'_> {
         self.show_face(visit, group, material, (bottom, top));
     }
 
-    /// Adds a face at `group` in the rows between `tops` and `bottoms`.
+    /// Adds a face at `group` in the open rows between `tops` and `bottoms`.
     fn show_face(
         &mut self,
         visit: &Visit,
@@ -797,18 +752,22 @@ impl SectorWalk<'_> {
         material: Material,
         (bottom, top): (f64, f64),
     ) {
-        let BorderGroup { columns: range, face, .. } = group;
+        let range = &group.columns;
         for border in &self.memory.borders[group.borders.clone()] {
             find_texture_coordinates(visit.image, &self.fan, border, &mut self.memory.columns);
         }
         let first = self.list.face_columns.len();
-        self.list.face_columns.extend(self.memory.columns.of_face(range));
+        let columns = &self.memory.columns;
+        let places = zip(&columns.t[range.clone()], &columns.u[range.clone()]);
+        let of_face = zip(columns.shown(range), places);
+        let of_face = of_face.map(|(rows, (&t, &u))| FaceColumn { rows, t, u });
+        self.list.face_columns.extend(of_face);
         self.list.push_face(Face {
             columns: range.clone(),
             first,
-            facing: Facing::Side(face.side),
+            facing: Facing::Side(group.face.side),
             material,
-            light: self.light_on_face(visit, &self.memory.borders[group.borders.start]),
+            light: group.look.0,
             bottom,
             top,
             image: visit.image,
@@ -843,15 +802,14 @@ impl SectorWalk<'_> {
     fn extend(
         &mut self,
         slot: VisitKind,
-        sector: SectorId,
-        (image, bounces): (MirrorTransform, u32),
+        (sector, image, bounces): (SectorId, MirrorTransform, u32),
         group: &BorderGroup,
     ) {
-        let BorderGroup { columns: range, face, .. } = group;
+        let BorderGroup { columns, face, .. } = group;
         let holds = self.fan.sectors.get(sector).holds;
         let goes_on = |(visit, of_visit): &(Visit, CellFace)| {
             (visit.sector, visit.image) == (sector, image)
-                && visit.columns.end == range.start
+                && visit.columns.end == columns.start
                 && of_visit.is_in_line_with(face)
                 && holds != GapObject::Standing
         };
@@ -866,14 +824,14 @@ impl SectorWalk<'_> {
                 place: border.face.place,
             }),
         );
-        if let Some((visit, _)) = visit {
-            visit.columns.end = range.end;
-            return;
-        }
-        let (columns, is_at_camera) = (range.clone(), false);
-        let (first_clip, first_entry) = (0, 0);
-        let new = Visit { sector, image, bounces, is_at_camera, columns, first_clip, first_entry };
-        *visit = Some((new, *face));
+        let new = || {
+            let (columns, is_at_camera) = (columns.clone(), false);
+            let (first_clip, first_entry) = (0, 0);
+            let new =
+                Visit { sector, image, bounces, is_at_camera, columns, first_clip, first_entry };
+            (new, *face)
+        };
+        visit.get_or_insert_with(new).0.columns.end = columns.end;
     }
 
     /// Stores the visit in `slot`, without the columns that have no open rows.
@@ -881,20 +839,17 @@ impl SectorWalk<'_> {
         let WalkMemory { visits, clips, entries, next, columns, .. } = &mut *self.memory;
         let PendingVisit { visit, rows, entries: of_visit } = &mut next[slot as usize];
         let Some((visit, _)) = visit.take() else { return };
-        let is_open = |&column: &u32| !rows[column as usize].is_empty();
         let mut rest = visit.columns.clone();
-        while let Some(start) = rest.clone().find(is_open) {
-            let end = (start..rest.end).find(|column| !is_open(column)).unwrap_or(rest.end);
-            rest.start = end;
-            let first_clip = clips.len();
-            clips.extend(
-                (start as usize..end as usize).map(|x| Clip { rows: rows[x], from: columns.t[x] }),
-            );
-            let first_entry = entries.len();
-            let first = of_visit.iter().rposition(|entry| entry.column <= start).unwrap_or(0);
-            let here = of_visit[first..].iter().take_while(|entry| entry.column < end);
-            entries.extend(here);
-            visits.push(Visit { columns: start..end, first_clip, first_entry, ..visit.clone() });
+        while let Some((range, is_open)) = next_run(&mut rest, |x| !rows[x].is_empty()) {
+            if !is_open {
+                continue;
+            }
+            let (first_clip, first_entry) = (clips.len(), entries.len());
+            let of_range = zip(&rows[range.clone()], &columns.t[range.clone()]);
+            clips.extend(of_range.map(|(&rows, &from)| Clip { rows, from }));
+            let first = of_visit.iter().rposition(|it| it.column <= range.start).unwrap_or(0);
+            entries.extend(of_visit[first..].iter().take_while(|it| it.column < range.end));
+            visits.push(Visit { columns: range, first_clip, first_entry, ..visit.clone() });
         }
         of_visit.clear();
     }
@@ -905,40 +860,36 @@ impl SectorWalk<'_> {
         let [column, row] = visit.image.cell_to_map(place);
         let Some((cell, id)) = world.grid().cell(column, row) else { return };
         let tile = &world.tiles()[usize::from(id.0)];
-        let WalkMemory { columns, passages, .. } = &mut *self.memory;
-        passages.clear();
-        passages.extend(visit.columns.clone().map(|column| {
-            let direction = self.fan.directions.of(column);
+        let ColumnMemory { passages, from, .. } = &mut self.memory.columns;
+        for x in visit.columns.clone() {
+            let direction = self.fan.directions.of(x);
             let ray = on_map(visit.image, self.scene.projection.origin(), direction);
             let passage = Intersection::of_tile(&ray, world, cell, tile.kind);
             // After a reflection in this cell, the ray starts at the mirror. An earlier hit is not on its path.
-            let is_before_mirror =
-                |hit: Hit| visit.bounces > 0 && hit.t < columns.from[column as usize];
-            if passage.hit.is_some_and(is_before_mirror) { Intersection::NONE } else { passage }
-        }));
-        let first = visit.columns.start;
-        let at = |walk: &Self, column: u32| walk.memory.passages[(column - first) as usize];
-        let mut rest = visit.columns.clone();
-        while let Some(start) = rest.clone().find(|&column| at(self, column).hit.is_some()) {
-            let side = at(self, start).hit.map(|hit| hit.side);
-            let is_other = |&column: &u32| at(self, column).hit.map(|hit| hit.side) != side;
-            let end = (start..rest.end).find(is_other).unwrap_or(rest.end);
-            rest.start = end;
-            self.meet_side(visit, sector, start..end, (cell, tile));
+            let is_before_mirror = |hit: Hit| visit.bounces > 0 && hit.t < from[x];
+            let is_met = !passage.hit.is_some_and(is_before_mirror);
+            passages[x] = if is_met { passage } else { Intersection::NONE };
         }
         let mut rest = visit.columns.clone();
-        let is_seen = |walk: &Self, column: u32| {
-            let ColumnMemory { starts, ends, from, .. } = &walk.memory.columns;
-            let x = column as usize;
-            at(walk, column).end.is_some_and(|end| from[x] <= end) && starts[x] < ends[x]
-        };
-        if self.scene.projection.eye() <= tile.top_of_what_stands() {
+        let side = |walk: &Self, x: usize| walk.memory.columns.passages[x].hit.map(|hit| hit.side);
+        while let Some((range, side)) = next_run(&mut rest, |x| side(self, x)) {
+            if side.is_some() {
+                self.meet_side(visit, sector, &range, (cell, tile));
+            }
+        }
+        let top = tile.top_of_what_stands();
+        if self.scene.projection.eye() <= top {
             return;
         }
-        while let Some(start) = rest.clone().find(|&column| is_seen(self, column)) {
-            let end = (start..rest.end).find(|&column| !is_seen(self, column)).unwrap_or(rest.end);
-            rest.start = end;
-            self.look_down_at(visit, sector, start..end, (id, tile.top_of_what_stands()));
+        let mut rest = visit.columns.clone();
+        let is_seen = |walk: &Self, x: usize| {
+            let ColumnMemory { starts, ends, from, passages, .. } = &walk.memory.columns;
+            passages[x].end.is_some_and(|end| from[x] <= end) && starts[x] < ends[x]
+        };
+        while let Some((range, is_seen)) = next_run(&mut rest, |x| is_seen(self, x)) {
+            if is_seen {
+                self.look_down_at(visit, sector, &range, (id, top));
+            }
         }
     }
 
@@ -947,20 +898,16 @@ impl SectorWalk<'_> {
         &mut self,
         visit: &Visit,
         sector: &Sector,
-        range: Range<u32>,
+        range: &Range<usize>,
         (cell, tile): (Cell, &Tile),
     ) {
         let (world, projection) = (self.scene.world, self.scene.projection);
-        let first = visit.columns.start;
-        let WalkMemory { columns, passages, .. } = &mut *self.memory;
-        for column in range.clone() {
-            let hit = passages[(column - first) as usize].hit;
-            columns.t[column as usize] = hit.map_or(0.0, |hit| hit.t);
+        let ColumnMemory { t, u, passages, .. } = &mut self.memory.columns;
+        let Some(hit) = passages[range.start].hit else { return };
+        for x in range.clone() {
+            (t[x], u[x]) = passages[x].hit.map_or((0.0, 0.0), |hit| (hit.t, hit.u));
         }
-        self.close(visit, sector, range.clone());
-        let WalkMemory { columns, passages, .. } = &mut *self.memory;
-        let hits = range.clone().filter_map(|column| passages[(column - first) as usize].hit);
-        let Some(hit) = hits.clone().next() else { return };
+        self.close(visit, sector, range);
         let (paint, facing, before) = match tile.kind {
             // A leaf takes its light from the cell in front, on the side from which the rays come.
             TileKind::Door(door) => {
@@ -979,26 +926,25 @@ impl SectorWalk<'_> {
             (true, None, Some(before)) => FaceLight::even(world.light_in(before)),
         };
         let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
-        let face = Face {
+        let first = self.list.face_columns.len();
+        let ColumnMemory { starts, ends, t, u, .. } = &mut self.memory.columns;
+        self.list.face_columns.extend(range.clone().map(|x| {
+            let above = projection.row_of_height(top, t[x]);
+            let start = starts[x].max(above);
+            let end = ends[x].min(projection.row_of_height(bottom, t[x]));
+            ends[x] = ends[x].min(above);
+            FaceColumn { rows: Rows { start, end }, t: t[x], u: u[x] }
+        }));
+        self.list.push_face(Face {
             columns: range.clone(),
-            first: self.list.face_columns.len(),
+            first,
             facing,
             material: Material::Opaque(paint),
             light,
             bottom,
             top,
             image: visit.image,
-        };
-        let shown = range.zip(hits).map(|(column, Hit { t, u, .. })| {
-            let x = column as usize;
-            let above = projection.row_of_height(top, t);
-            let start = columns.starts[x].max(above);
-            let end = columns.ends[x].min(projection.row_of_height(bottom, t));
-            columns.ends[x] = columns.ends[x].min(above);
-            FaceColumn { rows: Rows { start, end }, t, u }
         });
-        self.list.face_columns.extend(shown);
-        self.list.push_face(face);
     }
 
     /// Shows the top of a pillar of the tile `id`, as the rays of `range` see it from above.
@@ -1006,26 +952,23 @@ impl SectorWalk<'_> {
         &mut self,
         visit: &Visit,
         sector: &Sector,
-        range: Range<u32>,
+        range: &Range<usize>,
         (id, top): (TileId, f64),
     ) {
         let (world, projection) = (self.scene.world, self.scene.projection);
-        let first = visit.columns.start;
-        let WalkMemory { columns, passages, .. } = &mut *self.memory;
-        for column in range.clone() {
-            let end = passages[(column - first) as usize].end;
-            columns.t[column as usize] = end.unwrap_or_default();
+        let ColumnMemory { t, passages, .. } = &mut self.memory.columns;
+        for x in range.clone() {
+            t[x] = passages[x].end.unwrap_or_default();
         }
         // Things on the top are in front of it.
         if self.has_things {
-            self.add_part(visit, sector, range.clone(), Some(top));
+            self.add_part(visit, sector, range, Some(top));
         }
         if visit.bounces == 0 {
-            self.extend_distances(&range);
+            self.extend_distances(range);
         }
         let ColumnMemory { starts, ends, from, t, .. } = &mut self.memory.columns;
-        let rows = range.clone().map(|column| {
-            let x = column as usize;
+        let rows = range.clone().map(|x| {
             from[x] = t[x];
             let end = ends[x];
             ends[x] = projection.row_of_height(top, t[x]).clamp(starts[x], end);
@@ -1033,7 +976,7 @@ impl SectorWalk<'_> {
         });
         let look = PlaneSurface::of_top(&world.tiles()[usize::from(id.0)]);
         let look = Some(look).filter(|_| !world.has_lamplight());
-        self.list.add_plane((PlaneKind::Top(id), top), look, visit.image, &range, rows);
+        self.list.add_plane((PlaneKind::Top(id), top), look, visit.image, range, rows);
     }
 }
 
@@ -1045,27 +988,17 @@ fn find_texture_coordinates(
     columns: &mut ColumnMemory,
 ) {
     let Border { columns: range, face, .. } = border;
-    let origin = fan.scene.projection.origin();
-    let corner = face.corner();
+    let other = face.side.other();
     let is_mirrored = image.is_mirrored_along(face.side);
     let direction = image.direction_to_map(fan.directions.of(range.start));
     let is_from_left = is_from_left(direction, face.side);
-    let coordinate = |along: f64| texture_coordinate(along, is_mirrored, is_from_left);
-    let indices = range.start as usize..range.end as usize;
-    let across = &fan.directions.across(face.side.other())[indices.clone()];
-    let ColumnMemory { t, u, .. } = columns;
-    let other = face.side.other() as usize;
-    let start = -(corner[other] - origin[other]);
+    let across = &fan.directions.across(other)[range.clone()];
+    let origin = fan.scene.projection.origin();
+    let start = -(face.corner()[other as usize] - origin[other as usize]);
+    let places = zip(&columns.t[range.clone()], across);
     // Even across the largest map, the error is far less than a texel.
-    for (u, (t, across)) in u[indices.clone()].iter_mut().zip(t[indices].iter().zip(across)) {
-        *u = coordinate(start + t * across);
+    for (u, (t, across)) in zip(&mut columns.u[range.clone()], places) {
+        let along = (start + t * across).clamp(0.0, 1.0);
+        *u = from_left(if is_mirrored { 1.0 - along } else { along }, is_from_left);
     }
-}
-
-/// The texture coordinate of a point `along` cells from the north or west end of a face, seen along the
-/// straight rays.
-#[inline]
-fn texture_coordinate(along: f64, is_mirrored: bool, is_from_left: bool) -> f64 {
-    let along = along.clamp(0.0, 1.0);
-    from_left(if is_mirrored { 1.0 - along } else { along }, is_from_left)
 }

@@ -49,7 +49,7 @@ fn with_fan<T>(
 
 /// Returns true if the fan of `view` finds the face that each ray hits when it is cast alone, and if the same
 /// is true for the fans behind these faces, up to this depth.
-fn finds_all(fan: &Fan<'_>, view: RayStarts<'_>, columns: Range<u32>, depth: u32) -> bool {
+fn finds_all(fan: &Fan<'_>, view: RayStarts<'_>, columns: Range<usize>, depth: u32) -> bool {
     let (mut memory, mut borders, mut of_each) = (FanMemory::new(), Vec::new(), Vec::new());
     fan.find(view, columns.clone(), &mut memory, &mut borders);
     for column in columns {
@@ -94,7 +94,7 @@ proptest! {
         let heading = Heading::from_degrees(degrees).unwrap();
         let field_of_view = FieldOfView::from_degrees(field_of_view).unwrap();
         let camera = Camera::new(position, heading, field_of_view).unwrap();
-        let test = |fan: &Fan<'_>, view: RayStarts<'_>| finds_all(fan, view, 0..width, 3);
+        let test = |fan: &Fan<'_>, view: RayStarts<'_>| finds_all(fan, view, 0..width as usize, 3);
         prop_assert!(with_fan(&world, &camera, width, test));
     }
 }

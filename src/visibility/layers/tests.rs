@@ -64,7 +64,7 @@ proptest! {
                     let width = world.sprite(thing.sprite).width();
                     let half = projection.columns_for(width, place.depth) / 2.0;
                     let is_met = (stretch.from..stretch.to).contains(&place.depth)
-                        && (place.column - (f64::from(x) + 0.5)).abs() <= half;
+                        && (place.column - (x as f64 + 0.5)).abs() <= half;
                     let is_known = considered[image].contains(&thing.cell);
                     prop_assert!(!is_met || is_known, "{thing:?} in image {image}");
                 }
