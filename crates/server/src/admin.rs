@@ -25,11 +25,11 @@ use crate::visitors::SessionId;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub enum AdminRequest {
-    /// Lists the visitors: [`AdminReply::Visitors`].
+    /// Lists the visitors.
     Who,
-    /// Lists the rooms: [`AdminReply::Rooms`].
+    /// Lists the rooms.
     Rooms,
-    /// Ends the sessions of some visitors: [`AdminReply::Count`].
+    /// Ends the sessions of some visitors.
     Remove {
         /// The visitors.
         target: Target,
@@ -41,7 +41,7 @@ pub enum AdminRequest {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         moderator: Option<String>,
     },
-    /// Shows a line from one visitor to another: [`AdminReply::Count`].
+    /// Shows a line from one visitor to another.
     Tell {
         /// The name of the visitor who wrote it.
         from: String,
@@ -50,14 +50,14 @@ pub enum AdminRequest {
         /// The line.
         text: String,
     },
-    /// Shows a line to all visitors: [`AdminReply::Count`].
+    /// Shows a line to all visitors.
     Say {
         /// The line. Only its printable characters are shown.
         text: String,
     },
-    /// Lists the hosts of the cluster: [`AdminReply::Hosts`].
+    /// Lists the hosts of the cluster.
     Hosts,
-    /// Ends the server as a signal does: [`AdminReply::Count`] of the visitors that it waits for.
+    /// Ends the server as a signal does. The reply counts the visitors that it waits for.
     Drain,
 }
 
@@ -72,27 +72,22 @@ pub enum Target {
     Visitors(BanTarget),
 }
 
-/// The reply of a server.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AdminReply {
+/// The reply of a server, with the list or the number that the request asks for.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AdminReply {
     /// The visitors.
-    Visitors(Vec<VisitorRow>),
+    pub visitors: Vec<VisitorRow>,
     /// The rooms.
-    Rooms(Vec<RoomRow>),
+    pub rooms: Vec<RoomRow>,
     /// The hosts of a cluster.
-    Hosts(Vec<HostInfo>),
+    pub hosts: Vec<HostInfo>,
     /// The number of visitors that the request affects.
-    Count(usize),
-    /// The combined reply of all hosts of a cluster.
-    AllHosts {
-        /// Their reply.
-        reply: Box<AdminReply>,
-        /// Remarks on the reply, such as that a host did not answer.
-        remarks: Vec<String>,
-    },
+    pub count: usize,
+    /// Remarks on the reply, such as that a host of a cluster did not answer.
+    pub remarks: Vec<String>,
     /// The reason for a refusal.
-    Fault(String),
+    pub fault: Option<String>,
 }
 
 /// A visitor. `cellcaster-server admin who --format json` prints the fields, so their names must stay.
@@ -170,6 +165,18 @@ impl AdminRequest {
             | Self::Tell { .. } => true,
             Self::Rooms | Self::Drain => false,
         }
+    }
+}
+
+impl AdminReply {
+    /// The reply to a request that affects `count` visitors.
+    pub(crate) fn of_count(count: usize) -> Self {
+        Self { count, ..Self::default() }
+    }
+
+    /// A refusal.
+    pub(crate) fn of_fault(sentence: impl Into<String>) -> Self {
+        Self { fault: Some(sentence.into()), ..Self::default() }
     }
 }
 

@@ -31,8 +31,6 @@ pub struct Operator {
 const SAID_COLUMNS: usize = 200;
 /// The longest reason, in columns.
 const REASON_COLUMNS: usize = 200;
-/// The reply to a request for hosts on a host without a cluster.
-const NO_CLUSTER: &str = "this host is not in a cluster";
 
 impl Operator {
     /// Creates an operator of these visitors and rooms. It counts a request to end the server in `ends`.
@@ -50,7 +48,7 @@ impl Operator {
         let own = self.answer_alone(request);
         if let Some(cluster) = &self.cluster
             && request.is_for_all_hosts()
-            && !matches!(own, AdminReply::Fault(_))
+            && own.fault.is_none()
         {
             return cluster.merged(own, request).await;
         }
@@ -70,33 +68,35 @@ impl Operator {
             AdminRequest::Who => {
                 let host = self.host();
                 let rows = self.visitors.list().into_iter().map(|it| row(it, host.clone()));
-                AdminReply::Visitors(rows.collect())
+                AdminReply { visitors: rows.collect(), ..AdminReply::default() }
             }
             AdminRequest::Hosts => match &self.cluster {
-                Some(cluster) => AdminReply::Hosts(vec![cluster.own_info()]),
-                None => AdminReply::Fault(NO_CLUSTER.to_owned()),
+                Some(cluster) => {
+                    AdminReply { hosts: vec![cluster.own_info()], ..AdminReply::default() }
+                }
+                None => AdminReply::of_fault("this host is not in a cluster"),
             },
-            AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
+            AdminRequest::Rooms => AdminReply { rooms: (self.rooms)(), ..AdminReply::default() },
             AdminRequest::Remove { target, reason, banned, moderator } => {
                 let sentence = farewell(reason, *banned, moderator.as_deref());
-                AdminReply::Count(self.remove(target, &sentence, *banned))
+                AdminReply::of_count(self.remove(target, &sentence, *banned))
             }
             AdminRequest::Tell { from, to, text } => {
                 let (from, text) = (from.clone(), text.clone());
                 let line = Heard { from, text, is_private: true };
-                AdminReply::Count(self.visitors.tell(to, &line))
+                AdminReply::of_count(self.visitors.tell(to, &line))
             }
             AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
-                None => AdminReply::Fault("the line contains no printable character".to_owned()),
+                None => AdminReply::of_fault("the line contains no printable character"),
                 Some(line) => {
                     let count = self.visitors.say(line.as_str());
                     logging::said(count);
-                    AdminReply::Count(count)
+                    AdminReply::of_count(count)
                 }
             },
             AdminRequest::Drain => {
                 self.ends.send_modify(|count| *count = 1.max(*count));
-                AdminReply::Count(self.visitors.list().len())
+                AdminReply::of_count(self.visitors.list().len())
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use std::io::{self, Write};
 use std::path::Path;
-use std::{env, iter};
+use std::{env, iter, mem};
 
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
@@ -14,9 +14,10 @@ use super::arguments::{Admin, AdminAction, BanTerms, ListFormat, ListOptions};
 use super::host_store::{StoreLocation, failed};
 use crate::accounts::{Ban, BanScope, BanTarget, HostStore, UnixTime, time_text};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
-use crate::operator::socket::{AdminFailure, ask};
+use crate::operator::socket::ask;
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
+use cellcaster::fault::printable_path;
 use cellcaster::rng;
 
 /// Carries out the action, and prints the result.
@@ -33,19 +34,16 @@ pub(crate) fn run(options: Admin) -> Result<(), Error> {
 fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<String, Error> {
     let mut host = RunningHost { folder, remarks: Vec::new() };
     let text = match action {
-        AdminAction::Who(list) => host.lists(&AdminRequest::Who, &list),
-        AdminAction::Rooms(list) => host.lists(&AdminRequest::Rooms, &list),
-        AdminAction::Hosts(list) => host.lists(&AdminRequest::Hosts, &list),
+        AdminAction::Who(list) => host.who(&list),
+        AdminAction::Rooms(list) => host.rooms(&list),
+        AdminAction::Hosts(list) => host.hosts(&list),
         AdminAction::Say { text } => {
-            let count = host.counts(&AdminRequest::Say { text });
-            count.map(|count| format!("said to {}\n", visitors(count)))
+            let reply = host.reply(&AdminRequest::Say { text });
+            reply.map(|reply| format!("said to {}\n", visitors(reply.count)))
         }
-        AdminAction::Drain => {
-            let count = host.counts(&AdminRequest::Drain);
-            count.map(|count| {
-                format!("the server is shutting down; it waits for {}\n", visitors(count))
-            })
-        }
+        AdminAction::Drain => host.reply(&AdminRequest::Drain).map(|reply| {
+            format!("the server is shutting down; it waits for {}\n", visitors(reply.count))
+        }),
         AdminAction::Kick { player, reason } => host.kicks(player.target(), reason),
         AdminAction::Ban { player, terms } => ban(&mut host, database, player.target(), &terms),
         AdminAction::Unban { player } => unban(database, player.target()),
@@ -63,69 +61,53 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
 /// The server that runs with a data folder.
 struct RunningHost<'a> {
     folder: &'a Path,
-    /// The remarks in its answers, each once.
+    /// The remarks in its replies, each once.
     remarks: Vec<String>,
 }
 
 impl RunningHost<'_> {
-    /// Sends a request to the server, and collects the remarks in the answer.
-    fn answers(&mut self, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
-        match ask(self.folder, request)? {
-            AdminReply::AllHosts { reply, remarks } => {
-                let new = remarks.into_iter().filter(|remark| !self.remarks.contains(remark));
-                let new: Vec<String> = new.collect();
-                self.remarks.extend(new);
-                Ok(*reply)
+    /// Sends a request to the server, and collects the remarks in the reply. `None` if no server runs.
+    fn ask(&mut self, request: &AdminRequest) -> Result<Option<AdminReply>, Error> {
+        let mut reply = ask(self.folder, request)?;
+        for remark in reply.iter_mut().flat_map(|reply| mem::take(&mut reply.remarks)) {
+            if !self.remarks.contains(&remark) {
+                self.remarks.push(remark);
             }
-            reply => Ok(reply),
         }
+        Ok(reply)
     }
 
-    /// Requests a list, and returns it in the format of `options`.
-    fn lists(&mut self, request: &AdminRequest, options: &ListOptions) -> Result<String, Error> {
-        let is_json = matches!(options.format, ListFormat::Json);
-        Ok(match self.answers(request)? {
-            AdminReply::Visitors(rows) if is_json => document(&json!(rows)),
-            AdminReply::Rooms(rows) if is_json => document(&json!(rows)),
-            AdminReply::Hosts(rows) if is_json => document(&json!(rows)),
-            AdminReply::Visitors(rows) if rows.is_empty() => "nobody is online\n".to_owned(),
-            AdminReply::Visitors(rows) => {
-                let is_cluster = rows.iter().any(|row| row.host.is_some());
-                let hosts: &[&str] = if is_cluster { &["host"] } else { &[] };
-                let titles = [&["session", "name", "room", "address", "time"], hosts, &["key"]];
-                table(&titles.concat(), rows.iter().map(|row| of_visitor(row, is_cluster)))
-            }
-            AdminReply::Rooms(rows) if rows.is_empty() => "no room is open\n".to_owned(),
-            AdminReply::Rooms(rows) => {
-                table(&["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
-            }
-            AdminReply::Hosts(rows) => {
-                let titles =
-                    ["host", "address", "version", "visitors", "seen", "maps", "writes rooms"];
-                table(&titles, rows.iter().map(of_host))
-            }
-            AdminReply::Count(count) => format!("{}\n", visitors(count)),
-            AdminReply::Fault(sentence) => return Err(Error::mistake(sentence)),
-            AdminReply::AllHosts { .. } => return Err(other_version()),
-        })
+    /// The reply to a request for which a server must run.
+    fn reply(&mut self, request: &AdminRequest) -> Result<AdminReply, Error> {
+        let folder = printable_path(self.folder);
+        let none = || Error::mistake(format!("no server runs with the data folder {folder}"));
+        self.ask(request)?.ok_or_else(none)
     }
 
-    /// Sends a request, and returns the number of visitors that it affects.
-    fn counts(&mut self, request: &AdminRequest) -> Result<usize, Error> {
-        match self.answers(request)? {
-            AdminReply::Count(count) => Ok(count),
-            AdminReply::Fault(sentence) => Err(Error::mistake(sentence)),
-            _ => Err(other_version()),
-        }
+    fn who(&mut self, options: &ListOptions) -> Result<String, Error> {
+        let rows = self.reply(&AdminRequest::Who)?.visitors;
+        let is_cluster = rows.iter().any(|row| row.host.is_some());
+        let hosts: &[&str] = if is_cluster { &["host"] } else { &[] };
+        let titles = [&["session", "name", "room", "address", "time"], hosts, &["key"]].concat();
+        let cells = |row: &VisitorRow| of_visitor(row, is_cluster);
+        Ok(listed(&rows, options, "nobody is online", &titles, (|row| json!(row), cells)))
+    }
+
+    fn rooms(&mut self, options: &ListOptions) -> Result<String, Error> {
+        let rows = self.reply(&AdminRequest::Rooms)?.rooms;
+        let titles = ["room", "mode", "level", "difficulty", "members"];
+        Ok(listed(&rows, options, "no room is open", &titles, (|row| json!(row), of_room)))
+    }
+
+    fn hosts(&mut self, options: &ListOptions) -> Result<String, Error> {
+        let rows = self.reply(&AdminRequest::Hosts)?.hosts;
+        let titles = ["host", "address", "version", "visitors", "seen", "maps", "writes rooms"];
+        Ok(listed(&rows, options, "no host is present", &titles, (|row| json!(row), of_host)))
     }
 
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
-        match self.counts(&AdminRequest::Remove {
-            target,
-            reason,
-            banned: false,
-            moderator: None,
-        })? {
+        let request = AdminRequest::Remove { target, reason, banned: false, moderator: None };
+        match self.reply(&request)?.count {
             0 => Err(no_session()),
             count => Ok(format!("ended {}\n", sessions(count))),
         }
@@ -136,10 +118,19 @@ fn no_session() -> Error {
     Error::mistake("no session matches; \"cellcaster-server admin who\" lists all")
 }
 
-fn other_version() -> Error {
-    Error::machine(
-        "the running server has another version: use the \"cellcaster-server\" of that version",
-    )
+/// Rows as a document of each row's object, or as a table of its cells.
+fn listed<T>(
+    rows: &[T],
+    options: &ListOptions,
+    none: &str,
+    titles: &[&str],
+    (object, cells): (impl Fn(&T) -> Value, impl Fn(&T) -> Vec<String>),
+) -> String {
+    match options.format {
+        ListFormat::Json => document(&rows.iter().map(object).collect()),
+        ListFormat::Table if rows.is_empty() => format!("{none}\n"),
+        ListFormat::Table => table(titles, rows.iter().map(cells)),
+    }
 }
 
 fn of_visitor(row: &VisitorRow, has_host: bool) -> Vec<String> {
@@ -284,28 +275,19 @@ fn bans(database: &StoreLocation, scope: BanScope, options: &ListOptions) -> Res
     let mut store = database.open_to_read()?;
     let now = UnixTime::now();
     let bans = store.bans(scope, now).map_err(failed)?;
-    if let ListFormat::Json = options.format {
-        return Ok(document(&bans.iter().map(ban_object).collect()));
-    }
     let what = match scope {
         BanScope::Visit => "banned",
         BanScope::Talk => "muted",
     };
-    if bans.is_empty() {
-        return Ok(format!("nobody is {what}\n"));
-    }
-    let left = |ban: &Ban| match ban.until {
-        None => "ever".to_owned(),
-        Some(until) => time_text(until.seconds().saturating_sub(now.seconds())),
+    let cells = |ban: &Ban| {
+        let left = ban.until.map(|until| until.seconds().saturating_sub(now.seconds()));
+        let left = left.map_or_else(|| "ever".to_owned(), time_text);
+        let ago = time_text(now.seconds().saturating_sub(ban.made_at.seconds()));
+        let (target, made) = (ban.target.to_string(), format!("{ago} ago"));
+        vec![target, left, made, ban.by.clone(), ban.reason.clone()]
     };
-    let ago = |ban: &Ban| time_text(now.seconds().saturating_sub(ban.made_at.seconds()));
-    Ok(table(
-        &[what, "for", "made", "by", "reason"],
-        bans.iter().map(|ban| {
-            let made = format!("{} ago", ago(ban));
-            vec![ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
-        }),
-    ))
+    let titles = [what, "for", "made", "by", "reason"];
+    Ok(listed(&bans, options, &format!("nobody is {what}"), &titles, (ban_object, cells)))
 }
 
 /// A ban with Unix times in seconds; `null` for no end.
@@ -355,11 +337,11 @@ fn muted_targets(
         }
         Target::Visitors(_) => false,
     };
-    let rows = match host.answers(&AdminRequest::Who) {
-        Ok(AdminReply::Visitors(rows)) => rows,
-        Ok(_) => return Err(other_version()),
-        Err(AdminFailure::NoServer(_)) if matches!(target, Target::Visitors(_)) => Vec::new(),
-        Err(failure) => return Err(failure.into()),
+    let rows = match target {
+        Target::Session(_) => host.reply(&AdminRequest::Who)?.visitors,
+        Target::Visitors(_) => {
+            host.ask(&AdminRequest::Who)?.map(|reply| reply.visitors).unwrap_or_default()
+        }
     };
     match (rows.iter().find(is_meant), target) {
         (Some(row), _) => Ok(vec![row.talker()]),
@@ -382,12 +364,8 @@ fn remove(
             banned: true,
             moderator: None,
         };
-        match host.answers(&request) {
-            Ok(AdminReply::Count(count)) => removed = count.max(removed),
-            Err(AdminFailure::NoServer(_)) => return Ok(None),
-            Ok(_) => {}
-            Err(failure) => return Err(failure.into()),
-        }
+        let Some(reply) = host.ask(&request)? else { return Ok(None) };
+        removed = removed.max(reply.count);
     }
     Ok(Some(removed))
 }
@@ -435,19 +413,6 @@ fn counted(count: usize, none: &str, one: &str) -> String {
         0 => none.to_owned(),
         1 => format!("1 {one}"),
         count => format!("{count} {one}s"),
-    }
-}
-
-impl From<AdminFailure> for Error {
-    fn from(failure: AdminFailure) -> Self {
-        match failure {
-            AdminFailure::NoServer(_) | AdminFailure::NotAllowed(_) => {
-                Self::mistake(failure.to_string())
-            }
-            AdminFailure::TimedOut(_) | AdminFailure::Failed(..) => {
-                Self::machine(failure.to_string())
-            }
-        }
     }
 }
 

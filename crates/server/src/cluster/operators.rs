@@ -74,39 +74,25 @@ impl SharedRooms {
 
     /// Asks the other hosts, and merges their answers with the answer of this host.
     pub(crate) async fn merged(&self, own: AdminReply, request: &AdminRequest) -> AdminReply {
-        let (rows, OtherHosts { replies, mut remarks }) = self.ask_others(request).await;
-        let reply = match own {
-            AdminReply::Count(own) => {
-                AdminReply::Count(replies.into_values().fold(own, |sum, reply| match reply {
-                    AdminReply::Count(count) => sum + count,
-                    _ => sum,
-                }))
+        let (rows, OtherHosts { replies, remarks }) = self.ask_others(request).await;
+        let mut all = AdminReply { remarks, ..AdminReply::default() };
+        // A host that has not answered is listed with its information from the database.
+        let mut hosts: BTreeMap<String, HostInfo> = match request {
+            AdminRequest::Hosts => {
+                rows.iter().map(|it| (it.notice.name.clone(), info(it))).collect()
             }
-            AdminReply::Visitors(mut visitors) => {
-                for reply in replies.into_values() {
-                    if let AdminReply::Visitors(others) = reply {
-                        visitors.extend(others);
-                    }
-                }
-                AdminReply::Visitors(visitors)
-            }
-            AdminReply::Hosts(own) => {
-                // A host that has not answered is listed with its information from the database.
-                let mut hosts: BTreeMap<String, HostInfo> =
-                    rows.iter().map(|row| (row.notice.name.clone(), info(row))).collect();
-                let own = (self.own_name().to_owned(), AdminReply::Hosts(own));
-                for (name, reply) in replies.into_iter().chain([own]) {
-                    let AdminReply::Hosts(answers) = reply else { continue };
-                    let seconds = hosts.get(&name).map_or(0, |known| known.seconds);
-                    let answers = answers.into_iter();
-                    hosts.extend(answers.map(|it| (name.clone(), HostInfo { seconds, ..it })));
-                }
-                remarks.extend(hosts.values().filter_map(|host| self.map_difference(host)));
-                AdminReply::Hosts(hosts.into_values().collect())
-            }
-            other => other,
+            _ => BTreeMap::new(),
         };
-        AdminReply::AllHosts { reply: Box::new(reply), remarks }
+        for (name, reply) in [(self.own_name().to_owned(), own)].into_iter().chain(replies) {
+            all.count += reply.count;
+            all.visitors.extend(reply.visitors);
+            let seconds = hosts.get(&name).map_or(0, |known| known.seconds);
+            let answers = reply.hosts.into_iter();
+            hosts.extend(answers.map(|it| (name.clone(), HostInfo { seconds, ..it })));
+        }
+        all.remarks.extend(hosts.values().filter_map(|host| self.map_difference(host)));
+        all.hosts = hosts.into_values().collect();
+        all
     }
 
     /// Asks the other hosts. Also returns the hosts that the database lists.
@@ -149,11 +135,8 @@ impl SharedRooms {
     pub(crate) async fn compare_maps(self) {
         sleep(RETRY_INTERVAL).await;
         let (_, others) = self.ask_others(&AdminRequest::Hosts).await;
-        let hosts = others.replies.into_values().filter_map(|reply| match reply {
-            AdminReply::Hosts(hosts) => Some(hosts),
-            _ => None,
-        });
-        for difference in hosts.flatten().filter_map(|host| self.map_difference(&host)) {
+        let hosts = others.replies.values().flat_map(|reply| &reply.hosts);
+        for difference in hosts.filter_map(|host| self.map_difference(host)) {
             tracing::warn!("{difference}; this host does not list its rooms in those maps");
         }
     }
@@ -207,14 +190,8 @@ impl OtherHosts {
         while !has_all(&self.replies) {
             let Ok(Some(bytes)) = timeout_at(end, answers.recv()).await else { return };
             let Ok(HostAnswer { host, reply }) = serde_json::from_slice(&bytes) else { continue };
-            let reply = match reply {
-                AdminReply::AllHosts { reply, remarks } => {
-                    self.remarks.extend(remarks);
-                    *reply
-                }
-                reply => reply,
-            };
-            if let AdminReply::Fault(sentence) = &reply {
+            self.remarks.extend(reply.remarks.iter().cloned());
+            if let Some(sentence) = &reply.fault {
                 self.remarks.push(format!("host {}: {sentence}", shown_name(&host)));
             }
             self.replies.insert(host, reply);
@@ -257,16 +234,13 @@ fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
 }
 
 /// Shortens a reply so that the bus accepts it.
-fn bounded(reply: AdminReply, host: &str) -> AdminReply {
-    match reply {
-        AdminReply::Visitors(mut rows) if rows.len() > MAX_ROWS => {
-            let remark = format!("host {host} has {} more visitors", rows.len() - MAX_ROWS);
-            rows.truncate(MAX_ROWS);
-            let reply = Box::new(AdminReply::Visitors(rows));
-            AdminReply::AllHosts { reply, remarks: vec![remark] }
-        }
-        reply => reply,
+fn bounded(mut reply: AdminReply, host: &str) -> AdminReply {
+    let more = reply.visitors.len().saturating_sub(MAX_ROWS);
+    if more > 0 {
+        reply.visitors.truncate(MAX_ROWS);
+        reply.remarks.push(format!("host {host} has {more} more visitors"));
     }
+    reply
 }
 
 #[cfg(test)]

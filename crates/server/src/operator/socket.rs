@@ -7,13 +7,13 @@ use std::os::unix::net::UnixStream as BlockingStream;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use thiserror::Error;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
 
 use super::Operator;
 use crate::admin::{AdminReply, AdminRequest};
 use crate::service::serve_each;
+use cellcaster::cli::Error;
 use cellcaster::fault::printable_path;
 
 /// A socket for an operator's requests. It is removed when this value is dropped.
@@ -21,25 +21,6 @@ use cellcaster::fault::printable_path;
 pub struct AdminSocket {
     listener: UnixListener,
     path: PathBuf,
-}
-
-/// The reason why a server has not answered.
-#[derive(Debug, Error)]
-pub enum AdminFailure {
-    /// No server runs with this data folder.
-    #[error("no server runs with the data folder {}", printable_path(.0))]
-    NoServer(PathBuf),
-    /// The socket belongs to another user.
-    #[error("{} belongs to another user: run this command as that user or as root", printable_path(.0))]
-    NotAllowed(PathBuf),
-    /// The server was too slow.
-    #[error(
-        "the server at {} did not answer within {} s", printable_path(.0), CLIENT_TIMEOUT.as_secs()
-    )]
-    TimedOut(PathBuf),
-    /// The connection failed.
-    #[error("the server at {} does not answer: {}", printable_path(.0), .1)]
-    Failed(PathBuf, io::Error),
 }
 
 /// The longest line of a request, in bytes.
@@ -101,8 +82,8 @@ where
 {
     let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
         Some(Ok(request)) => operator.answer(&request).await,
-        Some(Err(error)) => AdminReply::Fault(format!("the request can't be parsed: {error}")),
-        None => AdminReply::Fault(format!(
+        Some(Err(error)) => AdminReply::of_fault(format!("the request can't be parsed: {error}")),
+        None => AdminReply::of_fault(format!(
             "a request must be one line of at most {MAX_REQUEST_BYTES} bytes"
         )),
     };
@@ -119,19 +100,28 @@ async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec
     Ok((line.pop() == Some(b'\n')).then_some(line))
 }
 
-/// Sends a request to the server of a data folder.
+/// Sends a request to the server of a data folder. `None` if no server runs there.
 ///
 /// # Errors
-/// [`AdminFailure`], which is one sentence.
-pub fn ask(folder: &Path, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
+/// A sentence, if the server refuses the request or does not answer.
+pub fn ask(folder: &Path, request: &AdminRequest) -> Result<Option<AdminReply>, Error> {
     let socket = socket_of(folder);
-    exchange(&socket, request).map_err(|error| match error.kind() {
-        ErrorKind::NotFound | ErrorKind::ConnectionRefused => {
-            AdminFailure::NoServer(folder.to_owned())
+    let error = match exchange(&socket, request) {
+        Ok(AdminReply { fault: Some(sentence), .. }) => return Err(Error::mistake(sentence)),
+        Ok(reply) => return Ok(Some(reply)),
+        Err(error) => error,
+    };
+    let shown = printable_path(&socket);
+    Err(match error.kind() {
+        ErrorKind::NotFound | ErrorKind::ConnectionRefused => return Ok(None),
+        ErrorKind::PermissionDenied => Error::mistake(format!(
+            "{shown} belongs to another user: run this command as that user or as root"
+        )),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => {
+            let seconds = CLIENT_TIMEOUT.as_secs();
+            Error::machine(format!("the server at {shown} did not answer within {seconds} s"))
         }
-        ErrorKind::PermissionDenied => AdminFailure::NotAllowed(socket),
-        ErrorKind::WouldBlock | ErrorKind::TimedOut => AdminFailure::TimedOut(socket),
-        _ => AdminFailure::Failed(socket, error),
+        _ => Error::machine(format!("the server at {shown} does not answer: {error}")),
     })
 }
 

@@ -95,9 +95,9 @@ impl Driver {
         let request = AdminRequest::Tell { from, to: name, text: said };
         let (operator, replies) = (self.shared.as_operator(), self.replies.clone());
         tokio::spawn(async move {
-            let event = match of_all_hosts(operator.answer(&request).await) {
-                AdminReply::Count(count) if count > 0 => SessionEvent::Told { to, text },
-                _ => SessionEvent::Advice(nobody(to.as_str())),
+            let event = match operator.answer(&request).await.count {
+                0 => SessionEvent::Advice(nobody(to.as_str())),
+                _ => SessionEvent::Told { to, text },
             };
             _ = replies.send(Box::new(Reply::SessionEvent(event))).await;
         });
@@ -299,12 +299,8 @@ impl Shared {
     /// The visitor with this name, in a cluster also on another host.
     async fn find(&self, name: &Name) -> Option<VisitorRow> {
         let operator = self.as_operator();
-        let found = |reply| match of_all_hosts(reply) {
-            AdminReply::Visitors(rows) => rows
-                .into_iter()
-                .find(|row| row.name.as_ref().is_some_and(|other| other.looks_like(name))),
-            _ => None,
-        };
+        let is_called = |row: &VisitorRow| row.name.as_ref().is_some_and(|it| it.looks_like(name));
+        let found = |reply: AdminReply| reply.visitors.into_iter().find(is_called);
         let own = found(operator.answer_alone(&AdminRequest::Who));
         if own.is_some() || self.cluster.is_none() {
             return own;
@@ -345,13 +341,6 @@ fn account(store: &mut HostStore, name: &Name) -> Result<Option<BanTarget>, Stor
 
 fn is_member(room: Option<&RoomView>, name: &Line) -> bool {
     room.is_some_and(|room| room.members.iter().any(|member| member.name == *name))
-}
-
-fn of_all_hosts(reply: AdminReply) -> AdminReply {
-    match reply {
-        AdminReply::AllHosts { reply, .. } => *reply,
-        reply => reply,
-    }
 }
 
 fn nobody(name: &str) -> String {

@@ -191,9 +191,10 @@ fn the_socket_is_private_and_its_requests_are_bounded() {
     for line in [b"\n".as_slice(), b"who\n", b"{\"do\":\"shell\"}\n", b"\xff\xfe\n", &[b'['; 9000]]
     {
         let answer = answer(&running.folder, line);
-        assert!(answer.is_empty() || answer.starts_with("{\"fault\":"), "{answer}");
+        assert!(answer.is_empty() || answer.contains("\"fault\":\""), "{answer}");
     }
-    assert_eq!(answer(&running.folder, b"{\"do\":\"who\"}\n"), "{\"visitors\":[]}\n");
+    let who = answer(&running.folder, b"{\"do\":\"who\"}\n");
+    assert!(who.contains("\"visitors\":[]") && who.contains("\"fault\":null"), "{who}");
 }
 
 #[test]
