@@ -13,13 +13,10 @@
 //!
 //! Rejected: a TCP port with a password. Every user of the machine could reach it.
 
-use std::net::IpAddr;
-
 use serde::{Deserialize, Serialize};
 
-use crate::accounts::{AccountKey, BanTarget, Name};
-use crate::admission::counted_address;
-use crate::visitors::SessionId;
+use crate::accounts::{BanTarget, Name};
+use crate::visitors::{SessionId, VisitorRow};
 
 /// A request of an operator.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,27 +87,8 @@ pub struct AdminReply {
     pub fault: Option<String>,
 }
 
-/// A visitor. `cellcaster-server admin who --format json` prints the fields, so their names must stay.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct VisitorRow {
-    /// The session.
-    pub session: SessionId,
-    /// The name; `None` until it is chosen.
-    pub name: Option<Name>,
-    /// The address from which the visitor connects.
-    pub address: IpAddr,
-    /// The visitor's key; `None` for a guest.
-    pub key: Option<AccountKey>,
-    /// The room; `None` for the lobby.
-    pub room: Option<String>,
-    /// How long the visitor has been connected, in seconds.
-    pub seconds: u64,
-    /// The visitor's host, in a cluster.
-    #[serde(default)]
-    pub host: Option<String>,
-}
-
-/// A host of a cluster. The names of the fields must stay, too.
+/// A host of a cluster. The names of the fields must stay, because `cellcaster-server admin hosts --format json` prints
+/// them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HostInfo {
     /// The name of the machine, and the port.
@@ -177,14 +155,5 @@ impl AdminReply {
     /// A refusal.
     pub(crate) fn of_fault(sentence: impl Into<String>) -> Self {
         Self { fault: Some(sentence.into()), ..Self::default() }
-    }
-}
-
-impl VisitorRow {
-    /// The target of a mute of this visitor: the key or, for a guest, the address. An owner of an IPv6 address has the
-    /// whole /64.
-    pub(crate) fn talker(&self) -> BanTarget {
-        let by_address = || BanTarget::Addresses(counted_address(self.address));
-        self.key.map_or_else(by_address, BanTarget::Key)
     }
 }

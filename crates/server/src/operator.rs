@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use tokio::sync::watch;
 
-use crate::admin::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
+use crate::admin::{AdminReply, AdminRequest, RoomRow, Target};
 use crate::cluster::SharedRooms;
 use crate::line::Line;
 use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
-use crate::visitors::{Heard, Present, Visitors};
+use crate::visitors::{Heard, Visitors};
 
 /// The parts of a server that an operator can see and change. Clones share them.
 #[derive(Clone)]
@@ -66,9 +66,12 @@ impl Operator {
     pub(crate) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
         match request {
             AdminRequest::Who => {
-                let host = self.host();
-                let rows = self.visitors.list().into_iter().map(|it| row(it, host.clone()));
-                AdminReply { visitors: rows.collect(), ..AdminReply::default() }
+                let mut visitors = self.visitors.list();
+                if let Some(cluster) = &self.cluster {
+                    let host = cluster.own_info().host;
+                    visitors.iter_mut().for_each(|row| row.host = Some(host.clone()));
+                }
+                AdminReply { visitors, ..AdminReply::default() }
             }
             AdminRequest::Hosts => match &self.cluster {
                 Some(cluster) => {
@@ -96,7 +99,7 @@ impl Operator {
             },
             AdminRequest::Drain => {
                 self.ends.send_modify(|count| *count = 1.max(*count));
-                AdminReply::of_count(self.visitors.list().len())
+                AdminReply::of_count(self.visitors.count())
             }
         }
     }
@@ -116,11 +119,6 @@ impl Operator {
             }
         }
     }
-
-    /// The name of this host in a cluster.
-    fn host(&self) -> Option<String> {
-        self.cluster.as_ref().map(|cluster| cluster.own_info().host)
-    }
 }
 
 /// The sentence for visitors whose sessions are ended.
@@ -134,18 +132,6 @@ pub(crate) fn farewell(reason: &str, is_banned: bool, moderator: Option<&str>) -
     match Line::of(reason, REASON_COLUMNS) {
         Some(reason) => format!("{what}: {reason}"),
         None => format!("{what}."),
-    }
-}
-
-fn row(present: Present, host: Option<String>) -> VisitorRow {
-    VisitorRow {
-        session: present.session,
-        name: present.name,
-        address: present.address,
-        key: present.key,
-        room: present.room,
-        seconds: present.since.elapsed().as_secs(),
-        host,
     }
 }
 

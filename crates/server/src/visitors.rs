@@ -15,12 +15,14 @@ use std::fmt;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
 
+use serde::{Deserialize, Serialize};
 use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
 use crate::accounts::{
     AccountKey, Ban, BanTarget, Identity, Name, UnixTime, applying, serialized_as_text,
 };
+use crate::admission::counted_address;
 use crate::lock::locked;
 use crate::queue::push_within;
 
@@ -68,23 +70,24 @@ pub struct SessionId {
 
 serialized_as_text!(SessionId: "the id of a session, such as 3f9a-7");
 
-/// A visitor, as listed for the operator.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Present {
-    /// The visitor's session.
+/// A visitor. `cellcaster-server admin who --format json` prints the fields, so their names must stay.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisitorRow {
+    /// The session.
     pub session: SessionId,
-    /// The visitor's name; `None` until it is chosen.
+    /// The name; `None` until it is chosen.
     pub name: Option<Name>,
-    /// The address from which they connect.
+    /// The address from which the visitor connects.
     pub address: IpAddr,
     /// The visitor's key; `None` for a guest.
     pub key: Option<AccountKey>,
-    /// A short description of the room they are in; `None` for the lobby.
+    /// The room; `None` for the lobby.
     pub room: Option<String>,
-    /// `true` if they only watch that room.
-    pub watches: bool,
-    /// The time of arrival.
-    pub since: Instant,
+    /// How long the visitor has been connected, in seconds.
+    pub seconds: u64,
+    /// The visitor's host, in a cluster.
+    #[serde(default)]
+    pub host: Option<String>,
 }
 
 /// The visitors with a name who play in no room, as lobbies list them.
@@ -108,7 +111,11 @@ struct Table {
 
 #[derive(Debug)]
 struct VisitorEntry {
-    present: Present,
+    /// Without the time and the host, which are known when it is listed.
+    row: VisitorRow,
+    since: Instant,
+    /// `true` if the visitor only watches their room.
+    watches: bool,
     /// The [keys](Name::keys) of the name. Computing them takes longer than looking through a thousand entries.
     keys: Vec<String>,
     inbox: Arc<NoticeQueue>,
@@ -167,20 +174,20 @@ impl Visitors {
         let number = locked(&self.0, |table| {
             let number = table.next;
             table.next += 1;
-            let (session, since) = (SessionId { run: table.run, number }, Instant::now());
+            let session = SessionId { run: table.run, number };
             let address = address.to_canonical();
-            let present =
-                Present { session, name: None, address, key, room: None, watches: false, since };
-            let entry = VisitorEntry { present, keys: Vec::new(), inbox: inbox.clone() };
-            table.entries.insert(number, entry);
+            let (name, room, seconds, host) = (None, None, 0, None);
+            let row = VisitorRow { session, name, address, key, room, seconds, host };
+            let (since, keys, inbox) = (Instant::now(), Vec::new(), inbox.clone());
+            table.entries.insert(number, VisitorEntry { row, since, watches: false, keys, inbox });
             number
         });
         Presence { number, visitors: self.clone(), inbox }
     }
 
     /// All visitors, in order of arrival.
-    pub fn list(&self) -> Vec<Present> {
-        locked(&self.0, |table| table.entries.values().map(|it| it.present.clone()).collect())
+    pub fn list(&self) -> Vec<VisitorRow> {
+        locked(&self.0, |table| table.entries.values().map(VisitorEntry::listed).collect())
     }
 
     /// The visitors who play in no room.
@@ -218,21 +225,21 @@ impl Visitors {
 
     /// Sends a line to the visitors with a name who are in no room.
     pub(crate) fn tell_lobby(&self, line: &Heard) {
-        let is_in_lobby = |it: &Present| it.name.is_some() && it.room.is_none();
+        let is_in_lobby = |it: &VisitorRow| it.name.is_some() && it.room.is_none();
         self.each(is_in_lobby, |inbox| inbox.hear(line.clone()));
     }
 
     /// The visitor with this name, or with a name that looks like it.
-    pub(crate) fn named(&self, name: &Name) -> Option<Present> {
+    pub(crate) fn named(&self, name: &Name) -> Option<VisitorRow> {
         let keys = name.keys();
-        locked(&self.0, |table| table.named(&keys).next().map(|entry| entry.present.clone()))
+        locked(&self.0, |table| table.named(&keys).next().map(VisitorEntry::listed))
     }
 
     /// The names of the first `most` visitors in a room, or in no room.
     pub(crate) fn names_in(&self, room: Option<&str>, most: usize) -> Vec<Name> {
         locked(&self.0, |table| {
-            let there = table.entries.values().filter(|it| it.present.room.as_deref() == room);
-            there.filter_map(|it| it.present.name.clone()).take(most).collect()
+            let there = table.entries.values().filter(|it| it.row.room.as_deref() == room);
+            there.filter_map(|it| it.row.name.clone()).take(most).collect()
         })
     }
 
@@ -250,7 +257,7 @@ impl Visitors {
 
     /// Ends the sessions that match `target` with a sentence; returns their number.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
-        let is_meant = |it: &Present| {
+        let is_meant = |it: &VisitorRow| {
             let (address, key, name) = (Some(it.address), it.key.as_ref(), it.name.as_ref());
             target.applies_to(&Identity { address, key, name })
         };
@@ -269,22 +276,37 @@ impl Visitors {
     }
 
     /// Calls `act` on the inboxes of matching visitors; returns their number.
-    fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&NoticeQueue)) -> usize {
+    fn each(&self, is_meant: impl Fn(&VisitorRow) -> bool, act: impl Fn(&NoticeQueue)) -> usize {
         locked(&self.0, |table| {
-            let meant = table.entries.values().filter(|entry| is_meant(&entry.present));
+            let meant = table.entries.values().filter(|entry| is_meant(&entry.row));
             meant.map(|entry| act(&entry.inbox)).count()
         })
+    }
+}
+
+impl VisitorEntry {
+    fn listed(&self) -> VisitorRow {
+        VisitorRow { seconds: self.since.elapsed().as_secs(), ..self.row.clone() }
+    }
+}
+
+impl VisitorRow {
+    /// The target of a mute of this visitor: the key or, for a guest, the address. An owner of an IPv6 address has the
+    /// whole /64.
+    pub(crate) fn talker(&self) -> BanTarget {
+        let by_address = || BanTarget::Addresses(counted_address(self.address));
+        self.key.map_or_else(by_address, BanTarget::Key)
     }
 }
 
 impl Table {
     /// Tells lobbies about the onlookers, if they have changed.
     fn publish(&self) {
-        let onlooker = |present: &Present| {
-            let is_onlooker = present.room.is_none() || present.watches;
-            Some((present.name.clone().filter(|_| is_onlooker)?, present.room.clone()))
+        let onlooker = |VisitorEntry { row, watches, .. }: &VisitorEntry| {
+            let is_onlooker = row.room.is_none() || *watches;
+            Some((row.name.clone().filter(|_| is_onlooker)?, row.room.clone()))
         };
-        let all = || self.entries.values().filter_map(|entry| onlooker(&entry.present));
+        let all = || self.entries.values().filter_map(onlooker);
         let (first, count) = (all().take(MAX_ONLOOKERS).collect(), all().count());
         let onlookers = Onlookers { first, count };
         self.onlookers.send_if_modified(|known| {
@@ -304,7 +326,7 @@ impl Table {
     fn has_guest(&self, keys: &[String], except: Option<u64>) -> bool {
         let except = except.and_then(|number| self.entries.get(&number));
         self.named(keys).any(|entry| {
-            entry.present.key.is_none() && except.is_none_or(|it| !std::ptr::eq(it, entry))
+            entry.row.key.is_none() && except.is_none_or(|it| !std::ptr::eq(it, entry))
         })
     }
 }
@@ -316,7 +338,7 @@ impl Presence {
         locked(&self.visitors.0, |table| {
             let is_free = !table.has_guest(&keys, Some(self.number));
             if let Some(entry) = table.entries.get_mut(&self.number).filter(|_| is_free) {
-                (entry.present.name, entry.keys) = (Some(name.clone()), keys);
+                (entry.row.name, entry.keys) = (Some(name.clone()), keys);
                 table.publish();
             }
             is_free
@@ -327,17 +349,17 @@ impl Presence {
     pub fn set_name(&self, name: &str) {
         let name = Name::kept(name);
         let keys = name.keys();
-        self.change(|it| (it.present.name, it.keys) = (Some(name), keys));
+        self.change(|it| (it.row.name, it.keys) = (Some(name), keys));
     }
 
     /// Records a short description of the visitor's room; `None` for the lobby.
     pub fn set_room(&self, room: Option<String>) {
-        self.change(|it| it.present.room = room);
+        self.change(|it| it.row.room = room);
     }
 
     /// Records whether the visitor only watches the room.
     pub(crate) fn set_watching(&self, watches: bool) {
-        self.change(|it| it.present.watches = watches);
+        self.change(|it| it.watches = watches);
     }
 
     /// Waits for the next notice. Cancellation-safe.

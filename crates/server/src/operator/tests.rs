@@ -5,8 +5,7 @@ use tokio::sync::watch;
 
 use super::*;
 use crate::accounts::{AddressPrefix, BanTarget, Name};
-use crate::admin::VisitorRow;
-use crate::visitors::{Notice, SessionId, Visitors};
+use crate::visitors::{Notice, SessionId, VisitorRow, Visitors};
 
 fn operator(visitors: &Visitors) -> Operator {
     operator_with(visitors, watch::Sender::default())

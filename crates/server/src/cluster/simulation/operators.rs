@@ -9,9 +9,9 @@ use tokio::time::{Instant, sleep};
 
 use super::{ClusterRun, HOSTS};
 use crate::accounts::{AccountKey, BanTarget, Name};
-use crate::admin::{AdminReply, AdminRequest, Target, VisitorRow};
+use crate::admin::{AdminReply, AdminRequest, Target};
 use crate::operator::Operator;
-use crate::visitors::{Notice, Presence};
+use crate::visitors::{Notice, Presence, VisitorRow};
 
 /// Hosts with a visitor each, called `p0` and so on, and their operators.
 struct Hosts {

@@ -22,14 +22,14 @@ use super::visit::{Driver, Reply};
 use crate::accounts::{
     Ban, BanScope, BanTarget, HostStore, Identity, Name, StoreFailure, UnixTime, time_text,
 };
-use crate::admin::{AdminReply, AdminRequest, Target, VisitorRow};
+use crate::admin::{AdminRequest, Target};
 use crate::line::Line;
 use crate::logging;
 use crate::operator::Operator;
 use crate::rooms::directory::Place;
 use crate::rooms::room::{Command, RoomView};
 use crate::sessions::session::{Moderation, SessionEvent};
-use crate::visitors::{Heard, Visitors};
+use crate::visitors::{Heard, VisitorRow, Visitors};
 
 /// The interval at which a host looks for new mutes.
 const MUTES_INTERVAL: Duration = Duration::from_secs(2);
@@ -298,14 +298,13 @@ impl Shared {
 
     /// The visitor with this name, in a cluster also on another host.
     async fn find(&self, name: &Name) -> Option<VisitorRow> {
-        let operator = self.as_operator();
-        let is_called = |row: &VisitorRow| row.name.as_ref().is_some_and(|it| it.looks_like(name));
-        let found = |reply: AdminReply| reply.visitors.into_iter().find(is_called);
-        let own = found(operator.answer_alone(&AdminRequest::Who));
+        let own = self.visitors.named(name);
         if own.is_some() || self.cluster.is_none() {
             return own;
         }
-        found(operator.answer(&AdminRequest::Who).await)
+        let is_called = |row: &VisitorRow| row.name.as_ref().is_some_and(|it| it.looks_like(name));
+        let everybody = self.as_operator().answer(&AdminRequest::Who).await.visitors;
+        everybody.into_iter().find(is_called)
     }
 }
 
