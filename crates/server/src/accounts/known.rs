@@ -10,11 +10,13 @@
 //!   contains no players.
 //! - **The number of an account serves only to mark the player's own results.** Changes look the account up by its
 //!   key, because the database may have been replaced.
-//! - **Memory and file are bounded.** The player who was confirmed the longest ago makes room. The file is replaced
-//!   atomically. If it cannot be read, or belongs to another database, the memory starts empty.
+//! - **Memory and file are bounded.** The player who was confirmed the longest ago makes room, in memory by the number
+//!   of players, in the file also by its bytes. The file is replaced atomically. If it cannot be read, or belongs to another database, the memory starts empty.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use cellcaster::app::store::private;
@@ -37,10 +39,6 @@ pub struct KnownPlayers {
     database: String,
     bans: Vec<Ban>,
     players: BTreeMap<AccountKey, KnownPlayer>,
-    /// The bytes of the players and the bans in the file. Counting all of them at each login took longer the more
-    /// players were known.
-    #[serde(skip)]
-    bytes: usize,
     #[serde(skip)]
     is_saved: bool,
 }
@@ -73,8 +71,6 @@ impl KnownPlayers {
         known
             .players
             .retain(|key, player| player.account.key == *key && player.settings.checked().is_ok());
-        known.bytes =
-            bytes_of(&known.bans) + known.players.values().map(KnownPlayer::bytes).sum::<usize>();
         known.make_room();
         (Self { file, database: database.to_owned(), is_saved: true, ..known }, sentence)
     }
@@ -101,16 +97,14 @@ impl KnownPlayers {
 
     /// Forgets a key for which the database has just found no account.
     pub(crate) fn forget(&mut self, key: &AccountKey) {
-        self.is_saved &= !self.remove(key);
+        self.is_saved &= self.players.remove(key).is_none();
     }
 
     /// Remembers all bans of the database.
     pub(crate) fn note_bans(&mut self, bans: &[Ban]) {
         if self.bans != bans {
-            self.bytes = self.bytes - bytes_of(&self.bans) + bytes_of(bans);
             self.bans = bans.to_vec();
             self.is_saved = false;
-            self.make_room();
         }
     }
 
@@ -124,57 +118,46 @@ impl KnownPlayers {
         Some((player.clone(), bans.collect()))
     }
 
-    /// Updates the file.
+    /// Updates the file. Players who do not fit into it are forgotten.
     ///
     /// # Errors
     /// If it can't be written. The memory stays.
     pub fn save(&mut self) -> Result<(), StoreFailure> {
         if !self.is_saved {
-            // Texts and numbers always have a form in JSON.
-            let content = serde_json::to_vec(self).unwrap_or_default();
-            replace(&self.file, &content).map_err(|error| failure(&self.file, &error))?;
+            self.make_room();
+            replace(&self.file, &json(self)).map_err(|error| failure(&self.file, &error))?;
             self.is_saved = true;
         }
         Ok(())
     }
 
     fn insert(&mut self, player: KnownPlayer) {
-        self.remove(&player.account.key);
-        self.bytes += player.bytes();
         self.players.insert(player.account.key, player);
         self.is_saved = false;
-        self.make_room();
-    }
-
-    /// Returns true if the player was known.
-    fn remove(&mut self, key: &AccountKey) -> bool {
-        let removed = self.players.remove(key);
-        self.bytes -= removed.as_ref().map_or(0, KnownPlayer::bytes);
-        removed.is_some()
-    }
-
-    /// Forgets players until the rest fits beside the bans.
-    fn make_room(&mut self) {
-        while self.players.len() > MAX_PLAYERS || self.bytes > MAX_BYTES {
+        if self.players.len() > MAX_PLAYERS {
             let oldest = self.players.values().min_by_key(|player| player.confirmed_at);
-            let Some(oldest) = oldest.map(|player| player.account.key) else { return };
-            self.remove(&oldest);
+            oldest.map(|player| player.account.key).inspect(|key| _ = self.players.remove(key));
         }
     }
-}
 
-/// The bytes of an entry in the file without its texts.
-const ENTRY_BYTES: usize = 400;
-
-fn bytes_of(bans: &[Ban]) -> usize {
-    bans.iter().map(|ban| ENTRY_BYTES + ban.reason.len() + ban.by.len()).sum()
-}
-
-impl KnownPlayer {
-    fn bytes(&self) -> usize {
-        let preferences = serde_json::to_string(&self.settings.preferences);
-        let preferences = preferences.map_or(0, |text| text.len());
-        let ignored: usize = self.settings.ignored.iter().map(|name| name.as_str().len()).sum();
-        ENTRY_BYTES + preferences + self.settings.configuration.len() + ignored
+    /// Forgets the players who were confirmed the longest ago, until the others fit into the file beside the bans.
+    fn make_room(&mut self) {
+        let mut room = MAX_BYTES.saturating_sub(json(&self.bans).len());
+        let mut players: Vec<KnownPlayer> = mem::take(&mut self.players).into_values().collect();
+        players.sort_by_key(|player| Reverse(player.confirmed_at));
+        players.truncate(MAX_PLAYERS);
+        let fitting = players.into_iter().map_while(|player| {
+            room = room.checked_sub(json(&player).len() + KEY_BYTES)?;
+            Some((player.account.key, player))
+        });
+        self.players = fitting.collect();
     }
+}
+
+/// The bytes of a key before its player in the file.
+const KEY_BYTES: usize = 64;
+
+fn json(value: &impl Serialize) -> Vec<u8> {
+    // Texts and numbers always have a form in JSON.
+    serde_json::to_vec(value).unwrap_or_default()
 }

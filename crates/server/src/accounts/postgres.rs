@@ -18,13 +18,13 @@
 //! - **No text contains the character U+0000**, which PostgreSQL cannot store in a text. Names, reasons, settings and
 //!   scripts have been filtered or parsed before they get here.
 //!
-//! Rejected: a pool of connections, because a host has one thread for its store. Also rejected: the crate `postgres`.
+//! Rejected: a pool of connections, because a host has one thread for its store; and a cache of prepared statements,
+//! because a host runs a few statements a second. Also rejected: the crate `postgres`.
 //! Its calls wait without limit for a server that has stopped without closing its connections.
 
 mod tls;
 
-use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
+use std::cell::Cell;
 use std::error::Error as _;
 use std::future::Future;
 use std::thread;
@@ -37,7 +37,7 @@ use tokio_postgres::config::{Host, SslMode};
 use tokio_postgres::error::SqlState;
 use tokio_postgres::types::private::BytesMut;
 use tokio_postgres::types::{FromSql, IsNull, ToSql, Type, to_sql_checked};
-use tokio_postgres::{Client, Config, Error, NoTls, Statement};
+use tokio_postgres::{Client, Config, Error, NoTls};
 
 use self::tls::Tls;
 use super::StoreFailure;
@@ -82,7 +82,7 @@ pub(crate) struct PostgresDatabase {
     is_to_read: bool,
     /// `None` only at the end.
     runtime: Option<Runtime>,
-    session: Option<PostgresConnection>,
+    session: Option<Client>,
     /// The time and the failure of the last attempt to connect, if it failed.
     refused: Option<(Instant, StoreFailure)>,
 }
@@ -96,17 +96,10 @@ struct Address {
     shown: String,
 }
 
-/// A connection.
-struct PostgresConnection {
-    client: Client,
-    /// The statements that the server has prepared. A store has about thirty.
-    prepared: RefCell<HashMap<String, Statement>>,
-}
-
 /// Runs statements over a connection, up to a deadline.
 struct StatementRunner<'a> {
     runtime: &'a Runtime,
-    session: &'a PostgresConnection,
+    session: &'a Client,
     deadline: tokio::time::Instant,
     shown: &'a str,
     fault: Cell<Option<StatementFault>>,
@@ -214,8 +207,7 @@ impl PostgresDatabase {
     /// Starts a call that ends after `patience`. Connects if there is no connection.
     fn call(&mut self, patience: Duration) -> Result<StatementRunner<'_>, StoreFailure> {
         let deadline = tokio::time::Instant::now() + patience;
-        self.look_at_the_connection();
-        if self.session.as_ref().is_none_or(|session| session.client.is_closed()) {
+        if self.session.as_ref().is_none_or(Client::is_closed) {
             self.session = Some(self.connect(deadline)?);
         }
         let (Some(runtime), Some(session)) = (&self.runtime, &self.session) else {
@@ -225,23 +217,7 @@ impl PostgresDatabase {
         Ok(StatementRunner { runtime, session, deadline, shown, fault: Cell::new(None) })
     }
 
-    /// Notices that the server has closed the connection, before a call is lost with it.
-    fn look_at_the_connection(&self) {
-        const TURNS: u32 = 3;
-        if let Some(runtime) = self.runtime.as_ref().filter(|_| self.session.is_some()) {
-            // One turn each to receive the end, to run the connection's task, and to end that task.
-            runtime.block_on(async {
-                for _ in 0..TURNS {
-                    tokio::task::yield_now().await;
-                }
-            });
-        }
-    }
-
-    fn connect(
-        &mut self,
-        deadline: tokio::time::Instant,
-    ) -> Result<PostgresConnection, StoreFailure> {
+    fn connect(&mut self, deadline: tokio::time::Instant) -> Result<Client, StoreFailure> {
         if let Some((_, failure)) =
             self.refused.as_ref().filter(|(at, _)| at.elapsed() < RETRY_INTERVAL)
         {
@@ -274,7 +250,7 @@ impl PostgresDatabase {
         let why = match connected {
             Ok(Ok(client)) => {
                 self.refused = None;
-                return Ok(PostgresConnection { client, prepared: RefCell::default() });
+                return Ok(client);
             }
             Ok(Err(error)) => reason(&error),
             Err(_) => "no answer in time".to_owned(),
@@ -298,7 +274,7 @@ impl Drop for PostgresDatabase {
 impl StatementRunner<'_> {
     /// Runs statements without parameters.
     fn batch(&self, sql: &str) -> Result<(), StoreFailure> {
-        self.wait(self.session.client.batch_execute(sql))
+        self.wait(self.session.batch_execute(sql))
     }
 
     /// Commits a transaction.
@@ -312,17 +288,6 @@ impl StatementRunner<'_> {
             }
             _ => failure,
         })
-    }
-
-    async fn prepare(&self, sql: &str) -> Result<Statement, Error> {
-        let known = self.session.prepared.borrow().get(sql).cloned();
-        if let Some(known) = known {
-            return Ok(known);
-        }
-        // Every question mark in a statement belongs to a parameter.
-        let statement = self.session.client.prepare(&sql.replace('?', "$")).await?;
-        self.session.prepared.borrow_mut().insert(sql.to_owned(), statement.clone());
-        Ok(statement)
     }
 
     fn wait<T>(&self, answer: impl Future<Output = Result<T, Error>>) -> Result<T, StoreFailure> {
@@ -345,18 +310,14 @@ impl StatementRunner<'_> {
 impl Statements for StatementRunner<'_> {
     fn execute(&self, sql: &str, values: &[&dyn rusqlite::ToSql]) -> Result<u64, StoreFailure> {
         let values = parameters(values)?;
-        self.wait(async {
-            let statement = self.prepare(sql).await?;
-            self.session.client.execute_raw(&statement, &values).await
-        })
+        self.wait(self.session.execute_raw(&numbered(sql), &values))
     }
 
     fn rows(&self, sql: &str, values: &[&dyn rusqlite::ToSql]) -> Result<Vec<Row>, StoreFailure> {
         let values: Vec<Parameter<'_>> = parameters(values)?;
         let values: Vec<_> = values.iter().map(|it| it as &(dyn ToSql + Sync)).collect();
         self.wait(async {
-            let statement = self.prepare(sql).await?;
-            let rows = self.session.client.query(&statement, &values).await?;
+            let rows = self.session.query(&numbered(sql), &values).await?;
             rows.iter().map(row).collect()
         })
     }
@@ -365,6 +326,11 @@ impl Statements for StatementRunner<'_> {
         let sql = "SELECT pg_advisory_xact_lock(hashtextextended(?1, 0)) IS NULL";
         self.rows(sql, &[&name]).map(|_| ())
     }
+}
+
+/// A statement in PostgreSQL's form. Every question mark in a statement belongs to a parameter.
+fn numbered(sql: &str) -> String {
+    sql.replace('?', "$")
 }
 
 fn row(row: &tokio_postgres::Row) -> Result<Row, Error> {
