@@ -3,49 +3,35 @@
 //! A ghost is only drawn. It is not part of the room's state: no player can touch it, and the room is the
 //! same, bit for bit, with and without ghosts.
 //!
-//! The store's thread plays the script of a run once and keeps a [`Pose`] for every second step. Rejected: a
+//! The store's thread plays the script of a run once and keeps the player's figure in every second step. Rejected: a
 //! second game in each session that replays the script. Each session would step another game with guards 60
 //! times a second, and could not start in the middle of a round.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use glam::DVec2;
-
 use crate::accounts::{AccountId, HostStore, LevelBoard, StoreFailure};
 use crate::line::Line;
 use crate::queue::push_within;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
-use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
+use cellcaster::world::{Difficulty, FieldOfView, Figure, SpriteId, World};
 
 /// The longest part of a run that is shown, in steps: ten minutes, the length of the longest race.
 const MAX_STEPS: usize = 10 * 60 * 60;
-/// The number of steps per stored pose.
+/// The number of steps per stored figure.
 const EVERY: usize = 2;
 /// The opacity of a ghost, of 255; the same as at home.
 const OPACITY: u8 = 96;
 /// The colour of the best run. It is the second to last colour that members are assigned.
 const BEST: PlayerColor = PlayerColor::Orange;
-/// The maximum number of cached runs, 10 MB in all.
-const MAX_KEPT: usize = 32;
-/// The number of headings in a full turn.
-const HEADINGS: f64 = 65_536.0;
+/// The maximum number of cached runs, 14 MB in all.
+const MAX_KEPT: usize = 16;
 
-/// The poses of a run.
+/// The player's figures in a run.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Run {
-    poses: Box<[Pose]>,
-}
-
-/// A player's position and appearance in a step, in 16 bytes. Coordinates are rounded to single precision, a
-/// few millionths of a cell, and headings to 65,536ths of a turn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Pose {
-    position: [f32; 2],
-    feet: f32,
-    heading: u16,
-    frame: u8,
+    figures: Box<[Figure]>,
 }
 
 /// A run that is shown to a visitor.
@@ -61,48 +47,32 @@ impl Run {
     fn played(world: World, rules: Rules, script: &Script) -> Self {
         let mut game = Game::with_rules(world, rules);
         let mut walked = 0.0;
-        let mut poses = Vec::new();
+        let mut figures = Vec::new();
         for (step, (_section, intents)) in script.iter().take(MAX_STEPS).enumerate() {
             if game.is_finished() {
                 break;
             }
             if step % EVERY == 0 {
-                poses.push(Pose::of(&game, walked));
+                figures.push(figure(&game, walked));
             }
             let before = game.camera(FieldOfView::default()).position();
             game.step(intents);
             walked += before.distance(game.camera(FieldOfView::default()).position());
         }
-        Self { poses: poses.into() }
+        Self { figures: figures.into() }
     }
 }
 
-impl Pose {
-    /// The pose of the player of `game` after walking `walked` cells.
-    fn of(game: &Game, walked: f64) -> Self {
-        let camera = game.camera(FieldOfView::default());
-        let turns = camera.heading.degrees() / 360.0;
-        Self {
-            position: camera.position().to_array().map(|coordinate| coordinate as f32),
-            feet: game.feet() as f32,
-            // The cast saturates: a full turn becomes 65,535.
-            heading: (turns * HEADINGS).round() as u16,
-            frame: game.frame_of_figure(walked),
-        }
-    }
-
-    /// The figure in this pose.
-    fn figure(self, sprite: SpriteId, opacity: u8) -> Figure {
-        let Self { position, feet, heading, frame } = self;
-        let degrees = f64::from(heading) / HEADINGS * 360.0;
-        Figure {
-            sprite,
-            position: DVec2::from_array(position.map(f64::from)),
-            base: f64::from(feet),
-            heading: Heading::from_degrees(degrees).unwrap_or_default(),
-            frame,
-            opacity,
-        }
+/// The figure of the player of `game` after walking `walked` cells. Its sprite depends on the room that shows it.
+fn figure(game: &Game, walked: f64) -> Figure {
+    let camera = game.camera(FieldOfView::default());
+    Figure {
+        sprite: SpriteId(0),
+        position: camera.position(),
+        base: game.feet(),
+        heading: camera.heading,
+        frame: game.frame_of_figure(walked),
+        opacity: OPACITY,
     }
 }
 
@@ -128,7 +98,7 @@ impl Ghost {
     /// The figure after `step` steps of the run; `None` after its end.
     pub(crate) fn figure(&self, step: u64, sprite: SpriteId) -> Option<Figure> {
         let index = usize::try_from(step).ok()? / EVERY;
-        Some(self.run.poses.get(index)?.figure(sprite, OPACITY))
+        Some(Figure { sprite, ..*self.run.figures.get(index)? })
     }
 }
 
@@ -257,13 +227,13 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_run_takes_under_300_kilobytes() {
+    fn the_longest_run_takes_under_a_megabyte() {
         let text = format!("level cellar\n{} steps stand\n", MAX_STEPS + 100);
         let script = Script::parse(&text, "it").unwrap();
         let run = Run::played(cellar().without_guards(), Rules::default(), &script);
-        assert_eq!(run.poses.len(), MAX_STEPS / EVERY);
-        let bytes = size_of_val(&*run.poses);
-        assert!(bytes < 300_000, "{bytes}");
+        assert_eq!(run.figures.len(), MAX_STEPS / EVERY);
+        let bytes = size_of_val(&*run.figures);
+        assert!(bytes < 1_000_000, "{bytes}");
     }
 
     fn account(store: &mut HostStore, number: u8, name: &str) -> Account {
