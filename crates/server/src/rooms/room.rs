@@ -57,27 +57,40 @@ const EMOTE: u64 = 3 * SECOND;
 /// The number of chat lines that a room keeps.
 const SAID: usize = 8;
 
-#[derive(Clone, Debug)]
+/// A room. Its serialized form is the state without the level, the header, the chat and the game.
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Room {
-    catalog: Arc<Catalog>,
-    header: Arc<Header>,
-    game: Arc<Game>,
+    step: u64,
+    next_member: u32,
     round: Round,
     members: Vec<Member>,
-    next_member: u32,
-    step: u64,
     /// The members who want to restart the round.
     again: BTreeSet<MemberId>,
     /// The latest day that the room has heard of in this round.
     today: Option<Day>,
     emotes: Vec<(MemberId, Emote, u64)>,
+    #[serde(skip)]
+    catalog: Arc<Catalog>,
+    #[serde(skip)]
+    header: Arc<Header>,
+    #[serde(skip)]
+    game: Arc<Game>,
+    #[serde(skip)]
     said: Arc<[ChatLine]>,
+    #[serde(skip)]
     said_count: u64,
+    /// Recomputed in each step.
+    #[serde(skip)]
     inputs: Vec<Input>,
+    /// A copy of the round's standings.
+    #[serde(skip)]
     standings: Arc<[Standing]>,
     /// The ways to the exit; `None` unless the mode is a race.
+    #[serde(skip)]
     ways: Option<Arc<ExitWays>>,
+    #[serde(skip)]
     recorder: MomentRecorder,
+    #[serde(skip)]
     replay: Option<Arc<RoundReplay>>,
 }
 
@@ -533,15 +546,11 @@ impl Room {
         self.remember(None, text);
     }
 
-    /// Announces that a member has reached the exit.
+    /// Announces that a member has reached the exit. In other modes, the picture says it.
     fn announce_finish(&mut self, id: MemberId) {
         let Some((finish, member)) = self.round.finish(id).zip(self.member(id)) else { return };
-        match self.header.mode {
-            Mode::Together => {
-                self.announce(format!("{} is out after {}.", member.name, finish.time()));
-            }
-            // The picture says it.
-            Mode::Race | Mode::Roam | Mode::Alone | Mode::Tag | Mode::Hide => {}
+        if self.header.mode == Mode::Together {
+            self.announce(format!("{} is out after {}.", member.name, finish.time()));
         }
     }
 

@@ -10,8 +10,6 @@
 
 use std::sync::Arc;
 
-use serde::Serialize;
-
 use super::catalog::no_level;
 use super::member::Member;
 use super::{
@@ -32,7 +30,7 @@ impl Room {
     /// The whole state as bytes.
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
         let talk = (&*self.header, &*self.said, self.said_count);
-        let mut bytes = written(KIND, &(talk, self.play()));
+        let mut bytes = written(KIND, &(talk, self));
         // This cannot fail: all levels of a catalog come from maps, and those can be stored.
         bytes.extend(self.game.stored().unwrap_or_default());
         bytes
@@ -57,35 +55,7 @@ impl Room {
     /// A hash of the room's state. Rooms in different states almost certainly have different checksums. It
     /// excludes the chat, which continues across rounds and has no effect on the game.
     pub(crate) fn checksum(&self) -> u64 {
-        rng::hash(self.step, [checksum(&self.play()), self.game.checksum()])
-    }
-
-    /// The state without the header, the chat and the game.
-    fn play(&self) -> impl Serialize {
-        let Self {
-            catalog: _,
-            header: _,
-            game: _,
-            round,
-            members,
-            next_member,
-            step,
-            again,
-            today,
-            emotes,
-            said: _,
-            said_count: _,
-            // Recomputed in each step.
-            inputs: _,
-            // A copy of the round's standings.
-            standings: _,
-            // From the catalog.
-            ways: _,
-            // Shown only.
-            recorder: _,
-            replay: _,
-        } = self;
-        (step, next_member, round, members, again, today, emotes)
+        rng::hash(self.step, [checksum(self), self.game.checksum()])
     }
 
     fn read(&mut self, input: &mut Reader) -> Result<(), RestoreError> {
