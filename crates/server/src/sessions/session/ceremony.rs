@@ -1,13 +1,6 @@
-//! The ceremony of rounds: the large text in the middle of the picture, the picture's edge, and the sentence about a
-//! racer who passes another.
-//!
-//! All of it is derived from snapshots of the room. Places come from the room with every snapshot, which takes
-//! one look-up for each member. They are compared four times a second, so that two racers side by side do not
-//! pass each other in every frame.
+//! The ceremony of rounds: the large text in the middle of the picture, the picture's edge, and the line of finishers.
+//! All of it is derived from snapshots of the room.
 
-use std::cmp::Ordering;
-
-use crate::line::Line;
 use crate::rooms::room::{Finish, MemberId, MemberView, Mode, Phase, Role, RoomView, SECOND};
 
 /// The number of seconds that are counted down large.
@@ -18,9 +11,6 @@ const FINISHED: u64 = 2 * SECOND;
 const NEW_ROLE: u64 = SECOND;
 /// How long a line in the picture says who has finished, in steps.
 const ANNOUNCED: u64 = 5 * SECOND;
-/// The number of steps between two comparisons of places, and how long the result is shown, in steps.
-const COMPARED: u64 = SECOND / 4;
-const PASSED: u64 = 2 * SECOND;
 /// The distances to the nearest seeker, in cells, below which the edge of a hidden player's picture warns, from
 /// cold to hot.
 const WARMTH: [f64; 4] = [12.0, 8.0, 5.0, 3.0];
@@ -31,19 +21,6 @@ pub(crate) struct Ceremony {
     counts_down: bool,
     /// The step since when the visitor has been the seeker; `None` if they are not.
     seeker_since: Option<u64>,
-    /// The period of the last comparison, and the racers who were ahead then; `None` before the first.
-    compared: Option<(u64, Vec<MemberId>)>,
-    /// The latest pass, and the step until which it is shown.
-    passed: Option<(Pass, u64)>,
-}
-
-/// One racer passes another.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Pass {
-    /// The name of the other racer.
-    pub(crate) name: Line,
-    /// Whether the visitor passes the other racer.
-    pub(crate) gains: bool,
 }
 
 /// The edge of the picture.
@@ -65,7 +42,6 @@ impl Ceremony {
         let own = own.and_then(|id| room.member(id));
         let seeks = own.is_some_and(|member| member.role == Role::Seeker);
         self.seeker_since = seeks.then(|| self.seeker_since.unwrap_or(room.step));
-        self.compare(room, own);
         begins
     }
 
@@ -95,41 +71,6 @@ impl Ceremony {
             }
             Phase::Waiting | Phase::Over { .. } => None,
         }
-    }
-
-    /// The latest pass, while it is shown.
-    pub(crate) fn passed(&self, room: &RoomView) -> Option<&Pass> {
-        let (pass, until) = self.passed.as_ref()?;
-        (room.step < *until).then_some(pass)
-    }
-
-    /// Compares the visitor's place in a race with the places of the others. Racers who share a place stay in
-    /// the order of the last comparison.
-    fn compare(&mut self, room: &RoomView, own: Option<&MemberView>) {
-        let Some(own) = own.filter(|own| own.finish.is_none() && own.place.is_some()) else {
-            (self.compared, self.passed) = (None, None);
-            return;
-        };
-        let period = room.step / COMPARED;
-        let before = self.compared.as_ref();
-        if before.is_some_and(|before| before.0 == period) {
-            return;
-        }
-        let was_ahead = |id| before.is_some_and(|(_, ahead)| ahead.contains(&id));
-        let is_ahead = |other: &MemberView| match other.place.cmp(&own.place) {
-            Ordering::Less => true,
-            Ordering::Equal => was_ahead(other.id),
-            Ordering::Greater => false,
-        };
-        let others = || room.members.iter().filter(|other| other.id != own.id);
-        let has_changed =
-            |other: &&MemberView| other.finish.is_none() && was_ahead(other.id) != is_ahead(other);
-        if let Some(other) = others().find(has_changed).filter(|_| before.is_some()) {
-            let pass = Pass { name: other.name.clone(), gains: !is_ahead(other) };
-            self.passed = Some((pass, room.step.saturating_add(PASSED)));
-        }
-        let ahead = others().filter(|other| is_ahead(other)).map(|other| other.id).collect();
-        self.compared = Some((period, ahead));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::ceremony::{Ceremony, Edge, Pass, edge, finishers};
+use super::ceremony::{Ceremony, Edge, edge, finishers};
 use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
 use super::messages::SessionRequest;
@@ -62,7 +62,6 @@ struct PictureState {
     members: Arc<[MemberView]>,
     ghosts: Vec<Figure>,
     standings: usize,
-    passed: Option<Pass>,
     large: Option<String>,
     edge: Edge,
     finishers: usize,
@@ -227,7 +226,6 @@ impl Stay {
             || shown.members != room.members
             || !self.ghosts(room, shows_ghosts).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
-            || shown.passed.as_ref() != self.ceremony.passed(room)
             || shown.large != self.large(room)
             || shown.edge != self.edge(room)
             || shown.finishers != finishers(room).len()
@@ -247,7 +245,6 @@ impl Stay {
             members: Arc::clone(&room.members),
             ghosts: self.ghosts(room, shows_ghosts).collect(),
             standings: room.standings.len(),
-            passed: self.ceremony.passed(room).cloned(),
             large: self.large(room),
             edge: self.edge(room),
             finishers: finishers(room).len(),

@@ -5,7 +5,6 @@ use std::fmt;
 use ratatui::layout::Rect;
 
 use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView, ordinal};
-use crate::sessions::session::ceremony::Pass;
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};
 use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
@@ -106,18 +105,8 @@ fn write_notice(
             *long = task(room, member);
             short.clone_from(long);
             if let Some(place) = place(room, member) {
-                let more = stay.ceremony.passed(room).map_or_else(
-                    || long.clone(),
-                    |pass| {
-                        let Pass { name, gains } = pass;
-                        if *gains {
-                            format!("you passed {name}")
-                        } else {
-                            format!("{name} passed you")
-                        }
-                    },
-                );
-                (*short, *long) = (place.clone(), format!("{place} · {more}"));
+                *long = format!("{place} · {long}");
+                *short = place;
             }
             Ok(())
         }
