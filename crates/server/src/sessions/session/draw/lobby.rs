@@ -11,6 +11,7 @@ use ratatui::text::{Line as TextLine, Text};
 use unicode_width::UnicodeWidthStr;
 
 use super::VIEW;
+use crate::accounts::printable;
 use crate::line::Line;
 use crate::rooms::room::{Mode, RoomView};
 use crate::rooms::summary::RoomSummary;
@@ -274,7 +275,7 @@ impl Ui {
 
 /// Draws a caption on the lower border of a frame.
 fn draw_caption(canvas: &mut impl Canvas, frame: Rect, text: &str) {
-    let text = cut(text, frame.width - 2);
+    let text = printable(text, usize::from(frame.width - 2));
     let width = text.width() as u16;
     let area = Rect { x: frame.right() - 1 - width, y: frame.bottom() - 1, width, height: 1 };
     canvas.draw_widget(TextLine::raw(text), area);
@@ -295,22 +296,9 @@ fn names_within(names: &[&Line], columns: u16) -> String {
 
 /// `left` and `right` at both ends of `columns` columns. `left` keeps most of the width.
 fn apart(left: &str, right: &str, columns: usize) -> String {
-    let left = cut(left, columns as u16);
+    let left = printable(left, columns);
     let room = columns.saturating_sub(left.width() + 2);
-    let right = if room < 3 { String::new() } else { cut(right, room as u16) };
+    let right = if room < 3 { String::new() } else { printable(right, room) };
     let gap = columns.saturating_sub(left.width() + right.width());
     format!("{left}{:gap$}{right}", "")
-}
-
-/// The beginning of `text` that fits into `columns`.
-fn cut(text: &str, columns: u16) -> String {
-    let mut shown = String::new();
-    for character in text.chars() {
-        shown.push(character);
-        if shown.width() > usize::from(columns) {
-            shown.pop();
-            break;
-        }
-    }
-    shown
 }
