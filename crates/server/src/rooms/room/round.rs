@@ -288,33 +288,36 @@ impl Round {
     }
 
     fn end(&mut self, field: Field) {
-        let scores = match &self.play {
-            Play::Roam => BTreeMap::new(),
-            Play::ToExit(finishes) => finishes.scores(self.mode, field),
-            Play::Tag(tag) => tag.scores(field),
-            Play::Hide(hide) => hide.scores(field),
+        let steps = |id| match &self.play {
+            Play::Roam => None,
+            Play::ToExit(finishes) => finishes.times.get(&id).copied(),
+            Play::Tag(tag) => Some(tag.time(id)),
+            Play::Hide(hide) => Some(hide.time(id, field.step)),
         };
-        self.standings = standings(&scores);
+        let members = field.ids().filter(|_| self.mode != Mode::Roam);
+        let results: Vec<_> = members.map(|id| (id, steps(id))).collect();
+        self.standings = standings(self.mode, &results);
         self.phase = Phase::Over { ends: field.step + STANDINGS };
     }
 }
 
-/// A member's result. The lower rank wins; the steps are shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Score {
-    rank: u64,
-    steps: Option<u64>,
+/// The rank of a result; the lowest wins. Without one, a member comes last. In the campaign, all members who have reached
+/// the exit are equal. In hide and seek, the longest time in hiding wins, and the first seekers come last.
+fn rank(mode: Mode, steps: Option<u64>) -> u64 {
+    match (mode, steps) {
+        (_, None) => u64::MAX,
+        (Mode::Together, _) => 0,
+        (Mode::Hide, Some(steps)) => u64::MAX - steps,
+        (_, Some(steps)) => steps,
+    }
 }
 
-/// The standings from `scores`. Members of equal rank get equal points.
-fn standings(scores: &BTreeMap<MemberId, Score>) -> Vec<Standing> {
-    let beaten = |score: &Score| scores.values().filter(|other| other.rank > score.rank).count();
-    let standing = |(&member, score): (&MemberId, &Score)| Standing {
-        member,
-        points: beaten(score) as u32,
-        steps: score.steps,
-    };
-    let mut standings: Vec<Standing> = scores.iter().map(standing).collect();
+/// The standings from the members' results, in steps. Members of equal rank get equal points.
+fn standings(mode: Mode, results: &[(MemberId, Option<u64>)]) -> Vec<Standing> {
+    let rank = |steps| rank(mode, steps);
+    let beaten = |steps| results.iter().filter(|other| rank(other.1) > rank(steps)).count() as u32;
+    let standing = |&(member, steps)| Standing { member, points: beaten(steps), steps };
+    let mut standings: Vec<Standing> = results.iter().map(standing).collect();
     standings.sort_by_key(|standing| (std::cmp::Reverse(standing.points), standing.member));
     standings
 }
@@ -365,17 +368,6 @@ impl Finishes {
             self.times.entry(id).or_insert(time);
         }
         field.ids().all(|id| self.times.contains_key(&id))
-    }
-
-    /// The scores. Members who have not finished come last. In a race the shortest time wins. In the
-    /// campaign, all members who have reached the exit are equal.
-    fn scores(&self, mode: Mode, field: Field) -> BTreeMap<MemberId, Score> {
-        let rank = |time: u64| if mode == Mode::Together { 0 } else { time };
-        let score = |id| {
-            let steps = self.times.get(&id).copied();
-            Score { rank: steps.map_or(u64::MAX, rank), steps }
-        };
-        field.ids().map(|id| (id, score(id))).collect()
     }
 }
 
@@ -462,20 +454,13 @@ impl Tag {
         }
     }
 
-    /// The scores: the shortest time as "it" wins.
-    fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
-        field
-            .ids()
-            .map(|id| (id, Score { rank: self.time(id), steps: Some(self.time(id)) }))
-            .collect()
-    }
-
     fn become_it(&mut self, next: Option<MemberId>, step: u64) {
         self.before = self.it;
         self.it = next;
         self.since = step;
     }
 
+    /// How long a member was "it". The shortest time wins.
     fn time(&self, id: MemberId) -> u64 {
         self.times.get(&id).copied().unwrap_or(0)
     }
@@ -518,17 +503,10 @@ impl Hide {
         left == 0 || seekers.is_empty()
     }
 
-    /// The scores: the longest time in hiding wins, and the first seekers come last.
-    fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
-        let whole = field.step - self.since.unwrap_or(field.step);
-        let hidden = |id| match self.seekers.get(&id) {
-            None => whole,
-            Some(found) => found.unwrap_or(0),
-        };
-        field
-            .ids()
-            .map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: Some(hidden(id)) }))
-            .collect()
+    /// How long a member has stayed hidden by `step`. The first seekers never hid.
+    fn time(&self, id: MemberId, step: u64) -> u64 {
+        let found = self.seekers.get(&id).map(|found| found.unwrap_or(0));
+        found.unwrap_or(step - self.since.unwrap_or(step))
     }
 }
 
@@ -538,10 +516,11 @@ mod tests {
 
     #[test]
     fn each_member_beaten_scores_a_point() {
-        let score = |(id, rank)| (MemberId(id), Score { rank, steps: Some(rank * 10) });
-        let scores = [(1, 5), (2, 3), (3, 5), (4, 9)].map(score).into_iter().collect();
+        let results = [(1, 50), (2, 30), (3, 50), (4, 90)];
+        let results = results.map(|(id, steps)| (MemberId(id), Some(steps)));
+        let standings = standings(Mode::Tag, &results);
         let places: Vec<_> =
-            standings(&scores).iter().map(|it| (it.member.0, it.points, it.steps)).collect();
+            standings.iter().map(|it| (it.member.0, it.points, it.steps)).collect();
         let expected = [(2, 3, 30), (1, 1, 50), (3, 1, 50), (4, 0, 90)];
         assert_eq!(places, expected.map(|(id, points, steps)| (id, points, Some(steps))));
     }
