@@ -42,9 +42,8 @@ use crate::metrics::Metrics;
 use crate::queue::push_within;
 use crate::rooms::directory::{CAST, PublicRecording, Rooms};
 use crate::rooms::replayed::RoomRecord;
-use crate::rooms::room::{Catalog, Header, Room, is_of_other_version};
+use crate::rooms::room::{Catalog, Header, Room};
 use cellcaster::app::parts::{Cursor, MarkKind, Reader};
-use cellcaster::cli::ROOM_RECORDING;
 use cellcaster::game::STEPS_PER_SECOND;
 
 /// The most records that are open at a time.
@@ -288,13 +287,7 @@ fn begin(rooms: &Rooms, path: &Path) -> Result<(Reader<RoomRecord>, Room), Strin
         String::from_utf8(bytes).map_err(io::Error::other)
     };
     let text = read().map_err(|error| error.to_string())?;
-    // The first part may end within the header of a round.
-    let catalog = rooms.catalog();
-    let record = RoomRecord::parse(&text, catalog).or_else(|fault| {
-        let last = text.rfind(ROOM_RECORDING).filter(|last| *last > 0);
-        last.filter(|_| !is_of_other_version(&text))
-            .map_or(Err(fault), |last| RoomRecord::parse(&text[..last], catalog))
-    })?;
+    let record = RoomRecord::parse(&text, rooms.catalog())?;
     if !record.headers().all(|header| is_shown(rooms, header)) {
         return Err("the host no longer has its level".to_owned());
     }

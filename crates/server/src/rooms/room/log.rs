@@ -3,17 +3,10 @@
 //! Nothing else changes a room, so the header and the entries reproduce the round, bit for bit. Rejected:
 //! hosts that exchange the states of rooms. A state has a thousand times the bytes of the members' intents.
 //!
-//! In a recording, a log is text:
+//! In a recording, a log is text. The line of a header contains it as JSON:
 //!
 //! ```text
-//! cellcaster-room 2
-//! level museum
-//! mode tag
-//! difficulty normal
-//! seed 77
-//! round 3
-//! next 2
-//! member 1 red 250 Mara
+//! cellcaster-room 3 {"level":"museum","mode":"Tag","difficulty":"Normal","seed":[77,0,0,0,0,0,0,0],"round":3,…}
 //! 12 want 1 9 forward run turn:1.5
 //! 40 say 1 behind you
 //! 41 emote 1 wave
@@ -22,14 +15,12 @@
 //! 99 day 2 2026-11-28
 //! ```
 //!
-//! A `member` line contains a member's number, colour, points and name. In clusters, a line such as `kept 1 1f 300`
-//! follows for each member with an account: the number, the token of the latest return, and for a member who is away
-//! the steps until they leave.
-//!
 //! An entry begins with the step before which it takes effect, then a verb and the member's number. In
 //! `want`, the next number is the step of the frame that the member saw. The angles of `want` apply in one
 //! step only. Its other intents last until the member's next `want`. A hand at rest therefore turns nobody,
 //! however late the client says so. `day` tells a room with a daily level of a later day.
+//!
+//! Rejected: entries as JSON. They are most of a recording, and would take twice as many bytes.
 
 use std::fmt;
 
@@ -48,7 +39,7 @@ use cellcaster::world::Difficulty;
 /// The widest line of chat, in columns.
 pub(crate) const CHAT_COLUMNS: usize = 60;
 /// The version of the format. It also changes when the same entries have a different effect.
-const VERSION: &str = "2";
+const VERSION: &str = "3";
 
 /// The state of a room at the start of a round.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -148,28 +139,10 @@ impl Header {
         Self { level, mode, difficulty, seed, round: 1, next_member: 1, members: Vec::new() }
     }
 
-    /// Parses the lines of a header; `None` if a line is invalid.
-    fn parse<'t>(lines: impl IntoIterator<Item = &'t str>) -> Option<Self> {
-        let mut lines = lines.into_iter();
-        (lines.next()?.strip_prefix(ROOM_RECORDING)? == VERSION).then_some(())?;
-        let mut value = |name: &str| lines.next()?.strip_prefix(name)?.strip_prefix(' ');
-        let level = value("level")?.to_owned();
-        let mode = Mode::named(value("mode")?)?;
-        let difficulty = Difficulty::named(value("difficulty")?)?;
-        let seed = value("seed")?.parse().ok()?;
-        let round = value("round")?.parse().ok()?;
-        let next_member = value("next")?.parse().ok()?;
-        let mut members: Vec<Seat> = Vec::new();
-        for line in lines {
-            if let Some(kept) = line.strip_prefix("kept ") {
-                let (id, place) = kept_place(kept)?;
-                members.iter_mut().find(|seat| seat.id == id)?.kept = Some(place);
-            } else {
-                members.push(Seat::parse(line)?);
-            }
-        }
-        let header = Self { level, mode, difficulty, seed, round, next_member, members };
-        header.is_possible().then_some(header)
+    /// Parses the line of a header; `None` if it is invalid.
+    fn parse(line: &str) -> Option<Self> {
+        let json = line.strip_prefix(ROOM_RECORDING)?.strip_prefix(VERSION)?;
+        serde_json::from_str(json).ok().filter(Self::is_possible)
     }
 
     /// Returns true if a room can begin with this header. Each member must have a unique number below `next_member`.
@@ -187,43 +160,9 @@ impl Header {
 
 impl fmt::Display for Header {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{ROOM_RECORDING}{VERSION}\nlevel {}\nmode {}", self.level, self.mode.name())?;
-        writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
-        writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
-        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))?;
-        let mut kept = self.members.iter().filter_map(|seat| Some((seat.id, seat.kept?)));
-        kept.try_for_each(|(id, KeptPlace { token, away })| {
-            write!(f, "kept {id} {token:x}")?;
-            away.map_or(Ok(()), |steps| write!(f, " {steps}"))?;
-            writeln!(f)
-        })
-    }
-}
-
-/// Parses the rest of a `kept` line.
-fn kept_place(rest: &str) -> Option<(MemberId, KeptPlace)> {
-    let mut words = rest.split(' ');
-    let id = MemberId::parse(words.next()?)?;
-    let token = u64::from_str_radix(words.next()?, 16).ok()?;
-    let away = words.next().map(|steps| steps.parse().ok());
-    let away = away.map_or(Some(None), |steps: Option<u64>| steps.map(Some))?;
-    words.next().is_none().then_some((id, KeptPlace { token, away }))
-}
-
-impl Seat {
-    fn parse(line: &str) -> Option<Self> {
-        let mut words = line.strip_prefix("member ")?.splitn(4, ' ');
-        let id = MemberId::parse(words.next()?)?;
-        let color = color_named(words.next()?)?;
-        let points = words.next()?.parse().ok()?;
-        Some(Self { id, color, points, name: Line::of(words.next()?, NAME_COLUMNS)?, kept: None })
-    }
-}
-
-impl fmt::Display for Seat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { id, color, points, name, kept: _ } = self;
-        write!(f, "member {id} {} {points} {name}", color.name())
+        // Texts and numbers always have a form in JSON.
+        let json = serde_json::to_string(self).unwrap_or_default();
+        writeln!(f, "{ROOM_RECORDING}{VERSION} {json}")
     }
 }
 
@@ -298,33 +237,24 @@ impl Entry {
 
 /// Returns true if `text` begins with the header of another version.
 pub(crate) fn is_of_other_version(text: &str) -> bool {
-    let first = text.lines().next().unwrap_or_default();
-    first.strip_prefix(ROOM_RECORDING).is_some_and(|version| version != VERSION)
+    let version = text.strip_prefix(ROOM_RECORDING).and_then(|rest| rest.split_whitespace().next());
+    version.is_some_and(|version| version != VERSION)
 }
 
 /// The header at the beginning of a recording. `text` is the first part of it.
 pub(crate) fn first_header(text: &str) -> Option<Header> {
-    let mut lines = text.lines();
-    let first = lines.next()?;
-    let rest = lines.take_while(|line| !is_entry(line) && !line.starts_with(ROOM_RECORDING));
-    Header::parse(std::iter::once(first).chain(rest))
-}
-
-fn is_entry(line: &str) -> bool {
-    line.starts_with(|first: char| first.is_ascii_digit())
+    Header::parse(text.lines().next()?)
 }
 
 /// Parses a recording into rounds: headers with their entries. `None` if a line is neither.
 pub(crate) fn parse_log(text: &str) -> Option<Vec<(Header, Vec<Entry>)>> {
-    let mut rounds = Vec::new();
-    let mut lines = text.lines().peekable();
-    while lines.peek().is_some() {
-        let mut head = vec![lines.next()?];
-        let goes_on = |line: &&str| !is_entry(line) && !line.starts_with(ROOM_RECORDING);
-        head.extend(std::iter::from_fn(|| lines.next_if(goes_on)));
-        let entries = std::iter::from_fn(|| lines.next_if(|line| is_entry(line))).map(Entry::parse);
-        let entries = entries.collect::<Option<Vec<Entry>>>()?;
-        rounds.push((Header::parse(head)?, entries));
+    let mut rounds: Vec<(Header, Vec<Entry>)> = Vec::new();
+    for line in text.lines() {
+        if line.starts_with(ROOM_RECORDING) {
+            rounds.push((Header::parse(line)?, Vec::new()));
+        } else {
+            rounds.last_mut()?.1.push(Entry::parse(line)?);
+        }
     }
     Some(rounds)
 }
@@ -418,26 +348,41 @@ mod tests {
         header.members[2].kept = Some(KeptPlace::default());
         header.next_member = 9;
         let text = header.to_string();
-        assert_eq!(Header::parse(text.lines()), Some(header));
-        assert_eq!(Header::parse(text.lines().skip(1)), None);
+        assert_eq!(text.lines().count(), 1);
+        assert_eq!(Header::parse(&text), Some(header));
+        assert_eq!(Header::parse(&text[..text.len() - 2]), None);
     }
 
     #[test]
     fn impossible_headers_are_refused() {
-        let read = |next: &str, rest: &str| {
-            let text = format!(
-                "{ROOM_RECORDING}{VERSION}\nlevel museum\nmode tag\ndifficulty hard\nseed 1\nround 1\nnext {next}\n{rest}"
-            );
-            Header::parse(text.lines())
+        let read = |next: u32, members: &[(u32, KeptPlace)]| {
+            let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, 1);
+            header.next_member = next;
+            let name = Line::of("Mara", NAME_COLUMNS).unwrap();
+            header.members = members
+                .iter()
+                .map(|&(id, kept)| Seat {
+                    id: MemberId(id),
+                    color: PlayerColor::Red,
+                    points: 0,
+                    name: name.clone(),
+                    kept: Some(kept),
+                })
+                .collect();
+            Header::parse(&header.to_string())
         };
-        assert!(read("2147483648", "member 2147483647 red 0 Mara").is_some());
-        assert_eq!(read("2147483649", ""), None);
-        assert_eq!(read("7", "member 7 red 0 Mara"), None);
-        for kept in ["", " ", "1", "1 x", "1 7 x", "1 7 0", "1 7 99999999", "1 7 8 9", "2 7"] {
-            assert_eq!(read("7", &format!("member 1 red 0 Mara\nkept {kept}")), None, "{kept}");
+        let kept = KeptPlace::default();
+        assert!(read(2_147_483_648, &[(2_147_483_647, kept)]).is_some());
+        assert_eq!(read(2_147_483_649, &[]), None);
+        assert_eq!(read(7, &[(7, kept)]), None);
+        assert_eq!(read(7, &[(3, kept), (3, kept)]), None);
+        for away in [0, 99_999_999] {
+            assert_eq!(read(7, &[(1, KeptPlace { away: Some(away), ..kept })]), None, "{away}");
         }
-        assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
-        let many: Vec<String> = (1..=99).map(|id| format!("member {id} red 0 Mara")).collect();
-        assert_eq!(read("100", &many.join("\n")), None);
+        let many: Vec<_> = (1..=99).map(|id| (id, kept)).collect();
+        assert_eq!(read(100, &many), None);
+        for line in ["", "cellcaster-room 3", "cellcaster-room 3 {}", "cellcaster-room 2 {}"] {
+            assert_eq!(Header::parse(line), None, "{line}");
+        }
     }
 }

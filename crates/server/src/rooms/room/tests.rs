@@ -386,7 +386,7 @@ fn a_recording_can_be_replayed() {
     let (steps, checksum) = (room.step(), room.checksum());
     let text = recorded(&header, &entries) + &recorded(&room.next_header(), &[]);
     let older =
-        replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog(), &mut |_| {
+        replayed(&text.replace("cellcaster-room 3", "cellcaster-room 2"), &catalog(), &mut |_| {
             Ok(())
         });
     assert!(older.unwrap_err().contains("another version"));

@@ -175,10 +175,11 @@ fn first_picture(port: u16, path: &str) -> Vec<u8> {
 /// The log of a room in which a player plays `script`.
 fn log_of(script: &str) -> String {
     let script = Script::parse(script, "the script").unwrap();
-    let mut log =
-        "cellcaster-room 2\nlevel clock\nmode together\ndifficulty easy\nseed 0\nround 1\nnext 2\n\
-                   member 1 red 0 Mara\n"
-            .to_owned();
+    let header = json!({
+        "level": "clock", "mode": "Together", "difficulty": "Easy", "seed": [0, 0, 0, 0, 0, 0, 0, 0], "round": 1, "next_member": 2,
+        "members": [{ "id": 1, "color": "Red", "points": 0, "name": "Mara", "kept": null }],
+    });
+    let mut log = format!("cellcaster-room 3 {header}\n");
     for (step, (_, intents)) in script.iter().enumerate() {
         _ = writeln!(log, "{step} want 1 {step} {}", intents.words());
     }

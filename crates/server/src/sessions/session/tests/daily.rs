@@ -139,7 +139,9 @@ fn a_room_plays_the_next_day_after_its_round() {
     assert_eq!(level(&rig, 2), SECOND);
     // A room that somebody enters on a later day goes on likewise.
     let text = rig.logs.text(RoomId(2));
-    assert!(text.contains(" day 1 2001-09-10\n") && text.contains("level daily-2001-09-10\n"));
+    assert!(
+        text.contains(" day 1 2001-09-10\n") && text.contains("\"level\":\"daily-2001-09-10\"")
+    );
     let room = rig.rooms().view(RoomId(2)).unwrap();
     let again = replayed(&text, rig.rooms().catalog(), room.step);
     assert_eq!(again.header(), &*room.header);

@@ -43,8 +43,8 @@ fn a_recording_is_watched_from_the_lobby_from_all_sides() {
     let text = fs::read_to_string(TOGETHER).unwrap();
     fs::write(folder.join("room-1.log"), &text).unwrap();
     fs::write(folder.join("private-2.log"), &text).unwrap();
-    fs::write(folder.join("room-3.log"), text.replace("mode roam", "mode alone")).unwrap();
-    fs::write(folder.join("room-4.log"), text.replace("room 2", "room 1")).unwrap();
+    fs::write(folder.join("room-3.log"), text.replace("Roam", "Alone")).unwrap();
+    fs::write(folder.join("room-4.log"), text.replace("room 3", "room 2")).unwrap();
     let mut rig = host(&folder);
     let mara = in_lobby(&mut rig, "Lee", (80, 24));
     rig.press(mara, "r");
