@@ -2,8 +2,6 @@ use std::io::{self, Write};
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
 
-use proptest::prelude::*;
-
 use super::*;
 use crate::accounts::AccountKey;
 use crate::admission::{Outcome, Refusal};
@@ -108,25 +106,17 @@ fn the_filter_sets_topic_levels_and_can_be_changed() {
 
 #[test]
 fn a_filter_has_a_default_level_and_levels_for_topics() {
-    for (text, written) in [
+    let parsed = |text: &str| text.parse::<LogFilter>();
+    for (text, same) in [
         ("warn", "warn"),
         ("rooms=debug", "info,rooms=debug"),
         ("off, admin=info", "off,admin=info"),
         ("info,rooms=off,rooms=warn", "info,rooms=warn"),
     ] {
-        assert_eq!(text.parse::<LogFilter>().unwrap().to_string(), written);
+        assert_eq!(parsed(text).unwrap(), parsed(same).unwrap());
     }
     for text in ["", "INFO!", "lobby=info", "rooms=loud", "rooms", "=info", "info,"] {
-        assert!(text.parse::<LogFilter>().is_err(), "{text}");
-    }
-}
-
-proptest! {
-    #[test]
-    fn filters_round_trip(text in "((off|warn|debug|rooms|admin|x)[,=]?){0,6}") {
-        if let Ok(filter) = text.parse::<LogFilter>() {
-            prop_assert_eq!(filter.to_string().parse(), Ok(filter));
-        }
+        assert!(parsed(text).is_err(), "{text}");
     }
 }
 
