@@ -47,10 +47,10 @@ pub(crate) type ScoredBoards = Vec<(LevelBoard, Vec<LevelScore>)>;
 /// A run that [`verify`] has replayed: a built-in level, a map of the host or a daily level that was won.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VerifiedRun {
-    board: LevelBoard,
-    tally: Tally,
-    rank: Rank,
-    script: String,
+    pub(crate) board: LevelBoard,
+    pub(crate) tally: Tally,
+    pub(crate) rank: Rank,
+    pub(crate) script: String,
 }
 
 /// The reason why a script is not a run that counts.
@@ -202,15 +202,6 @@ impl VerifiedRun {
     /// The script of the run.
     pub fn script(&self) -> &str {
         &self.script
-    }
-}
-
-#[cfg(any(test, feature = "fuzzing"))]
-impl VerifiedRun {
-    /// A run that was not verified.
-    #[doc(hidden)]
-    pub fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
-        Self { board, tally, rank, script: script.to_owned() }
     }
 }
 

@@ -104,16 +104,6 @@ impl RoomRecord {
             .then(|| Self { catalog: Arc::clone(catalog), rounds: Arc::from([(header, entries)]) })
     }
 
-    /// The text of the log.
-    #[cfg(test)]
-    pub(crate) fn log(&self) -> String {
-        let round = |(header, entries): &(Header, Vec<Entry>)| {
-            let entries = entries.iter().map(|entry| format!("{entry}\n"));
-            header.to_string() + &entries.collect::<String>()
-        };
-        self.rounds.iter().map(round).collect()
-    }
-
     /// The headers of all rounds.
     pub(crate) fn headers(&self) -> impl Iterator<Item = &Header> {
         self.rounds.iter().map(|(header, _)| header)
@@ -259,6 +249,17 @@ mod tests {
 
     const TOGETHER: &str =
         include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/together.log"));
+
+    impl RoomRecord {
+        /// The text of the log.
+        pub(crate) fn log(&self) -> String {
+            let round = |(header, entries): &(Header, Vec<Entry>)| {
+                let entries = entries.iter().map(|entry| format!("{entry}\n"));
+                header.to_string() + &entries.collect::<String>()
+            };
+            self.rounds.iter().map(round).collect()
+        }
+    }
 
     #[test]
     fn a_run_of_a_board_is_the_same_in_a_room() {
