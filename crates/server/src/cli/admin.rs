@@ -11,23 +11,19 @@ use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction, BanTerms, ListFormat, ListOptions};
-use super::host_store::{StoreLocation, failed};
+use super::host_store::{self, StoreLocation, failed};
 use crate::accounts::{Ban, BanScope, BanTarget, HostStore, UnixTime, time_text};
 use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target};
 use crate::operator::socket::ask;
 use crate::visitors::VisitorRow;
 use cellcaster::cli::Error;
-use cellcaster::cli::machine::data_folder;
 use cellcaster::fault::printable_path;
 use cellcaster::rng;
 
 /// Carries out the action, and prints the result.
 pub(crate) fn run(options: Admin) -> Result<(), Error> {
-    let folder = options.data.or_else(data_folder).ok_or_else(|| {
-        Error::mistake("this system has no default data folder: name the host's with --data")
-    })?;
-    let database = StoreLocation::named(options.store);
-    let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
+    let folder = host_store::folder(options.data)?;
+    let database = StoreLocation::named(options.store, Some(folder.clone()))?;
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
@@ -46,11 +42,23 @@ fn act(folder: &Path, database: &StoreLocation, action: AdminAction) -> Result<S
             format!("the server is shutting down; it waits for {}\n", visitors(reply.count))
         }),
         AdminAction::Kick { player, reason } => host.kicks(player.target(), reason),
-        AdminAction::Ban { player, terms } => ban(&mut host, database, player.target(), &terms),
-        AdminAction::Unban { player } => unban(database, player.target()),
+        AdminAction::Ban { player, terms } => {
+            open(database).and_then(|mut store| ban(&mut host, &mut store, player.target(), &terms))
+        }
+        AdminAction::Unban { player } => open(database).and_then(|mut store| {
+            let targets = with_account(&mut store, player.target())?;
+            Ok(format!("{} may come back\n", allow(&mut store, BanScope::Visit, targets)?))
+        }),
         AdminAction::Bans(list) => bans(database, BanScope::Visit, &list),
-        AdminAction::Mute { player, terms } => mute(&mut host, database, player.target(), &terms),
-        AdminAction::Unmute { player } => unmute(&mut host, database, player.target()),
+        AdminAction::Mute { player, terms } => open(database).and_then(|mut store| {
+            let targets = muted_targets(&mut host, &mut store, player.target())?;
+            Ok(format!("muted {}\n", forbid(&mut store, BanScope::Talk, &targets, &terms)?))
+        }),
+        AdminAction::Unmute { player } => open(database).and_then(|mut store| {
+            let target = Target::Visitors(player.target());
+            let targets = muted_targets(&mut host, &mut store, target)?;
+            Ok(format!("{} may talk again\n", allow(&mut store, BanScope::Talk, targets)?))
+        }),
         AdminAction::Mutes(list) => bans(database, BanScope::Talk, &list),
     };
     for remark in host.remarks {
@@ -185,29 +193,17 @@ fn summary_of_maps(keys: &[String]) -> String {
 /// Bans a player, and ends the sessions that the ban applies to.
 fn ban(
     host: &mut RunningHost<'_>,
-    database: &StoreLocation,
+    store: &mut HostStore,
     target: BanTarget,
     terms: &BanTerms,
 ) -> Result<String, Error> {
-    let mut store = open(database)?;
-    let targets = with_account(&mut store, target)?;
-    let banned = forbid(&mut store, BanScope::Visit, &targets, terms)?;
+    let targets = with_account(store, target)?;
+    let banned = forbid(store, BanScope::Visit, &targets, terms)?;
     let ended = match remove(host, targets, &terms.reason)? {
         None => "no server runs".to_owned(),
         Some(count) => format!("ended {}", sessions(count)),
     };
     Ok(format!("banned {banned}; {ended}\n"))
-}
-
-fn mute(
-    host: &mut RunningHost<'_>,
-    database: &StoreLocation,
-    target: Target,
-    terms: &BanTerms,
-) -> Result<String, Error> {
-    let mut store = open(database)?;
-    let targets = muted_targets(host, &mut store, target)?;
-    Ok(format!("muted {}\n", forbid(&mut store, BanScope::Talk, &targets, terms)?))
 }
 
 /// Writes a ban for each target, and describes them in words.
@@ -232,22 +228,6 @@ fn forbid(
     let time =
         time.map_or("forever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
     Ok(format!("{} {time}", joined(targets)))
-}
-
-fn unban(database: &StoreLocation, target: BanTarget) -> Result<String, Error> {
-    let mut store = open(database)?;
-    let targets = with_account(&mut store, target)?;
-    Ok(format!("{} may come back\n", allow(&mut store, BanScope::Visit, targets)?))
-}
-
-fn unmute(
-    host: &mut RunningHost<'_>,
-    database: &StoreLocation,
-    target: BanTarget,
-) -> Result<String, Error> {
-    let mut store = open(database)?;
-    let targets = muted_targets(host, &mut store, Target::Visitors(target))?;
-    Ok(format!("{} may talk again\n", allow(&mut store, BanScope::Talk, targets)?))
 }
 
 /// Ends the bans of some targets, and names the targets with a ban.

@@ -9,6 +9,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use cellcaster::cli::Error;
+use cellcaster::cli::machine::data_folder;
 use cellcaster::cli::parse::ValidValues;
 use cellcaster::fault::printable_path;
 
@@ -35,10 +36,11 @@ impl StoreLocation {
         if text.is_empty() { Err(TAKES) } else { Ok(Self::of(text.into())) }
     }
 
-    /// The database that `option` names, or otherwise the environment.
-    pub(crate) fn named(option: Option<Self>) -> Option<Self> {
+    /// The location that `option` names, or otherwise the environment, or otherwise the [`folder`] for data.
+    pub(crate) fn named(option: Option<Self>, data: Option<PathBuf>) -> Result<Self, Error> {
         let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
-        option.or_else(|| word().map(Self::of))
+        let named = option.or_else(|| word().map(Self::of));
+        named.map_or_else(|| folder(data).map(Self::Folder), Ok)
     }
 
     /// Opens the store, or creates it if there is none.
@@ -80,6 +82,16 @@ impl fmt::Debug for Secret {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Secret").finish_non_exhaustive()
     }
+}
+
+/// The folder for data that `option` names, or otherwise the user's.
+///
+/// # Errors
+/// If the system has no such folder.
+pub(crate) fn folder(option: Option<PathBuf>) -> Result<PathBuf, Error> {
+    option.or_else(data_folder).ok_or_else(|| {
+        Error::mistake("this system has no default data folder: name the host's with --data")
+    })
 }
 
 /// The error for a failure of an existing store.

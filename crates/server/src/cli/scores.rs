@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use cellcaster::cli::Error;
-use cellcaster::cli::machine::data_folder;
 use cellcaster::game::STEPS_PER_SECOND;
 use serde_json::{Value, json};
 
@@ -16,11 +15,7 @@ const MAX: usize = 100;
 
 /// Prints the boards that `options` request.
 pub(crate) fn run(options: &Scores) -> Result<(), Error> {
-    let folder = || options.data.clone().or_else(data_folder).map(StoreLocation::Folder);
-    let database =
-        StoreLocation::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
-            Error::mistake("this system has no default data folder: name the host's with --data")
-        })?;
+    let database = StoreLocation::named(options.store.store.clone(), options.data.clone())?;
     let is_of =
         |level: &String, board: &LevelBoard| [board.level(), board.name()].contains(&&**level);
     let mut boards = database.open_to_read()?.scored_boards(MAX).map_err(failed)?;

@@ -10,7 +10,7 @@ use tokio::sync::{Notify, watch};
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::host_store::{Secret, StoreLocation, failed};
+use super::host_store::{self, Secret, StoreLocation, failed};
 use crate::accounts::{HostNotice, HostStore, KnownPlayers, WaitingResults};
 use crate::cluster::Cluster;
 use crate::config::{Config, LiveConfig};
@@ -29,20 +29,15 @@ use crate::web::{self, Web};
 use cellcaster::app::store::private;
 use cellcaster::cli::Error;
 use cellcaster::cli::config::MAX_BYTES;
-use cellcaster::cli::machine::{configuration_file, data_folder};
+use cellcaster::cli::machine::configuration_file;
 
 /// Serves until a signal ends it.
 pub(crate) fn run(options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(options)?;
     let options = &configuration.options;
-    let folder = options.data.clone().or_else(data_folder).ok_or_else(|| {
-        Error::mistake(
-            "this system has no default data folder: name one, as in \"cellcaster-server --data FOLDER\"",
-        )
-    })?;
+    let folder = host_store::folder(options.data.clone())?;
     let key = HostKey::open(&folder).map_err(Error::mistake)?;
-    let database = StoreLocation::named(options.store.store.clone());
-    let database = database.unwrap_or_else(|| StoreLocation::Folder(folder.clone()));
+    let database = StoreLocation::named(options.store.store.clone(), Some(folder.clone()))?;
     let (cluster, format) = (cluster(options, &database)?, options.log);
     let store = database.open().map_err(|failure| Error::mistake(failure.to_string()))?;
     let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
