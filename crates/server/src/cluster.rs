@@ -92,7 +92,7 @@ impl Cluster {
     /// Starts the rooms of the cluster, which lobbies see in `rooms`.
     pub(crate) fn rooms(
         self,
-        rooms: &Rooms,
+        rooms: Rooms,
         standing: Vec<RoomRequest>,
         load: Arc<Load>,
         visitors: Visitors,
@@ -105,13 +105,12 @@ impl Cluster {
             leases,
             visits,
             notice,
-            catalog: Arc::clone(rooms.catalog()),
-            recordings: rooms.recordings().clone(),
+            rooms,
             load,
             visitors,
             chance: Mutex::new(SplitMix64::new(seed)),
             ending: watch::Sender::new(false),
         };
-        SharedRooms::new(Arc::new(context), rooms.clone(), standing)
+        SharedRooms::new(Arc::new(context), standing)
     }
 }

@@ -30,7 +30,7 @@ use super::visits::{ANNOUNCEMENT_INTERVAL, Visits};
 use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::lock::locked;
-use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
+use crate::rooms::directory::{Place, RoomLimits, RoomRefusal};
 use crate::rooms::room::{Header, MemberId, Mode};
 use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomRequest};
@@ -53,8 +53,6 @@ pub(crate) struct SharedRooms(Arc<SharedRoomsState>);
 
 struct SharedRoomsState {
     context: Arc<HostContext>,
-    /// The directory of rooms that lobbies show.
-    rooms: Rooms,
     standing: Mutex<Vec<RoomRequest>>,
     /// The numbers of the standing rooms.
     own_standing: Mutex<BTreeSet<RoomId>>,
@@ -86,14 +84,12 @@ pub(crate) struct Entrant {
 
 impl SharedRooms {
     /// Starts the directory on the current runtime.
-    pub(crate) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomRequest>) -> Self {
-        let (standing, records) = (Mutex::new(standing), Mutex::default());
+    pub(crate) fn new(context: Arc<HostContext>, standing: Vec<RoomRequest>) -> Self {
         let shared = Self(Arc::new(SharedRoomsState {
             context,
-            rooms,
-            standing,
+            standing: Mutex::new(standing),
             own_standing: Mutex::default(),
-            records,
+            records: Mutex::default(),
             replicas: tokio::sync::Mutex::default(),
         }));
         tokio::spawn(shared.clone().follow());
@@ -111,15 +107,15 @@ impl SharedRooms {
         is_private: bool,
         visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
-        let listed = self.0.rooms.summaries().borrow().len();
-        let is_full = listed >= self.0.rooms.limits().most;
+        let listed = self.0.context.rooms.summaries().borrow().len();
+        let is_full = listed >= self.0.context.rooms.limits().most;
         if is_full {
             return Err(RoomRefusal::TooMany);
         }
         let context = &self.0.context;
         let header = self.header(request).ok_or(RoomRefusal::NoLevel)?;
         let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
-        let code = is_private.then(|| self.0.rooms.new_code());
+        let code = is_private.then(|| self.0.context.rooms.new_code());
         let record = to_bytes(&Record::new(header, false, code));
         context.bus.create(Key::Room(id), record).await.map_err(not_now)?;
         self.join(id, visitor).await
@@ -137,7 +133,7 @@ impl SharedRooms {
     /// Watches a room.
     pub(crate) async fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
         let handle = self.handle(id).await?;
-        self.0.rooms.place_to_watch(id, handle.interface)
+        self.0.context.rooms.place_to_watch(id, handle.interface)
     }
 
     pub(crate) fn context(&self) -> &HostContext {
@@ -219,7 +215,7 @@ impl SharedRooms {
     pub(crate) fn set_limits(&self, mut limits: RoomLimits) {
         let standing = std::mem::take(&mut limits.standing);
         locked(&self.0.standing, |it| *it = standing);
-        self.0.rooms.set_limits(limits);
+        self.0.context.rooms.set_limits(limits);
     }
 
     /// Hands all rooms over to the other hosts, and leaves the cluster.
@@ -267,10 +263,10 @@ impl SharedRooms {
         let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
         let loaded = context.load_state(id).await?;
         let (requests, receiver) = mpsc::channel(MAX_REQUESTS);
-        let closes_after = self.0.rooms.limits().closes_after;
+        let closes_after = self.0.context.rooms.limits().closes_after;
         let (state, record) = &loaded;
         let interface = RoomInterface::new(&state.room, record.stands, closes_after, record.code);
-        self.0.rooms.note_entered(id, &interface);
+        self.0.context.rooms.note_entered(id, &interface);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
         let context = Arc::clone(context);
         let replica = Replica::new(context, id, loaded, interface, broadcasts, receiver);
@@ -360,7 +356,7 @@ impl SharedRooms {
                     !known.record.stands || own.contains(id) || !summary.members.is_empty();
                 is_listed.then_some(summary)
             });
-            self.0.rooms.show_shared(summaries.collect());
+            self.0.context.rooms.show_shared(summaries.collect());
         });
     }
 
@@ -398,7 +394,7 @@ impl SharedRooms {
 
     fn abandoned(&self) -> Vec<RoomId> {
         let now = Instant::now();
-        let catalog = &self.0.context.catalog;
+        let catalog = self.0.context.rooms.catalog();
         // A host without the level leaves the room to other hosts.
         let is_abandoned = |known: &ReceivedRecord| {
             known.record.is_running
@@ -413,7 +409,7 @@ impl SharedRooms {
 
     /// The header of a new room; `None` if there is no such level.
     fn header(&self, request: &RoomRequest) -> Option<Header> {
-        let catalog = &self.0.context.catalog;
+        let catalog = self.0.context.rooms.catalog();
         let level = catalog.named(&request.level).unwrap_or(&request.level);
         let header =
             || Header::new(level, request.mode, request.difficulty, self.0.context.chance());

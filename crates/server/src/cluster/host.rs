@@ -12,8 +12,7 @@ use super::visits::Visits;
 use crate::accounts::HostNotice;
 use crate::load::Load;
 use crate::lock::locked;
-use crate::rooms::directory::Recordings;
-use crate::rooms::room::Catalog;
+use crate::rooms::directory::Rooms;
 use crate::rooms::summary::{RoomId, RoomRefusal};
 use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
@@ -24,8 +23,8 @@ pub(crate) struct HostContext {
     pub(crate) leases: Leases,
     pub(crate) visits: Visits,
     pub(crate) notice: HostNotice,
-    pub(crate) catalog: Arc<Catalog>,
-    pub(crate) recordings: Recordings,
+    /// The directory of rooms that lobbies show.
+    pub(crate) rooms: Rooms,
     pub(crate) load: Arc<Load>,
     pub(crate) visitors: Visitors,
     pub(crate) chance: Mutex<SplitMix64>,
@@ -46,9 +45,10 @@ impl HostContext {
         let record =
             record.and_then(|bytes| Record::parse(&bytes).ok()).ok_or(RoomRefusal::Gone)?;
         let bytes = self.bus.get(Key::Checkpoint(id)).await.map_err(|_| RoomRefusal::NotNow)?;
+        let catalog = self.rooms.catalog();
         let state = match bytes {
-            None => RoomState::new(&self.catalog, record.header.clone()),
-            Some(bytes) => match RoomState::restore(&self.catalog, &bytes) {
+            None => RoomState::new(catalog, record.header.clone()),
+            Some(bytes) => match RoomState::restore(catalog, &bytes) {
                 Ok(state) => Some(state),
                 Err(sentence) => {
                     tracing::error!(room = %id, "a room's checkpoint can't be restored: {sentence}");
@@ -57,7 +57,7 @@ impl HostContext {
             },
         };
         let mut state = state.ok_or(RoomRefusal::NoLevel)?;
-        state.record(self.recordings.open(id, record.code.is_some()));
+        state.record(self.rooms.recordings().open(id, record.code.is_some()));
         Ok((state, record))
     }
 }

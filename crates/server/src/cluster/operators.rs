@@ -67,7 +67,7 @@ impl SharedRooms {
         HostInfo {
             visitors: context.visitors.count(),
             rooms: Some(context.leases.rooms().into_iter().map(|room| room.0).collect()),
-            maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
+            maps: Some(context.rooms.catalog().map_keys().map(str::to_owned).collect()),
             ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
         }
     }
@@ -124,7 +124,7 @@ impl SharedRooms {
     /// A sentence about the differences between a host's maps and this host's maps. `None` if there are none, or if the
     /// host did not answer.
     fn map_difference(&self, host: &HostInfo) -> Option<String> {
-        let own = self.context().catalog.map_keys().collect();
+        let own = self.context().rooms.catalog().map_keys().collect();
         let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
         let difference = difference(&own, &theirs)?;
         let (own, other) = (shown_name(self.own_name()), &host.host);

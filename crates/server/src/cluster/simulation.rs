@@ -180,7 +180,7 @@ impl SimulatedHost {
         let (notice, visits) = (notice(index), world.visits(index));
         let cluster = Cluster { bus, leases, visits, notice, seed };
         let visitors = Visitors::default();
-        let shared = cluster.rooms(&rooms, vec![room_request()], load, visitors.clone());
+        let shared = cluster.rooms(rooms.clone(), vec![room_request()], load, visitors.clone());
         Self { rooms, shared, visitors, metrics, is_killed: false, well_at: Instant::now() }
     }
 }

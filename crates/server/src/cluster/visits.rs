@@ -82,13 +82,6 @@ pub(crate) enum VisitRefusal {
     NotNow(String),
 }
 
-/// A limit that is reached even if only hosts count that have announced themselves in the time `ago`.
-#[derive(Debug)]
-struct TooMany {
-    reason: Refusal,
-    ago: Duration,
-}
-
 /// The announcements of this host.
 #[derive(Debug)]
 struct Registry {
@@ -121,9 +114,8 @@ impl Visits {
             let begun = begun.and_then(|begun| begun.map_err(|failure| failure.to_string()));
             match begun.map_err(VisitRefusal::NotNow)? {
                 Ok(visit) => return Ok(visit),
-                Err(TooMany { reason, ago }) if ago < waited => {
-                    return Err(VisitRefusal::TooMany(reason));
-                }
+                // The limit is reached even if only hosts count that have announced themselves since.
+                Err((reason, ago)) if ago < waited => return Err(VisitRefusal::TooMany(reason)),
                 Err(_) => sleep(RECOUNT_INTERVAL).await,
             }
         }
@@ -186,13 +178,14 @@ impl Drop for CountedVisit {
 }
 
 impl VisitsState {
-    /// Begins a visit by the key and by the address, or by neither.
+    /// Begins a visit by the key and by the address, or by neither. Then returns the limit that is reached, and a time in
+    /// which the hosts of the visits in the way have announced themselves.
     fn begin(
         &self,
         host: &str,
         presence: &mut HostStore,
         new_visit: &NewVisit,
-    ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
+    ) -> Result<Result<Vec<VisitId>, (Refusal, Duration)>, StoreFailure> {
         let (limits, reasons): (Vec<_>, Vec<_>) =
             new_visit.limits().map(|(visitor, most, reason)| ((visitor, most), reason)).unzip();
         let begun = presence.begin_visits(host, &limits, HOST_TIMEOUT);
@@ -200,7 +193,7 @@ impl VisitsState {
             Ok(begun) => counting.ids.extend(begun.iter().flatten()),
             Err(_) => counting.is_unsure = true,
         });
-        Ok(begun?.map_err(|(index, ago)| TooMany { reason: reasons[index], ago }))
+        Ok(begun?.map_err(|(index, ago)| (reasons[index], ago)))
     }
 
     fn end_others(&self, host: &str, presence: &mut HostStore) {

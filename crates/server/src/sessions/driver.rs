@@ -190,7 +190,7 @@ impl GameHost {
         let rooms = Rooms::new(limits, catalog, parts.recordings, Arc::clone(&load), parts.seeds);
         rooms.set_today(clock.today());
         let cluster = parts.cluster.map(|cluster| {
-            cluster.rooms(&rooms, shared_standing, Arc::clone(&load), visitors.clone())
+            cluster.rooms(rooms.clone(), shared_standing, Arc::clone(&load), visitors.clone())
         });
         let recorder = ResultRecorder {
             catalog: Arc::clone(rooms.catalog()),
