@@ -20,7 +20,7 @@
 
 mod ceremony;
 mod commands;
-mod draw;
+pub(crate) mod draw;
 mod endings;
 mod frames;
 mod ignored;

@@ -10,7 +10,6 @@
 //!                 n, n bytes of a character in UTF-8, its RGB, the RGB behind it
 //! ```
 
-use std::cell::Cell as Shared;
 use std::io::Write as _;
 
 use bytes::Bytes;
@@ -22,13 +21,14 @@ use ratatui::style::{Color, Style};
 use ratatui::text::Line;
 
 use crate::rooms::room::{Catalog, RoomView};
+use crate::sessions::session::draw::with_view;
 use crate::sessions::session::lobby::seen_through;
 use cellcaster::app::parts::DrawOptions;
 use cellcaster::color::palette::{ColorDepth, ShadeInk};
 use cellcaster::render::Filter;
 use cellcaster::tui::canvas::Canvas;
-use cellcaster::tui::{CellAspect, Correction, GlyphSet, View};
-use cellcaster::world::{FieldOfView, World};
+use cellcaster::tui::{CellAspect, Correction, GlyphSet};
+use cellcaster::world::FieldOfView;
 
 /// The size of a picture in cells.
 pub(crate) const COLUMNS: u16 = 96;
@@ -37,11 +37,6 @@ pub(crate) const ROWS: u16 = 30;
 const MAX_GAP: usize = 1;
 /// The colours of text.
 const TEXT: [Color; 2] = [Color::Rgb(220, 220, 220), Color::Rgb(0, 0, 0)];
-
-thread_local! {
-    /// The renderer shared by the pictures drawn on this thread. It keeps no state from one picture to the next.
-    static VIEW: Shared<Option<View<World>>> = const { Shared::new(None) };
-}
 
 type Rgb = [u8; 3];
 
@@ -69,16 +64,15 @@ pub(crate) fn draw(room: &RoomView, catalog: &Catalog) -> Vec<Cell> {
     };
     let area = Rect::new(0, 0, COLUMNS, ROWS);
     let mut canvas = Buffer::empty(area);
-    let mut view = VIEW.take().unwrap_or_default();
     if let Some((_, player)) = seen_through(room) {
         let camera = player.camera(options.field_of_view);
         let (world, seconds) = (room.game.world(), room.game.elapsed());
-        options.draw(world, &camera, seconds, &mut canvas, area, &mut view);
+        with_view(|view| options.draw(world, &camera, seconds, &mut canvas, area, view));
     } else {
         // The room's own world might show somebody who hides.
         if let Some(world) = catalog.world(&room.header.level) {
             let camera = world.start_camera(options.field_of_view);
-            options.draw(&*world, &camera, 0.0, &mut canvas, area, &mut view);
+            with_view(|view| options.draw(&*world, &camera, 0.0, &mut canvas, area, view));
         }
         let [text, behind] = TEXT;
         let caption = Line::styled(" nobody is walking ", Style::new().fg(text).bg(behind));
@@ -86,7 +80,6 @@ pub(crate) fn draw(room: &RoomView, catalog: &Catalog) -> Vec<Cell> {
         let (x, y) = (area.right() - width, area.bottom() - 1);
         canvas.draw_widget(caption, Rect { x, y, width, height: 1 });
     }
-    VIEW.set(Some(view));
     canvas.content.iter().map(cell).collect()
 }
 

@@ -44,10 +44,14 @@ const ROOM_KEYS: [&str; 5] = [
 /// Advice for a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
-thread_local! {
-    /// The renderer shared by the sessions drawn on this thread. It takes half a megabyte in a level with
-    /// steps, and keeps no state from one picture to the next.
-    static VIEW: Cell<Option<View>> = const { Cell::new(None) };
+/// Draws with the renderer that all pictures on this thread share. It takes half a megabyte in a level with steps, and
+/// keeps no state from one picture to the next.
+pub(crate) fn with_view<T>(draw: impl FnOnce(&mut View) -> T) -> T {
+    thread_local!(static VIEW: Cell<Option<View>> = const { Cell::new(None) });
+    let mut view = VIEW.take().unwrap_or_default();
+    let drawn = draw(&mut view);
+    VIEW.set(Some(view));
+    drawn
 }
 
 impl Ui {
@@ -154,9 +158,10 @@ impl Ui {
         let Some(stay) = &mut self.stay else { return };
         if let Some(camera) = free {
             let world = with_figures(room.game.world(), room.figures(), &[]);
-            let mut view = VIEW.take().unwrap_or_default();
-            options.draw(&*world, &camera, room.game.elapsed(), canvas, area, &mut view);
-            return VIEW.set(Some(view));
+            let seconds = room.game.elapsed();
+            return with_view(|view| {
+                options.draw(&*world, &camera, seconds, canvas, area, view);
+            });
         }
         let shows_standings =
             matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat);
@@ -166,10 +171,10 @@ impl Ui {
             let mut world = room.game.world().clone();
             world.set_figures(moment.figures.iter().copied());
             let (camera, seconds) = (stay.camera(room, options.field_of_view), room.game.elapsed());
-            let mut view = VIEW.take().unwrap_or_default();
-            options.draw(&world, &camera, seconds, canvas, place, &mut view);
-            stay.next_change = view.next_change();
-            VIEW.set(Some(view));
+            stay.next_change = with_view(|view| {
+                options.draw(&world, &camera, seconds, canvas, place, view);
+                view.next_change()
+            });
             notice(canvas, place, &format!("the last seconds of {name}"));
         } else if seen_through.is_some_and(|(member, _)| member.is_blind) {
             draw_darkness(canvas, area, room, depth);
@@ -183,20 +188,19 @@ impl Ui {
             let own = stay.own_color(room);
             let ghosts: Vec<SeenGhost> = stay.ghosts.seen(room, own, preferences.ghost).collect();
             let world = with_figures(game.world(), room.figures(), &ghosts);
-            let mut view = VIEW.take().unwrap_or_default();
-            options.draw(&*world, &camera, seconds, canvas, area, &mut view);
-            stay.next_change = view.next_change();
-            ceremony::draw_edge(canvas, area, stay.edge(room), depth);
-            if let Some((_, player)) = seen_through {
+            let (edge, map) = (stay.edge(room), &mut stay.map);
+            stay.next_change = with_view(|view| {
+                options.draw(&*world, &camera, seconds, canvas, area, view);
+                ceremony::draw_edge(canvas, area, edge, depth);
+                let Some((_, player)) = seen_through else { return view.next_change() };
                 let (player, ignored) = (&player, &self.ignored);
                 overhead::draw(canvas, area, &options, player, (room, ignored), &ghosts);
-                let overlay = Overlay::new(game, player.id(), &options, preferences);
-                if let Some(overlay) = overlay {
-                    let map = overlay.draw_map(canvas, area, &mut stay.map, &view, None);
+                if let Some(overlay) = Overlay::new(game, player.id(), &options, preferences) {
+                    let map = overlay.draw_map(canvas, area, map, view, None);
                     overlay.draw_hud(canvas, area, map, page == Page::Room);
                 }
-            }
-            VIEW.set(Some(view));
+                view.next_change()
+            });
         }
         if page == Page::Room || page == Page::Chat {
             ceremony::draw_finishers(canvas, area, &finishers(room), depth);

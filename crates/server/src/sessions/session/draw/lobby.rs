@@ -10,7 +10,7 @@ use ratatui::layout::{Margin, Rect};
 use ratatui::text::{Line as TextLine, Text};
 use unicode_width::UnicodeWidthStr;
 
-use super::VIEW;
+use super::with_view;
 use crate::accounts::printable;
 use crate::line::Line;
 use crate::rooms::room::{Mode, RoomView};
@@ -189,7 +189,6 @@ impl Ui {
     fn draw_live_picture(&mut self, canvas: &mut impl Canvas, area: Rect, room: Option<&RoomView>) {
         self.lobby.next_change = None;
         let options = DrawOptions { marks_middle: false, ..self.draw_options() };
-        let mut view = VIEW.take().unwrap_or_default();
         let seen = room.and_then(|room| Some((room, seen_through(room)?.1)));
         if let Some((room, player)) = seen {
             let header = &room.header;
@@ -198,8 +197,10 @@ impl Ui {
             let inside = framed(canvas, area, &title);
             let camera = player.camera(options.field_of_view);
             let (world, seconds) = (room.game.world(), room.game.elapsed());
-            options.draw(world, &camera, seconds, canvas, inside, &mut view);
-            self.lobby.next_change = view.next_change();
+            self.lobby.next_change = with_view(|view| {
+                options.draw(world, &camera, seconds, canvas, inside, view);
+                view.next_change()
+            });
             let names: Vec<&Line> = room.members.iter().map(|member| &member.name).collect();
             draw_caption(canvas, area, &names_within(&names, area.width.saturating_sub(2)));
         } else {
@@ -208,11 +209,10 @@ impl Ui {
             let world = self.level_name(offer).and_then(|level| self.host.catalog.world(&level));
             if let Some(world) = world {
                 let camera = world.start_camera(options.field_of_view);
-                options.draw(&*world, &camera, 0.0, canvas, inside, &mut view);
+                with_view(|view| options.draw(&*world, &camera, 0.0, canvas, inside, view));
             }
             draw_caption(canvas, area, "nobody is walking");
         }
-        VIEW.set(Some(view));
     }
 
     /// Draws the best entries of today's daily level.
