@@ -160,7 +160,7 @@ pub struct Config {
     pub player_bytes_per_second: u32,
     /// The rooms that always exist.
     #[serde(rename = "room", deserialize_with = "rooms")]
-    pub standing: Vec<RoomRequest>,
+    pub standing: Vec<StandingRoom>,
     /// The most mebibytes of recordings.
     #[serde(deserialize_with = "number::<1, { 1 << 20 }, _>")]
     pub recordings_megabytes: u32,
@@ -212,7 +212,7 @@ impl Default for Config {
             frames_per_second: 30,
             player_bytes_per_second: 60_000,
             // One room to walk around in, and one to play in.
-            standing: [Mode::Roam, Mode::Tag].map(in_mode).into(),
+            standing: [Mode::Roam, Mode::Tag].map(StandingRoom::in_mode).into(),
             recordings_megabytes: 256,
             recordings_days: 30,
             recordings: None,
@@ -252,7 +252,7 @@ impl Config {
             most: self.standing.len().max(self.rooms as usize),
             most_watchers: self.watchers as usize,
             closes_after: self.empty_room,
-            standing: self.standing.clone(),
+            standing: self.standing.iter().map(StandingRoom::request).collect(),
         }
     }
 
@@ -266,23 +266,12 @@ impl Config {
         }
     }
 
-    /// Checks that the levels of the standing rooms in `text` exist. `text` is a configuration that parses
-    /// without a fault. `levels` are the names of all levels.
+    /// Checks that the levels of the standing rooms exist. `text` is the file, and `levels` are the names of all levels.
     ///
     /// # Errors
     /// A fault for each unknown level.
-    pub fn check_levels(text: &str, name: &str, levels: &[&str]) -> Result<(), Faults> {
-        #[derive(Deserialize)]
-        struct Levels {
-            #[serde(default)]
-            room: Vec<Level>,
-        }
-        #[derive(Deserialize)]
-        struct Level {
-            level: Option<Spanned<String>>,
-        }
-        let rooms = toml::from_str(text).map_or_else(|_| Vec::new(), |it: Levels| it.room);
-        let named = rooms.into_iter().filter_map(|room| room.level);
+    pub fn check_levels(&self, text: &str, name: &str, levels: &[&str]) -> Result<(), Faults> {
+        let named = self.standing.iter().map(|room| &room.level);
         let unknown = named.filter(|level| !levels.contains(&level.get_ref().as_str()));
         let faults: Vec<Fault> = unknown
             .map(|level| {
@@ -295,6 +284,38 @@ impl Config {
             })
             .collect();
         if faults.is_empty() { Ok(()) } else { Err(Faults::new(name, text, faults)) }
+    }
+}
+
+/// A room that always exists.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table [[room]]")]
+pub struct StandingRoom {
+    /// The mode, but not "alone".
+    #[serde(deserialize_with = "mode")]
+    pub mode: Mode,
+    /// The name of the level, with its place in the file.
+    pub level: Spanned<String>,
+    /// The difficulty.
+    #[serde(deserialize_with = "difficulty")]
+    pub difficulty: Difficulty,
+}
+
+impl StandingRoom {
+    fn in_mode(mode: Mode) -> Self {
+        let level = Spanned::new(0..0, "museum".to_owned());
+        Self { mode, level, difficulty: Difficulty::default() }
+    }
+
+    fn request(&self) -> RoomRequest {
+        let Self { mode, level, difficulty } = self;
+        RoomRequest { level: level.get_ref().clone(), mode: *mode, difficulty: *difficulty }
+    }
+}
+
+impl Default for StandingRoom {
+    fn default() -> Self {
+        Self::in_mode(Mode::Roam)
     }
 }
 
@@ -358,10 +379,6 @@ const MAX_PROXIES: usize = 64;
 const MAX_MESSAGE_LENGTH: usize = 200;
 /// The longest name of a host, in characters.
 const MAX_NAME_LENGTH: usize = 40;
-
-fn in_mode(mode: Mode) -> RoomRequest {
-    RoomRequest { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
-}
 
 /// An error in a file. Of the names that replace an unknown one, it lists only the nearest.
 fn fault(error: &toml::de::Error) -> Fault {
@@ -503,32 +520,14 @@ fn log<'de, D: Deserializer<'de>>(from: D) -> Result<LogFilter, D::Error> {
     })
 }
 
-fn rooms<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<RoomRequest>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(default, deny_unknown_fields, expecting = "a table [[room]]")]
-    struct StandingRoom {
-        #[serde(deserialize_with = "mode")]
-        mode: Mode,
-        level: String,
-        #[serde(deserialize_with = "difficulty")]
-        difficulty: Difficulty,
-    }
-    impl Default for StandingRoom {
-        fn default() -> Self {
-            let RoomRequest { level, mode, difficulty } = in_mode(Mode::Roam);
-            Self { mode, level, difficulty }
-        }
-    }
+fn rooms<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<StandingRoom>, D::Error> {
     let rooms = Vec::<StandingRoom>::deserialize(from)?;
     if rooms.len() > MAX_ROOMS {
         let sentence =
             format!("there are {} standing rooms, and the limit is {MAX_ROOMS}", rooms.len());
         return Err(D::Error::custom(sentence));
     }
-    let rooms = rooms.into_iter();
-    Ok(rooms
-        .map(|StandingRoom { mode, level, difficulty }| RoomRequest { level, mode, difficulty })
-        .collect())
+    Ok(rooms)
 }
 
 /// The mode of a standing room. A room in the mode "alone" ends with its player.

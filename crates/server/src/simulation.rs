@@ -20,19 +20,20 @@ use std::time::Duration;
 
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::{Instant, sleep};
+use toml::Spanned;
 
 pub(crate) use self::client::{Conditions, SimulatedClient, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::logs::{RoomLogs, replayed};
 use crate::accounts::{HostStore, UnixTime};
-use crate::config::{Config, LiveConfig};
+use crate::config::{Config, LiveConfig, StandingRoom};
 use crate::line::Line;
 use crate::load::Worker;
 use crate::metrics::Metrics;
 use crate::rooms::directory::Recordings;
 use crate::rooms::directory::Rooms;
 use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
-use crate::rooms::summary::{RoomId, RoomRequest};
+use crate::rooms::summary::RoomId;
 use crate::sessions::driver::{Setup, Simulated};
 use crate::sessions::session::Session;
 use crate::ssh::Visitor;
@@ -122,8 +123,8 @@ impl Rig {
     pub(crate) fn with(options: RigOptions) -> Self {
         let runtime =
             Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
-        let (level, difficulty) = (options.level.to_owned(), Difficulty::Normal);
-        let room = RoomRequest { level, mode: options.mode, difficulty };
+        let level = Spanned::new(0..0, options.level.to_owned());
+        let room = StandingRoom { mode: options.mode, level, difficulty: Difficulty::Normal };
         let config =
             Config { message: "Be kind.".to_owned(), standing: vec![room], ..Config::default() };
         let (live, visitors, logs) =

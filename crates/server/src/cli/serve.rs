@@ -211,7 +211,7 @@ impl Configuration {
             let maps = HostMaps::read(folder);
             configuration.maps = maps.map_err(|faults| Error::report_of(&faults))?;
         }
-        configuration.check_levels(&text)?;
+        configuration.check_levels(&config, &text)?;
         Ok((configuration, config))
     }
 
@@ -239,7 +239,7 @@ impl Configuration {
         let text = self.text()?;
         let config = self.parse(&text)?;
         // A change of the maps has no effect until the next start.
-        self.check_levels(&text)?;
+        self.check_levels(&config, &text)?;
         Ok(config)
     }
 
@@ -253,8 +253,8 @@ impl Configuration {
         Ok(config)
     }
 
-    fn check_levels(&self, text: &str) -> Result<(), Error> {
-        Ok(Config::check_levels(text, &self.file_name(), &self.maps.level_names())?)
+    fn check_levels(&self, config: &Config, text: &str) -> Result<(), Error> {
+        Ok(config.check_levels(text, &self.file_name(), &self.maps.level_names())?)
     }
 
     /// The content of the file; empty if the default file does not exist.

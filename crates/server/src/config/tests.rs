@@ -128,12 +128,13 @@ fn unknown_room_levels_are_reported() {
     let text = "[[room]]\nlevel = \"cellar\"\n[[room]]\nmode = \"race\"\nlevel = \"celar\"\n\
                 [[room]]\nlevel = \"moss\"\n";
     let levels = ["cellar", "museum"];
-    let faults = Config::check_levels(text, "serve.toml", &levels).unwrap_err();
+    let config = Config::parse(text, "serve.toml").unwrap();
+    let faults = config.check_levels(text, "serve.toml", &levels).unwrap_err();
     insta::assert_snapshot!(faults);
     let rooms = Config::parse(text, "serve.toml").unwrap().standing;
-    let levels: Vec<&str> = rooms.iter().map(|room| room.level.as_str()).collect();
+    let levels: Vec<&str> = rooms.iter().map(|room| room.level.get_ref().as_str()).collect();
     assert_eq!(levels, ["cellar", "celar", "moss"]);
-    assert!(Config::check_levels(text, "serve.toml", &levels).is_ok());
+    assert!(config.check_levels(text, "serve.toml", &levels).is_ok());
 }
 
 #[test]
