@@ -54,9 +54,8 @@ const MAX_BYTES: u64 = 8 << 20;
 const MAX_SECONDS: u32 = 4 * 60 * 60;
 /// The most marks of a kind that are shown, at equal parts of the record.
 const MARKS_PER_KIND: u64 = 240;
-/// The most pieces that are kept for a record, and the most copies of the room after them.
+/// The most pieces that are kept for a record.
 const MAX_PIECES: usize = 64;
-const MAX_ROOMS: usize = 8;
 /// The usual speed and the greatest one, in quarters of a second each second.
 pub(crate) const USUAL_QUARTERS: u32 = 4;
 pub(crate) const MAX_QUARTERS: u32 = 64;
@@ -109,14 +108,10 @@ struct WatchedRecord {
     /// The marks, each with its second, its sign and its name, as JSON.
     marks: Value,
     catalog: Arc<Catalog>,
-    reader: Mutex<Reader<RoomRecord>>,
-    drawn: Mutex<Drawn>,
-}
-
-/// The latest pieces of a record, by second, and the rooms after some.
-struct Drawn {
-    pieces: VecDeque<(u32, Piece)>,
-    rooms: VecDeque<(Cursor, Room)>,
+    /// The reader, and the room at the latest picture.
+    reader: Mutex<(Reader<RoomRecord>, Cursor, Room)>,
+    /// The latest pieces, by second.
+    pieces: Mutex<VecDeque<(u32, Piece)>>,
 }
 
 /// A second of a record.
@@ -217,13 +212,12 @@ impl Records {
             reader = self.work(read).await.ok_or_else(ended)?;
         }
         let steps = reader.steps_read().min(most);
-        let rooms = VecDeque::from([(Cursor::default(), start)]);
         Ok(WatchedRecord {
             seconds: (steps as u32).div_ceil(SECOND_STEPS).max(1),
             marks: marks(&reader, steps),
             catalog: Arc::clone(self.rooms.catalog()),
-            reader: Mutex::new(reader),
-            drawn: Mutex::new(Drawn { pieces: VecDeque::new(), rooms }),
+            reader: Mutex::new((reader, Cursor::default(), start)),
+            pieces: Mutex::default(),
         })
     }
 
@@ -310,33 +304,20 @@ fn marks(reader: &Reader<RoomRecord>, steps: u64) -> Value {
 impl WatchedRecord {
     /// A piece that is drawn already.
     fn known(&self, second: u32) -> Option<Piece> {
-        locked(&self.drawn, |drawn| {
-            drawn.pieces.iter().find(|it| it.0 == second).map(|it| it.1.clone())
+        locked(&self.pieces, |pieces| {
+            pieces.iter().find(|it| it.0 == second).map(|it| it.1.clone())
         })
     }
 
     /// Draws a piece, and keeps it. `None` if nothing can be drawn.
     fn draw(&self, second: u32, metrics: &Metrics) -> Option<Piece> {
         let first = second * SECOND_STEPS;
-        let (mut cursor, mut room) = locked(&self.drawn, |drawn| {
-            let is_before = |it: &&(Cursor, Room)| it.0.step <= u64::from(first);
-            drawn
-                .rooms
-                .iter()
-                .filter(is_before)
-                .max_by_key(|it| it.0.step)
-                .or(drawn.rooms.back())
-                .cloned()
-        })?;
         let mut message = picture::Message::default();
         let (mut said, mut before) = (None, Vec::new());
-        locked(&self.reader, |reader| {
-            let mut goes_to = |step: u32, room: &mut Room| {
-                reader.seek(step.into(), (&mut cursor, room), &|| false);
-                cursor.step == u64::from(step)
-            };
+        locked(&self.reader, |(reader, cursor, room)| {
             for step in (first..first + SECOND_STEPS).step_by(PICTURE_STEPS as usize) {
-                if !goes_to(step, &mut room) {
+                reader.seek(step.into(), (cursor, room), &|| false);
+                if cursor.step != u64::from(step) {
                     break;
                 }
                 // The snapshot is dropped before the next step, which would copy its game.
@@ -351,13 +332,10 @@ impl WatchedRecord {
                 }
                 before = cells;
             }
-            goes_to(first + SECOND_STEPS, &mut room);
         });
         let piece = Piece { message: message.take()?, words: said? };
-        locked(&self.drawn, |drawn| {
-            push_within(&mut drawn.pieces, (second, piece.clone()), MAX_PIECES);
-            push_within(&mut drawn.rooms, (cursor, room), MAX_ROOMS);
-        });
+        let kept = (second, piece.clone());
+        locked(&self.pieces, |pieces| push_within(pieces, kept, MAX_PIECES));
         Some(piece)
     }
 }
