@@ -57,22 +57,11 @@ pub(crate) struct RoomLimits {
 
 #[derive(Debug)]
 struct Directory {
-    limits: Mutex<RoomLimits>,
-    /// By the host's clock.
-    today: Mutex<Day>,
     catalog: Arc<Catalog>,
     recordings: Recordings,
     load: Arc<Load>,
-    open: Mutex<OpenRooms>,
     summaries: watch::Sender<Arc<[RoomSummary]>>,
-    /// The rooms that this host shares with other hosts.
-    shared: Mutex<Vec<RoomSummary>>,
-    /// The browsers that watch rooms on this host.
-    browsers: Mutex<BTreeMap<RoomId, usize>>,
-    /// Those of the shared rooms that somebody has entered on this host.
-    entered: Mutex<BTreeMap<RoomId, Weak<RoomInterface>>>,
-    /// The generator of invitation codes.
-    codes: Mutex<SplitMix64>,
+    state: Mutex<DirectoryState>,
 }
 
 /// The seeds of a host's chance.
@@ -85,11 +74,23 @@ pub(crate) struct Seeds {
 }
 
 #[derive(Debug)]
-struct OpenRooms {
+struct DirectoryState {
+    limits: RoomLimits,
+    /// By the host's clock.
+    today: Day,
     /// The number of the newest room.
     last: u32,
+    /// All chance in the rooms.
     chance: SplitMix64,
+    /// The generator of invitation codes.
+    codes: SplitMix64,
     rooms: BTreeMap<RoomId, OpenRoom>,
+    /// The rooms that this host shares with other hosts.
+    shared: Vec<RoomSummary>,
+    /// Those of the shared rooms that somebody has entered on this host.
+    entered: BTreeMap<RoomId, Weak<RoomInterface>>,
+    /// The browsers that watch rooms on this host.
+    browsers: BTreeMap<RoomId, usize>,
 }
 
 /// A room that is not running yet.
@@ -113,20 +114,19 @@ impl Rooms {
         load: Arc<Load>,
         seeds: Seeds,
     ) -> Self {
-        let chance = SplitMix64::new(seeds.rooms);
-        let rooms = Self(Arc::new(Directory {
-            limits: Mutex::new(limits),
-            today: Mutex::default(),
-            catalog,
-            recordings,
-            load,
-            open: Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() }),
-            summaries: watch::Sender::new(Arc::from([])),
-            shared: Mutex::default(),
-            browsers: Mutex::default(),
-            entered: Mutex::default(),
-            codes: Mutex::new(SplitMix64::new(seeds.codes)),
-        }));
+        let state = DirectoryState {
+            limits,
+            today: Day::default(),
+            last: 0,
+            chance: SplitMix64::new(seeds.rooms),
+            codes: SplitMix64::new(seeds.codes),
+            rooms: BTreeMap::new(),
+            shared: Vec::new(),
+            entered: BTreeMap::new(),
+            browsers: BTreeMap::new(),
+        };
+        let (summaries, state) = (watch::Sender::new(Arc::from([])), Mutex::new(state));
+        let rooms = Self(Arc::new(Directory { catalog, recordings, load, summaries, state }));
         rooms.open_standing();
         rooms
     }
@@ -138,12 +138,12 @@ impl Rooms {
 
     /// The day whose daily level lobbies offer.
     pub(crate) fn today(&self) -> Day {
-        locked(&self.0.today, |today| *today)
+        self.locked(|it| it.today)
     }
 
     /// Records the day by the host's clock, and tells the lobbies.
     pub(crate) fn set_today(&self, today: Day) {
-        locked(&self.0.today, |it| *it = today);
+        self.locked(|it| it.today = today);
         self.publish();
     }
 
@@ -175,8 +175,8 @@ impl Rooms {
 
     /// Joins a room.
     pub(crate) fn enter(&self, id: RoomId, name: &Line) -> Result<Place, RoomRefusal> {
-        let interface = locked(&self.0.open, |open| {
-            let room = open.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
+        let interface = self.locked(|it| {
+            let room = it.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
             match room.summary.mode {
                 Mode::Alone => Err(RoomRefusal::Alone),
                 _ => Ok(Arc::clone(&room.interface)),
@@ -188,8 +188,8 @@ impl Rooms {
 
     /// Watches a room.
     pub(crate) fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
-        let interface = locked(&self.0.open, |open| {
-            open.rooms.get(&id).map(|room| Arc::clone(&room.interface)).ok_or(RoomRefusal::Gone)
+        let interface = self.locked(|it| {
+            it.rooms.get(&id).map(|room| Arc::clone(&room.interface)).ok_or(RoomRefusal::Gone)
         })?;
         let place = self.place_to_watch(id, interface)?;
         self.publish();
@@ -211,24 +211,26 @@ impl Rooms {
 
     /// The latest snapshot of a room that runs on this host.
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        let own = |open: &mut OpenRooms| Some(Arc::clone(&open.rooms.get(&id)?.interface));
-        let entered = || locked(&self.0.entered, |entered| entered.get(&id)?.upgrade());
-        locked(&self.0.open, own).or_else(entered)?.view()
+        let interface = self.locked(|it| match it.rooms.get(&id) {
+            Some(room) => Some(Arc::clone(&room.interface)),
+            None => it.entered.get(&id)?.upgrade(),
+        });
+        interface?.view()
     }
 
     /// Records that this host runs a shared room.
     pub(crate) fn note_entered(&self, id: RoomId, interface: &Arc<RoomInterface>) {
-        locked(&self.0.entered, |entered| {
-            entered.retain(|_, interface| interface.strong_count() > 0);
-            entered.insert(id, Arc::downgrade(interface));
+        self.locked(|it| {
+            it.entered.retain(|_, interface| interface.strong_count() > 0);
+            it.entered.insert(id, Arc::downgrade(interface));
         });
     }
 
     /// Records the number of browsers that watch a room on this host, and tells the lobbies if it has changed.
     pub(crate) fn note_browsers(&self, id: RoomId, count: usize) {
-        let before = locked(&self.0.browsers, |browsers| match count {
-            0 => browsers.remove(&id),
-            count => browsers.insert(id, count),
+        let before = self.locked(|it| match count {
+            0 => it.browsers.remove(&id),
+            count => it.browsers.insert(id, count),
         });
         if before.unwrap_or_default() != count {
             self.publish();
@@ -237,7 +239,7 @@ impl Rooms {
 
     /// A code for a new private room.
     pub(crate) fn new_code(&self) -> RoomCode {
-        locked(&self.0.codes, RoomCode::random)
+        self.locked(|it| RoomCode::random(&mut it.codes))
     }
 
     /// The private room with this code.
@@ -248,28 +250,27 @@ impl Rooms {
 
     /// The host's limits.
     pub(crate) fn limits(&self) -> RoomLimits {
-        locked(&self.0.limits, |limits| limits.clone())
+        self.locked(|it| it.limits.clone())
     }
 
     /// Replaces the host's limits. New standing rooms open. Rooms that are no longer standing close once they
     /// are empty, like any other room. The other limits apply from now on.
     pub(crate) fn set_limits(&self, limits: RoomLimits) {
-        locked(&self.0.limits, |it| *it = limits);
+        self.locked(|it| it.limits = limits);
         self.open_standing();
         self.publish();
     }
 
     /// Adds the rooms that this host shares with other hosts to the lobby's list.
     pub(crate) fn show_shared(&self, rooms: Vec<RoomSummary>) {
-        locked(&self.0.shared, |shared| *shared = rooms);
+        self.locked(|it| it.shared = rooms);
         self.publish();
     }
 
     /// Closes all rooms and waits until their recordings are written, for at most [`SHUTDOWN_TIMEOUT`].
     pub(crate) async fn end(&self) {
-        let interfaces: Vec<Arc<RoomInterface>> = locked(&self.0.open, |open| {
-            open.rooms.values().map(|room| Arc::clone(&room.interface)).collect()
-        });
+        let interfaces: Vec<Arc<RoomInterface>> =
+            self.locked(|it| it.rooms.values().map(|room| Arc::clone(&room.interface)).collect());
         for interface in &interfaces {
             interface.close("The server has ended.");
         }
@@ -280,10 +281,10 @@ impl Rooms {
 
     /// Opens the missing standing rooms, and lets rooms that are no longer wanted close.
     fn open_standing(&self) {
-        let (mut missing, closes_after) =
-            locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));
-        locked(&self.0.open, |open| {
-            for room in open.rooms.values() {
+        let missing = self.locked(|it| {
+            let mut missing = it.limits.standing.clone();
+            let closes_after = it.limits.closes_after;
+            for room in it.rooms.values() {
                 let Some(request) = &room.stood_for else { continue };
                 let wanted = missing.iter().position(|missing| missing == request);
                 match wanted.filter(|_| !room.interface.inbox.is_closed()) {
@@ -294,6 +295,7 @@ impl Rooms {
                     None => _ = room.interface.closes_after.send_replace(Some(closes_after)),
                 }
             }
+            missing
         });
         for request in missing {
             match self.add(&request, true, None) {
@@ -313,11 +315,10 @@ impl Rooms {
         stands: bool,
         code: Option<RoomCode>,
     ) -> Result<NewRoom, RoomRefusal> {
-        let Directory { limits, catalog, open, .. } = &*self.0;
-        let (most, closes_after) = locked(limits, |it| (it.most, it.closes_after));
-        let (id, seed) = locked(open, |open| {
-            open.last += 1;
-            (RoomId(open.last), open.chance.bits())
+        let catalog = self.catalog();
+        let (id, seed, closes_after) = self.locked(|it| {
+            it.last += 1;
+            (RoomId(it.last), it.chance.bits(), it.limits.closes_after)
         });
         let level = catalog.named(&request.level).unwrap_or(&request.level);
         let header = Header::new(level, request.mode, request.difficulty, seed);
@@ -328,12 +329,12 @@ impl Rooms {
             summary: RoomSummary::of(id, &room),
             stood_for: stands.then(|| request.clone()),
         };
-        locked(open, |open| {
-            let is_allowed = open.rooms.len() < most;
-            if is_allowed {
-                open.rooms.insert(id, open_room);
+        self.locked(|it| {
+            if it.rooms.len() >= it.limits.most {
+                return Err(RoomRefusal::TooMany);
             }
-            is_allowed.then_some((id, room, interface)).ok_or(RoomRefusal::TooMany)
+            it.rooms.insert(id, open_room);
+            Ok((id, room, interface))
         })
     }
 
@@ -348,7 +349,7 @@ impl Rooms {
         let rooms = self.clone();
         tokio::spawn(async move {
             let ended = sequencer.run(|room| rooms.change(id, room)).await;
-            locked(&rooms.0.open, |open| open.rooms.remove(&id));
+            rooms.locked(|it| it.rooms.remove(&id));
             rooms.publish();
             match ended {
                 Ok(()) => logging::room_closed(id.0),
@@ -365,10 +366,8 @@ impl Rooms {
         let is_over = |phase| matches!(phase, Phase::Over { .. });
         let summary = RoomSummary::of(id, room);
         let ends = is_over(summary.phase);
-        let before = locked(&self.0.open, |open| {
-            let open = open.rooms.get_mut(&id)?;
-            Some(std::mem::replace(&mut open.summary, summary))
-        });
+        let before =
+            self.locked(|it| Some(std::mem::replace(&mut it.rooms.get_mut(&id)?.summary, summary)));
         if ends && before.is_some_and(|before| !is_over(before.phase)) {
             let view = room.view();
             let winner = view.winner().map(|member| member.name.as_str());
@@ -379,27 +378,28 @@ impl Rooms {
 
     /// Publishes the current rooms to all lobbies.
     fn publish(&self) {
-        let summary = |room: &OpenRoom| RoomSummary {
-            watchers: room.interface.watchers(),
-            code: room.interface.code,
-            ..room.summary.clone()
-        };
+        let metrics = &self.0.load.metrics;
         // Sent under the lock, so that an older list never replaces a newer one.
-        locked(&self.0.open, |open| {
-            let rooms = open.rooms.values().map(summary);
-            let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
-            let mut summaries: Arc<[RoomSummary]> = rooms.collect();
-            locked(&self.0.browsers, |browsers| {
-                for room in Arc::make_mut(&mut summaries) {
-                    room.browsers = browsers.get(&room.id).copied().unwrap_or_default();
-                }
+        self.locked(|it| {
+            let own = it.rooms.values().map(|room| RoomSummary {
+                watchers: room.interface.watchers(),
+                code: room.interface.code,
+                ..room.summary.clone()
             });
-            let metrics = &self.0.load.metrics;
+            let listed = own.chain(it.shared.iter().cloned()).map(|room| RoomSummary {
+                browsers: it.browsers.get(&room.id).copied().unwrap_or_default(),
+                ..room
+            });
+            let summaries: Arc<[RoomSummary]> = listed.collect();
             metrics.rooms.set(summaries.len() as i64);
             metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());
             metrics.watchers.set(summaries.iter().map(|room| room.watchers as i64).sum());
             self.0.summaries.send_replace(summaries);
         });
+    }
+
+    fn locked<T>(&self, run: impl FnOnce(&mut DirectoryState) -> T) -> T {
+        locked(&self.0.state, run)
     }
 }
 

@@ -14,7 +14,7 @@ use cellcaster::world::Difficulty;
 impl Rooms {
     /// Closes a room, as a fault would.
     pub(crate) fn close(&self, id: RoomId, sentence: &str) {
-        locked(&self.0.open, |open| open.rooms[&id].interface.close(sentence));
+        self.locked(|it| it.rooms[&id].interface.close(sentence));
     }
 }
 
@@ -134,7 +134,7 @@ fn empty_rooms_are_closed_and_forgotten() {
             drop(places);
             listed(&rooms, &[1]).await;
         }
-        assert_eq!(locked(&rooms.0.open, |open| open.rooms.len()), 1);
+        assert_eq!(rooms.locked(|it| it.rooms.len()), 1);
     });
 }
 
