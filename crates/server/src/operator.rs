@@ -69,7 +69,9 @@ impl Operator {
                 let mut visitors = self.visitors.list();
                 if let Some(cluster) = &self.cluster {
                     let host = cluster.own_info().host;
-                    visitors.iter_mut().for_each(|row| row.host = Some(host.clone()));
+                    for row in &mut visitors {
+                        row.host = Some(host.clone());
+                    }
                 }
                 AdminReply { visitors, ..AdminReply::default() }
             }
