@@ -170,7 +170,7 @@ impl Session {
 
     fn shows_intents(&self, room: Option<&RoomView>) -> bool {
         let stay = self.ui.stay.as_ref().zip(room);
-        stay.is_none_or(|(stay, room)| stay.shows_intents(room))
+        stay.is_none_or(|(stay, room)| stay.shows_intents(room, self.unanswered.wanted()))
     }
 
     /// Takes the session's requests since the last call.
@@ -363,7 +363,8 @@ impl Session {
         let was_stale = std::mem::take(&mut self.ui.is_stale);
         let wanted = self.wanted();
         self.ui.event(key, now);
-        self.unanswered.press(self.ui.is_stale, self.wanted() != wanted, now);
+        let changed = self.wanted().filter(|_| self.wanted() != wanted);
+        self.unanswered.press(self.ui.is_stale, changed, now);
         self.ui.is_stale |= was_stale;
     }
 

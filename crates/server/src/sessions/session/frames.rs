@@ -7,8 +7,8 @@
 //!   held key change nothing and use no credit. Each of the next frames pays half of the debt. Rejected: the next frame
 //!   pays all. Then motion stands still for up to twice the usual time.
 //! - **Answers.** A frame answers a key if it shows the key's effect. A change of the screen appears in the
-//!   next picture. A change of intents appears in the first picture of a snapshot in which the room acts on other intents
-//!   than in the last picture, or on the newest ones. Keys without an effect are not counted. When every key counted
+//!   next picture. A change of intents appears in the first picture of a snapshot in which the room acts on them, or on
+//!   later ones, because a tap may be over. Keys without an effect are not counted. When every key counted
 //!   until the next frame of any kind, the mean of [`Metrics::key_time`](crate::metrics::Metrics::key_time)
 //!   was 2.5 s.
 //! - **Steps.** The visitor sees the step of the last frame that their terminal has acknowledged.
@@ -17,6 +17,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::rooms::sequencer::STEP;
+use cellcaster::game::Intents;
 
 /// The pace of frames.
 #[derive(Clone, Copy, Debug)]
@@ -70,19 +71,25 @@ impl Pace {
 pub(crate) struct Unanswered {
     /// The oldest key that has changed the screen.
     shown: Option<Duration>,
-    /// The oldest key that has changed the visitor's intents in the room.
-    wanted: Option<Duration>,
+    /// The oldest key that has changed the visitor's intents in the room, and the intents after the newest one.
+    wanted: Option<(Duration, Intents)>,
 }
 
 impl Unanswered {
-    /// Records the effects of a key that arrived at `now`.
-    pub(crate) fn press(&mut self, is_shown: bool, is_wanted: bool, now: Duration) {
+    /// Records the effects of a key that arrived at `now`: whether it has changed the screen, and the intents if it has
+    /// changed them.
+    pub(crate) fn press(&mut self, is_shown: bool, wanted: Option<Intents>, now: Duration) {
         if is_shown {
             self.shown.get_or_insert(now);
         }
-        if is_wanted {
-            self.wanted.get_or_insert(now);
+        if let Some(intents) = wanted {
+            self.wanted.get_or_insert((now, intents)).1 = intents;
         }
+    }
+
+    /// The intents after the newest key that has changed them.
+    pub(crate) fn wanted(&self) -> Option<Intents> {
+        self.wanted.map(|(_, intents)| intents)
     }
 
     /// Returns true if a new picture answers a key. `shows_intents` states whether it shows an effect of intents.
@@ -98,7 +105,7 @@ impl Unanswered {
     /// Returns the arrival time of the oldest key that a new picture answers. `shows_intents` states whether it shows
     /// an effect of intents.
     pub(crate) fn answer(&mut self, shows_intents: bool) -> Option<Duration> {
-        let wanted = self.wanted.take_if(|_| shows_intents);
+        let wanted = self.wanted.take_if(|_| shows_intents).map(|(time, _)| time);
         self.shown.take().into_iter().chain(wanted).min()
     }
 }

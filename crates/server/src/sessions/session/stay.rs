@@ -55,7 +55,6 @@ pub(crate) struct Stay {
 struct PictureState {
     header: Arc<Header>,
     revision: u64,
-    acted: Option<Intents>,
     camera: Camera,
     phase: Phase,
     times: [Option<u64>; 2],
@@ -133,10 +132,9 @@ impl Stay {
         self.acted(room).is_none_or(|acted| acted == self.intents.newest())
     }
 
-    /// Returns true if `room` acts on other intents of the member than in the last picture, or on the newest ones.
-    pub(crate) fn shows_intents(&self, room: &RoomView) -> bool {
-        self.has_acted(room)
-            || self.shown.as_ref().is_none_or(|shown| shown.acted != self.acted(room))
+    /// Returns true if `room` acts on these intents of the member, or on the newest ones.
+    pub(crate) fn shows_intents(&self, room: &RoomView, wanted: Option<Intents>) -> bool {
+        self.has_acted(room) || wanted.is_some() && wanted == self.acted(room)
     }
 
     /// The member's intents on which `room` has acted.
@@ -238,7 +236,6 @@ impl Stay {
         self.shown = Some(PictureState {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
-            acted: self.acted(room),
             camera: self.camera(room, view),
             phase: room.phase,
             times: times(room),
