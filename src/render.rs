@@ -22,8 +22,8 @@ use std::fmt;
 use std::num::NonZero;
 
 pub use crate::visibility::{
-    CeilingLoop, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect, PlaneLoop,
-    Projection, SkyLoop, Surface, ThingLoop, WalkStats, WallLoop,
+    Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect, PlaneLoop, Projection,
+    Surface, WalkStats, WallLoop,
 };
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};

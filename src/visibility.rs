@@ -33,7 +33,7 @@ pub(crate) use billboard::may_show;
 pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, PlaneKind, VisiblePlane};
 pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
 pub(crate) use lighting::Lighting;
-pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
+pub use plan::{Filter, FramePlan, PlaneLoop, WallLoop};
 pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};

@@ -14,16 +14,16 @@ use crate::world::{Ceiling, Covering, Paint, Pattern, Sky, World};
 /// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// The loop for ceilings.
-    pub ceiling: CeilingLoop,
+    /// The loop for ceilings; `None` if the sky is above every cell.
+    pub ceiling: Option<PlaneLoop>,
     /// The loop for the floor.
     pub floor: PlaneLoop,
-    /// The loop for the sky, in place of a ceiling or beyond the edge of the map.
-    pub sky: SkyLoop,
+    /// `true` if the sky, in place of a ceiling or beyond the edge of the map, is a panorama and not a gradient.
+    pub has_panorama: bool,
     /// The loop for walls.
     pub walls: WallLoop,
-    /// The loop for things and figures.
-    pub things: ThingLoop,
+    /// `true` if the world has things or figures.
+    pub has_things: bool,
     /// The filter of textures.
     pub filter: Filter,
     /// `true` if anything may be in front of the opaque faces: things, figures, masks, glass or mirrors.
@@ -43,24 +43,6 @@ pub enum PlaneLoop {
     Tiles,
 }
 
-/// A loop that draws ceilings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CeilingLoop {
-    /// No loop, because the sky is above every cell.
-    Sky,
-    /// A loop for planes, if at least some cells have a ceiling.
-    Plane(PlaneLoop),
-}
-
-/// A loop that draws the sky.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SkyLoop {
-    /// One colour for each row.
-    Gradient,
-    /// One texel for each pixel, along the spans of each row that no surface covers.
-    Panorama,
-}
-
 /// The loop that draws walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallLoop {
@@ -72,48 +54,32 @@ pub struct WallLoop {
     pub jambs: bool,
 }
 
-/// A loop that draws things and figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThingLoop {
-    /// No loop, because the world has no things or figures.
-    None,
-    /// Billboards, from far to near: the things in visible cells, and all figures.
-    Billboards,
-}
-
 impl FramePlan {
     /// The plan for views of `world`.
     pub fn new(world: &World, filter: Filter) -> Self {
         let tiles = world.tile_facts();
         let is_foggy = world.fog().is_some();
         let is_lamplit = world.has_lamplight();
+        let has_things = !world.things().is_empty() || !world.figures().is_empty();
         Self {
             floor: PlaneLoop::new(world.floor(), is_lamplit || tiles.floors_differ, is_foggy),
             ceiling: match world.ceiling() {
-                Ceiling::Sky if tiles.are_roofless => CeilingLoop::Sky,
-                Ceiling::Sky => CeilingLoop::Plane(PlaneLoop::Tiles),
+                Ceiling::Sky if tiles.are_roofless => None,
+                Ceiling::Sky => Some(PlaneLoop::Tiles),
                 Ceiling::Covered(covering) => {
                     let varies = is_lamplit || tiles.ceilings_differ;
-                    CeilingLoop::Plane(PlaneLoop::new(covering, varies, is_foggy))
+                    Some(PlaneLoop::new(covering, varies, is_foggy))
                 }
             },
-            sky: match world.sky() {
-                Sky::Gradient { .. } => SkyLoop::Gradient,
-                Sky::Panorama(_) => SkyLoop::Panorama,
-            },
+            has_panorama: matches!(world.sky(), Sky::Panorama(_)),
             walls: WallLoop {
                 textured: tiles.have_textured_walls,
                 faded: is_foggy || tiles.are_dim,
                 jambs: tiles.have_doors,
             },
-            things: match (world.things(), world.figures()) {
-                ([], []) => ThingLoop::None,
-                _ => ThingLoop::Billboards,
-            },
+            has_things,
             filter,
-            has_layers: !world.things().is_empty()
-                || !world.figures().is_empty()
-                || tiles.have_see_through,
+            has_layers: has_things || tiles.have_see_through,
         }
     }
 }
@@ -132,12 +98,33 @@ impl PlaneLoop {
 impl fmt::Display for FramePlan {
     /// Writes a line for each pass, with its loop and the reason.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "ceiling  {}", self.ceiling)?;
+        match self.ceiling {
+            Some(plane) => writeln!(f, "ceiling  {plane}")?,
+            None => f.write_str("ceiling  not drawn: there is only sky\n")?,
+        }
         writeln!(f, "floor    {}", self.floor)?;
-        writeln!(f, "sky      {}", self.sky)?;
-        writeln!(f, "walls    {}", self.walls)?;
-        writeln!(f, "things   {}", self.things)?;
-        writeln!(f, "filter   {}", self.filter)
+        f.write_str(if self.has_panorama {
+            "sky      visible spans, where there is sky: it is a panorama\n"
+        } else {
+            "sky      a colour for each row, where there is sky: it is a gradient\n"
+        })?;
+        let texels = if self.walls.textured { "texels" } else { "one colour" };
+        let fade = if self.walls.faded {
+            "faded: there is fog, or a tile that is not fully lit"
+        } else {
+            "unfaded: there is no fog, and all is fully lit"
+        };
+        writeln!(f, "walls    columns of {texels}, {fade}")?;
+        f.write_str(if self.has_things {
+            "things   those in view, from far to near\n"
+        } else {
+            "things   not drawn: there are none\n"
+        })?;
+        f.write_str(match self.filter {
+            Filter::Mip => "filter   mip: far texels are averaged\n",
+            Filter::Area => "filter   area: the mean of nine samples of each pixel\n",
+            Filter::Nearest => "filter   nearest: every texel is one of the texture's own\n",
+        })
     }
 }
 
@@ -149,54 +136,6 @@ impl fmt::Display for PlaneLoop {
             Self::Spans => f.write_str("visible spans: its covering is the same everywhere"),
             Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
         }
-    }
-}
-
-impl fmt::Display for CeilingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sky => f.write_str("not drawn: there is only sky"),
-            Self::Plane(plane) => plane.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for SkyLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
-            Self::Panorama => "visible spans, where there is sky: it is a panorama",
-        })
-    }
-}
-
-impl fmt::Display for WallLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
-        f.write_str(if self.faded {
-            ", faded: there is fog, or a tile that is not fully lit"
-        } else {
-            ", unfaded: there is no fog, and all is fully lit"
-        })
-    }
-}
-
-impl fmt::Display for ThingLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::None => "not drawn: there are none",
-            Self::Billboards => "those in view, from far to near",
-        })
-    }
-}
-
-impl fmt::Display for Filter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mip => "mip: far texels are averaged",
-            Self::Area => "area: the mean of nine samples of each pixel",
-            Self::Nearest => "nearest: every texel is one of the texture's own",
-        })
     }
 }
 

@@ -131,14 +131,8 @@ impl Pass {
 impl FrameStats {
     /// The cost of `pass`.
     pub fn of(&self, pass: Pass) -> PassStats {
-        match pass {
-            Pass::Ceiling => self.ceiling,
-            Pass::Floor => self.floor,
-            Pass::Sky => self.sky,
-            Pass::Walls => self.walls,
-            Pass::SeeThrough => self.see_through,
-            Pass::Things => self.things,
-        }
+        let mut stats = *self;
+        *stats.of_mut(pass)
     }
 
     /// The pixels written by all passes together.
