@@ -1,9 +1,7 @@
 //! Pieces: the squares of a checker and the stripes of a floor or a ceiling, which alternate
 //! between two paints.
 //!
-//! If pieces are wide, [`draw`] computes the end of each piece, and draws its pixels like a plane
-//! with one paint. If they are narrow, it looks up the piece of each pixel. The lookup takes 20
-//! instructions, but a narrow piece ends before it would pay off to draw its pixels together.
+//! The end of each piece is computed, and its pixels are drawn like a plane with one paint.
 
 use std::mem;
 
@@ -11,10 +9,7 @@ use super::span::{PlaneSpan, Sample, draw_level};
 use super::target::Target;
 use crate::color::Rgb;
 use crate::visibility::TexelPlaces;
-use crate::world::texture::MipLevelByShifts;
 
-/// The least mean width, in pixels, of pieces that are drawn one by one.
-const MIN_WIDTH: u64 = 8;
 /// The width of a piece. The pattern repeats after two pieces, so the uppermost bit of a position
 /// is the index of the piece. The other bits are the position in the piece.
 const PIECE: u64 = 1 << 63;
@@ -36,11 +31,7 @@ pub(crate) fn draw<'p, const IS_CHECKER: bool>(
     }
     target.count_texels(pass, texels);
     let pixels = target.span_mut(pass, row, columns.clone());
-    if are_wide::<IS_CHECKER>(&places) {
-        draw_pieces::<IS_CHECKER>(samples, places, pixels);
-    } else {
-        draw_pixels::<IS_CHECKER>(samples, places, pixels);
-    }
+    draw_pieces::<IS_CHECKER>(samples, places, pixels);
     pixels
 }
 
@@ -48,13 +39,6 @@ pub(crate) fn draw<'p, const IS_CHECKER: bool>(
 #[inline]
 fn index<const IS_CHECKER: bool>((x, y): (u64, u64)) -> usize {
     ((if IS_CHECKER { x ^ y } else { y }) / PIECE) as usize
-}
-
-/// Whether the pieces at `places` are wide enough to be drawn one by one.
-#[inline]
-fn are_wide<const IS_CHECKER: bool>(places: &TexelPlaces) -> bool {
-    let [x, y] = places.steps().map(|step| step.cast_signed().unsigned_abs() / 2);
-    (if IS_CHECKER { x + y } else { y }) <= PIECE / 2 / MIN_WIDTH
 }
 
 /// Draws the pixels at `places`, piece by piece.
@@ -90,36 +74,6 @@ fn pixels_to_edge(place: u64, step: u64) -> u64 {
     last_of_piece.checked_div(step).map_or(u64::MAX, |steps| steps + 1)
 }
 
-/// Draws the pixels at `places`, one by one.
-fn draw_pixels<const IS_CHECKER: bool>(
-    samples: &[Sample<'_>; 2],
-    places: TexelPlaces,
-    pixels: &mut [Rgb],
-) {
-    if let [Some(one), Some(other)] = samples.each_ref().map(by_shifts) {
-        let levels = [one, other];
-        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-            let level = &levels[index::<IS_CHECKER>((x, y))];
-            *pixel = level.at_index(level.index(x << 1, y << 1));
-        }
-        return;
-    }
-    for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-        *pixel = match &samples[index::<IS_CHECKER>((x, y))] {
-            Sample::Color(color) => *color,
-            Sample::Level(level) => level.at_fraction(x << 1, y << 1),
-        };
-    }
-}
-
-/// The mip level of `sample`, if its lookup needs no multiplications.
-fn by_shifts<'a>(sample: &Sample<'a>) -> Option<MipLevelByShifts<'a>> {
-    match sample {
-        Sample::Color(_) => None,
-        Sample::Level(level) => level.by_shifts(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::num::NonZeroU32;
@@ -130,6 +84,19 @@ mod tests {
     use super::*;
     use crate::visibility::SpanMapping;
     use crate::world::Texture;
+
+    fn draw_pixels<const IS_CHECKER: bool>(
+        samples: &[Sample<'_>; 2],
+        places: TexelPlaces,
+        pixels: &mut [Rgb],
+    ) {
+        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
+            *pixel = match &samples[index::<IS_CHECKER>((x, y))] {
+                Sample::Color(color) => *color,
+                Sample::Level(level) => level.at_fraction(x << 1, y << 1),
+            };
+        }
+    }
 
     proptest! {
         #[test]
