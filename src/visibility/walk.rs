@@ -56,7 +56,8 @@ struct Visit {
     /// `true` if the rays begin at the camera, in this sector.
     is_at_camera: bool,
     columns: Range<usize>,
-    /// The index of the first column's clip, and of the first entry. The others follow.
+    /// The index of the first column's clip, and of the first entry. The others follow. A visit at the camera has
+    /// no clips, because all rows are open.
     first_clip: usize,
     first_entry: usize,
 }
@@ -239,8 +240,6 @@ impl SectorWalk<'_> {
             let tile = course.cell(grid).map(|(_, tile)| tile);
             let WalkMemory { visits, clips, entries, .. } = &mut *self.memory;
             let (first_clip, first_entry) = (clips.len(), entries.len());
-            let open = Rows { start: 0, end: projection.rows() };
-            clips.extend(columns.clone().map(|_| Clip { rows: open, from: 0.0 }));
             entries.push(SectorEntry { column: columns.start, place: course.place() });
             visits.push(Visit {
                 sector: self.fan.sectors.of_eye(tile, projection.eye()),
@@ -264,13 +263,15 @@ impl SectorWalk<'_> {
         self.stats.sectors += 1;
         let WalkMemory { clips, entries, columns, fan, borders, .. } = &mut *self.memory;
         let range = &visit.columns;
-        let of_visit = &clips[visit.first_clip..];
-        let rows = zip(&mut columns.starts[range.clone()], &mut columns.ends[range.clone()]);
-        for ((start, end), clip) in zip(rows, of_visit) {
-            (*start, *end) = (clip.rows.start, clip.rows.end);
+        if visit.is_at_camera {
+            columns.starts[range.clone()].fill(0);
+            columns.ends[range.clone()].fill(self.scene.projection.rows());
+            columns.from[range.clone()].fill(0.0);
         }
-        for (from, clip) in zip(&mut columns.from[range.clone()], of_visit) {
-            *from = clip.from;
+        let rows = zip(&mut columns.starts[range.clone()], &mut columns.ends[range.clone()]);
+        let places = zip(rows, &mut columns.from[range.clone()]);
+        for (((start, end), from), clip) in zip(places, &clips[visit.first_clip..]) {
+            (*start, *end, *from) = (clip.rows.start, clip.rows.end, clip.from);
         }
         clips.truncate(visit.first_clip);
         let view = RayStarts {
