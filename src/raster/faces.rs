@@ -159,7 +159,7 @@ impl<'a> ShownFace<'a> {
                         band.column_mut(x, column.rows.within(rows))
                             .for_each(|pixel| *pixel = color);
                     }
-                })
+                });
             }
             Paint::Texture(id) => self.for_each_level(id, |level, range| {
                 let texels = (level, self.texels(level));
