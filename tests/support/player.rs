@@ -214,8 +214,15 @@ impl Player {
         let terminal = rustix::fs::open(name, flags, Mode::empty()).unwrap();
         let shared = Arc::clone(&self.shared);
         thread::spawn(move || {
-            while !shared.state.lock().unwrap().reading {
-                _ = rustix::io::write(&terminal, &[b' '; 1024]);
+            loop {
+                // Locked until the bytes are written: none are written once the terminal reads again.
+                let state = shared.state.lock().unwrap();
+                if state.reading {
+                    return;
+                }
+                _ = rustix::io::write(&terminal, &[b' '; 8192]);
+                drop(state);
+                thread::sleep(Duration::from_millis(1));
             }
         });
     }
