@@ -102,13 +102,19 @@ fn the_game_waits_for_a_late_answer() {
     }
 }
 
-#[test]
-fn the_game_ends_even_while_the_link_is_down() {
+/// A game in which the player has turned, on a terminal that has stopped reading and has no room for more.
+fn with_full_terminal() -> Game {
     let mut game = Game::start();
     game.press(Key::Right);
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
     game.set_reading(false);
     game.wait_until_full();
+    game
+}
+
+#[test]
+fn the_game_ends_even_while_the_link_is_down() {
+    let mut game = with_full_terminal();
     game.signal(Signal::TERM);
     let ending = game.wait_for_end();
     assert_eq!(ending.modes, Modes::default());
@@ -118,11 +124,7 @@ fn the_game_ends_even_while_the_link_is_down() {
 /// The line about the game has nowhere to go.
 #[test]
 fn the_game_ends_even_if_the_terminal_stays_full() {
-    let mut game = Game::start();
-    game.press(Key::Right);
-    game.wait_for_arrow("turned", |arrow| arrow.points != '→');
-    game.set_reading(false);
-    game.wait_until_full();
+    let mut game = with_full_terminal();
     game.keep_full();
     game.signal(Signal::TERM);
     assert!(game.wait_for_end().attributes_restored);
