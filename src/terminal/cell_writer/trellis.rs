@@ -11,7 +11,8 @@
 //! that all paths share. A cell at which no path has its cursor is skipped if keeping it costs less than a motion of
 //! the cursor. Rejected: searching these cells, too. It took a fifth more instructions for the same bytes and error.
 //!
-//! The [greedy choice](super::greedy) takes 0.3 times the time, and twice the bytes at the mean error of high fidelity.
+//! The [greedy choice](super::greedy) takes 0.2 to 0.3 times the time, and two to three times the bytes at the same mean
+//! error.
 
 use super::block::{BlockElement, MosaicShape};
 use super::ink::{ColorCode, Ink, Inks, Price};

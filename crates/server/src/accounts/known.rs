@@ -11,7 +11,8 @@
 //! - **The number of an account serves only to mark the player's own results.** Changes look the account up by its
 //!   key, because the database may have been replaced.
 //! - **Memory and file are bounded.** The player who was confirmed the longest ago makes room, in memory by the number
-//!   of players, in the file also by its bytes. The file is replaced atomically. If it cannot be read, or belongs to another database, the memory starts empty.
+//!   of players, in the file also by its bytes. The file is replaced atomically. If it cannot be read, or belongs to
+//!   another database, the memory starts empty.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
