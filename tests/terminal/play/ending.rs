@@ -104,7 +104,7 @@ fn the_game_waits_for_a_late_answer() {
 
 /// A game in which the player has turned, on a terminal that has stopped reading and has no room for more.
 fn with_full_terminal() -> Game {
-    let mut game = Game::start();
+    let game = Game::start();
     game.press(Key::Right);
     game.wait_for_arrow("turned", |arrow| arrow.points != '→');
     game.set_reading(false);
